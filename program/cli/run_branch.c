@@ -283,8 +283,8 @@ static ExitCode check_branch(Run *run) {
     return code;
 }
 
-ExitCode branch_prepare(Run *run, const char *from) {
-    Branch *branch = &run->branch;
+/// Reads the record of the run and the frame that `--from` names, DIR:FRAME.
+static ExitCode open_branch(Run *run, const char *from) {
     struct stat here, there;
     const char *colon = strrchr(from, ':');
     char *end = NULL;
@@ -294,7 +294,8 @@ ExitCode branch_prepare(Run *run, const char *from) {
         console_error(run->console, "--from: expected DIR:FRAME, such as out/letter:80, not '%s'", shown(from).text);
         return EXIT_INPUT;
     }
-    branch->frame = (int)frame;
+    run->branch.frame = (int)frame;
+
     char *folder = text_format("%.*s", (int)(colon - from), from);
     ExitCode code = EXIT_GOOD;
     if (stat(folder, &here) == 0 && stat(run->folder.path, &there) == 0 && here.st_dev == there.st_dev &&
@@ -305,6 +306,12 @@ ExitCode branch_prepare(Run *run, const char *from) {
     }
     if (!code) code = read_record(run, folder);
     free(folder);
+    return code;
+}
+
+ExitCode branch_prepare(Run *run, const char *from) {
+    Branch *branch = &run->branch;
+    ExitCode code = open_branch(run, from);
     if (!code) code = check_branch(run);
 
     // the simulation, as it was

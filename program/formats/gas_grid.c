@@ -78,6 +78,29 @@ bool gas_decode(Gas *gas) {
     return sum == 0;
 }
 
+/// Blocks that hold nothing become still air as cool as the coolest cell.
+static void clear_still_blocks(Gas *copy, float coolest) {
+    const uint32_t *n = copy->view.size;
+    uint32_t block[3];
+
+    for (block[2] = 0; block[2] * GAS_BLOCK < n[2]; block[2]++)
+        for (block[1] = 0; block[1] * GAS_BLOCK < n[1]; block[1]++)
+            for (block[0] = 0; block[0] * GAS_BLOCK < n[0]; block[0]++)
+                if (!gas_block_holds(&copy->view, block, coolest)) {
+                    uint32_t low[3], high[3];
+                    gas_block_box(&copy->view, block, low, high);
+                    for (uint32_t z = low[2]; z < high[2]; z++)
+                        for (uint32_t y = low[1]; y < high[1]; y++)
+                            for (uint32_t x = low[0]; x < high[0]; x++) {
+                                size_t cell = gas_index(&copy->view, x, y, z);
+                                copy->temperature[cell] = coolest;
+                                copy->smoke[cell] = copy->flame[cell] = copy->extinction[cell] =
+                                    copy->flame_share[cell] = 0;
+                                copy->velocity[cell][0] = copy->velocity[cell][1] = copy->velocity[cell][2] = 0;
+                            }
+                }
+}
+
 SingeResult gas_copy(const SingeGas *gas, SingeAllocator allocator, Gas *copy, SingeError *error) {
     *copy = (Gas){.allocator = allocator};
     if (!gas_shape_is_good(gas))
@@ -118,27 +141,7 @@ SingeResult gas_copy(const SingeGas *gas, SingeAllocator allocator, Gas *copy, S
         return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "a value is too large for a file");
     }
 
-    const uint32_t *n = gas->size;
-    uint32_t block[3];
-
-    for (block[2] = 0; block[2] * GAS_BLOCK < n[2]; block[2]++)
-        for (block[1] = 0; block[1] * GAS_BLOCK < n[1]; block[1]++)
-            for (block[0] = 0; block[0] * GAS_BLOCK < n[0]; block[0]++)
-                if (!gas_block_holds(&copy->view, block, coolest)) {
-                    // still air in a block
-                    uint32_t low[3], high[3];
-                    gas_block_box(&copy->view, block, low, high);
-                    for (uint32_t z = low[2]; z < high[2]; z++)
-                        for (uint32_t y = low[1]; y < high[1]; y++)
-                            for (uint32_t x = low[0]; x < high[0]; x++) {
-                                size_t cell = gas_index(&copy->view, x, y, z);
-                                copy->temperature[cell] = coolest;
-                                copy->smoke[cell] = copy->flame[cell] = copy->extinction[cell] =
-                                    copy->flame_share[cell] = 0;
-                                copy->velocity[cell][0] = copy->velocity[cell][1] = copy->velocity[cell][2] = 0;
-                            }
-                }
-
+    clear_still_blocks(copy, coolest);
     return SINGE_OK;
 }
 

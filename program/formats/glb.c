@@ -112,6 +112,50 @@ static SingeResult put_pictures(GlbFile *f, const char *path, SingeError *error)
     return SINGE_OK;
 }
 
+/// A material for each sheet: paper, with the sheet's picture if it has one.
+static void put_materials(GlbFile *f) {
+    uint32_t textures = 0;
+    for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
+        const bool pictured = f->scene->sheets[i].picture != NULL;
+        sink_text(&f->text,
+                  "%s{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.9",
+                  i ? "," : "");
+        if (pictured) sink_text(&f->text, ",\"baseColorTexture\":{\"index\":%u}", textures++);
+        sink_text(&f->text, "}}");
+    }
+}
+
+/// Begins the list of the sheets' pictures. Returns how many there are.
+static uint32_t put_images(GlbFile *f, const char *up) {
+    uint32_t pictures = 0;
+    for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
+        if (!f->scene->sheets[i].picture) continue;
+        sink_text(&f->text, pictures++ ? ",{" : ",\"images\":[{");
+        if (f->pictures_inside) {
+            uint32_t before;
+            picture_of(f->scene, i, &before);
+            const char *ending = strrchr(f->scene->sheets[i].picture, '.');
+            const bool png = ending && (strcmp(ending, ".png") == 0 || strcmp(ending, ".PNG") == 0);
+            sink_text(&f->text, "\"bufferView\":%u,\"mimeType\":\"image/%s\"}", f->first_picture + before,
+                      png ? "png" : "jpeg");
+            continue;
+        }
+
+        // a path as a URI, prefixed by `up` if it is relative
+        sink_text(&f->text, "\"uri\":\"%s", *f->scene->sheets[i].picture == '/' ? "" : up);
+        for (const unsigned char *c = (const unsigned char *)f->scene->sheets[i].picture; *c; c++) {
+            const bool plain =
+                (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9') || strchr("-_.~/", *c);
+            if (plain) sink_bytes(&f->text, c, 1);
+            else sink_text(&f->text, "%%%02X", (unsigned)*c);
+        }
+
+        sink_text(&f->text, "\"}");
+    }
+
+    return pictures;
+}
+
 static void put_scene(GlbFile *f, const char *up, const char *extras) {
     sink_text(&f->text, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"Singe " SINGE_VERSION "\",\"extras\":");
     sink_bytes(&f->text, extras, strlen(extras));
@@ -128,47 +172,10 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
         put_part(f, "]}],\"nodes\":[", &f->nodes);
         put_part(f, "],\"meshes\":[", &f->meshes);
         sink_text(&f->text, "],\"materials\":[");
-
-        uint32_t textures = 0;
-        for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
-            const bool pictured = f->scene->sheets[i].picture != NULL;
-            sink_text(&f->text,
-                      "%s{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.9",
-                      i ? "," : "");
-            if (pictured) sink_text(&f->text, ",\"baseColorTexture\":{\"index\":%u}", textures++);
-            sink_text(&f->text, "}}");
-        }
-
+        put_materials(f);
         sink_text(&f->text, "]");
 
-        uint32_t pictures = 0;
-        for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
-            if (!f->scene->sheets[i].picture) continue;
-            sink_text(&f->text, pictures++ ? ",{" : ",\"images\":[{");
-            if (f->pictures_inside) {
-                uint32_t before;
-                picture_of(f->scene, i, &before);
-                const char *ending = strrchr(f->scene->sheets[i].picture, '.');
-                const bool png = ending && (strcmp(ending, ".png") == 0 || strcmp(ending, ".PNG") == 0);
-                sink_text(&f->text, "\"bufferView\":%u,\"mimeType\":\"image/%s\"}", f->first_picture + before,
-                          png ? "png" : "jpeg");
-                continue;
-            }
-
-            // a path as a URI, prefixed by `up` if it is relative
-            sink_text(&f->text, "\"uri\":\"%s", *f->scene->sheets[i].picture == '/' ? "" : up);
-            for (const unsigned char *c = (const unsigned char *)f->scene->sheets[i].picture; *c; c++) {
-                const bool plain = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9') ||
-                                   strchr("-_.~/", *c);
-                if (plain) sink_bytes(&f->text, c, 1);
-                else sink_text(&f->text, "%%%02X", (unsigned)*c);
-            }
-
-            sink_bytes(&f->text, "\"", 1);
-
-            sink_text(&f->text, "}");
-        }
-
+        const uint32_t pictures = put_images(f, up);
         if (pictures) {
             sink_text(&f->text, "],\"samplers\":[{\"wrapS\":33071,\"wrapT\":33071}],\"textures\":[");
             for (uint32_t i = 0; i < pictures; i++)
@@ -310,6 +317,22 @@ static int grid_of(const SingeSurface *s) {
     return side > 0 && isfinite(side) ? ilogbf(side) - 15 : -17;
 }
 
+/// A scalar field as an attribute: `_TEMPERATURE`.
+static void put_field(GlbMeshes *w, const SheetPart *part, const SurfaceField *field) {
+    const size_t begin = w->file->data.size;
+    const void *values = surface_field(w->surface, field);
+    char key[40] = "_";
+    for (uint32_t i = 0; i < part->count; i++) {
+        const uint32_t vertex = part->vertices[i];
+        const float value = field->integer ? (float)((const int32_t *)values)[vertex] : ((const float *)values)[vertex];
+        sink_words(&w->file->data, &value, 1);
+    }
+
+    for (size_t i = 0; field->name[i]; i++)
+        key[i + 1] = field->name[i] == '_' ? '_' : (char)(field->name[i] - 'a' + 'A');
+    put_named(w, key, begin, part->count, 1, NULL);
+}
+
 /// The mesh of a sheet. False if nothing of it is left: glTF has no empty meshes.
 static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
     SheetPart part = sheet_part(&w->parts, sheet);
@@ -351,23 +374,11 @@ static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
     put_vectors(w, &part, "_VELOCITY", s->velocity, false, false);
     if (!w->lean) put_vectors(w, &part, "_REST", s->rest_position, false, false);
 
-    for (int k = 0; k < SURFACE_FIELDS; k++)
-        if (!w->lean ||
-            (strcmp(surface_fields[k].name, "temperature") == 0 || strcmp(surface_fields[k].name, "burnt") == 0)) {
-            const size_t begin = w->file->data.size;
-            const void *values = surface_field(w->surface, &surface_fields[k]);
-            char key[40] = "_";
-            for (uint32_t i = 0; i < part.count; i++) {
-                const uint32_t vertex = part.vertices[i];
-                const float value = surface_fields[k].integer ? (float)((const int32_t *)values)[vertex]
-                                                              : ((const float *)values)[vertex];
-                sink_words(&w->file->data, &value, 1);
-            }
-
-            for (size_t i = 0; surface_fields[k].name[i]; i++)
-                key[i + 1] = surface_fields[k].name[i] == '_' ? '_' : (char)(surface_fields[k].name[i] - 'a' + 'A');
-            put_named(w, key, begin, part.count, 1, NULL);
-        }
+    for (int k = 0; k < SURFACE_FIELDS; k++) {
+        const char *name = surface_fields[k].name;
+        if (!w->lean || strcmp(name, "temperature") == 0 || strcmp(name, "burnt") == 0)
+            put_field(w, &part, &surface_fields[k]);
+    }
 
     f->meshes.size--; // the last comma
     const size_t corner_begin = w->file->data.size;
@@ -409,6 +420,29 @@ SingeResult glb_write_frame(const char *path, const OutputScene *scene, const Ou
 
 // ---- animated
 
+/// Keys of the scale of a frame's node: 1 while the frame lasts, 0 otherwise; frames begin at (number - 1)/fps.
+static void put_appearance(GlbFile *file, int number, int frames) {
+    float times[3], scales[3][3];
+    uint32_t count = 0;
+    for (int k = -1; k < 2; k++) {
+        const int at = number + k;
+        if (at > frames || (k < 0 && number == 1)) continue;
+        times[count] = k < 0 ? 0 : (float)((double)(at - 1) / (double)file->scene->fps);
+        for (int c = 0; c < 3; c++) scales[count][c] = k == 0;
+        count++;
+    }
+
+    size_t begin = file->data.size;
+    sink_words(&file->data, times, count);
+    const float box[2] = {times[0], times[count - 1]};
+    const uint32_t input = glb_put_accessor(file, begin, count, 1, GLB_OF_ANIMATION, box);
+    begin = file->data.size;
+    sink_words(&file->data, scales, 3 * (size_t)count);
+    const uint32_t output = glb_put_accessor(file, begin, count, 3, GLB_OF_ANIMATION, NULL);
+    sink_text(&file->animations, "%s{\"input\":%u,\"output\":%u,\"interpolation\":\"STEP\"}",
+              file->node_count ? "," : "", input, output);
+}
+
 SingeResult glb_write_single(const char *path, const OutputScene *scene, const OutputCache *cache, SingeError *error) {
     GlbFile file;
     SingeResult result = SINGE_OK;
@@ -428,27 +462,7 @@ SingeResult glb_write_single(const char *path, const OutputScene *scene, const O
         for (uint32_t sheet = 0; sheet < scene->sheet_count && !result; sheet++) {
             if (!put_mesh(&meshes, sheet)) continue;
 
-            // keys of a node's scale: 1 while its frame lasts, 0 otherwise; frames begin at (number - 1)/fps
-            float times[3], scales[3][3];
-            uint32_t count = 0;
-            for (int k = -1; k < 2; k++) {
-                const int at = frame.number + k;
-                if (at > cache->frames || (k < 0 && frame.number == 1)) continue;
-                times[count] = k < 0 ? 0 : (float)((double)(at - 1) / (double)scene->fps);
-                for (int c = 0; c < 3; c++) scales[count][c] = k == 0;
-                count++;
-            }
-
-            size_t begin = file.data.size;
-            sink_words(&file.data, times, count);
-            const float box[2] = {times[0], times[count - 1]};
-            const uint32_t input = glb_put_accessor(&file, begin, count, 1, GLB_OF_ANIMATION, box);
-            begin = file.data.size;
-            sink_words(&file.data, scales, 3 * (size_t)count);
-            const uint32_t output = glb_put_accessor(&file, begin, count, 3, GLB_OF_ANIMATION, NULL);
-            sink_text(&file.animations, "%s{\"input\":%u,\"output\":%u,\"interpolation\":\"STEP\"}",
-                      file.node_count ? "," : "", input, output);
-
+            put_appearance(&file, frame.number, cache->frames);
             sink_text(&file.nodes, "%s{\"mesh\":%u,\"name\":", file.node_count ? "," : "", file.node_count);
             glb_put_string(&file.nodes, scene->sheets[sheet].name);
             sink_text(&file.nodes, frame.number > 1 ? ",\"scale\":[0,0,0]}" : "}");

@@ -502,6 +502,30 @@ static SingeResult ply_header_property(Ply *ply) {
     return SINGE_OK;
 }
 
+/// Counts are checked against the size of the file before memory is allocated.
+static SingeResult ply_check_counts(const Ply *ply) {
+    const PlyHeader *header = &ply->header;
+    uint64_t left = (uint64_t)(ply->text.end - ply->text.at) + (header->format == PLY_ASCII);
+
+    for (size_t i = 0; i < header->element_count; i++) {
+        const PlyElement *element = &header->elements[i];
+        uint64_t min = 0;
+        for (size_t k = 0; k < element->property_count; k++) {
+            const PlyProperty *property = &header->properties[element->first_property + k];
+            if (header->format == PLY_ASCII) min += 2; // a digit and a separator
+            else min += ply_type_size(property->is_list ? property->count_type : property->type);
+        }
+
+        // the product is below 2^31 * 8000
+        if (min * element->count > left)
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file is too short for its %u elements of kind %zu",
+                              element->count, i + 1);
+        left -= min * element->count;
+    }
+
+    return SINGE_OK;
+}
+
 SingeResult ply_read_header(Ply *ply) {
     Text *text = &ply->text;
     if (text->at == text->end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file is empty");
@@ -551,27 +575,7 @@ SingeResult ply_read_header(Ply *ply) {
     text->line++;
     if (ply->header.format != PLY_ASCII) text->line = 0;
 
-    // counts are checked against the size of the file before memory is allocated
-    const PlyHeader *header = &ply->header;
-    uint64_t left = (uint64_t)(ply->text.end - ply->text.at) + (header->format == PLY_ASCII);
-
-    for (size_t i = 0; i < header->element_count; i++) {
-        const PlyElement *element = &header->elements[i];
-        uint64_t min = 0;
-        for (size_t k = 0; k < element->property_count; k++) {
-            const PlyProperty *property = &header->properties[element->first_property + k];
-            if (header->format == PLY_ASCII) min += 2; // a digit and a separator
-            else min += ply_type_size(property->is_list ? property->count_type : property->type);
-        }
-
-        // the product is below 2^31 * 8000
-        if (min * element->count > left)
-            return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file is too short for its %u elements of kind %zu",
-                              element->count, i + 1);
-        left -= min * element->count;
-    }
-
-    return SINGE_OK;
+    return ply_check_counts(ply);
 }
 
 void ply_header_free(Ply *ply) {

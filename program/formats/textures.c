@@ -60,6 +60,48 @@ typedef struct Layers {
     ExrChannel channels[OUTPUT_TEXTURE_SHEETS * TEXTURE_CHANNELS];
 } Layers;
 
+static void canvas_draw(Canvas *canvas, const OutputScene *scene, const OutputFrame *frame, uint32_t sheet) {
+    // the uncut sheet: each cell as four triangles around the mean of its corners
+    for (uint32_t cell = 0; cell < scene->sheets[sheet].mesh.cell_count; cell++) {
+        float cell_uv[4][2], centroid[2] = {0, 0};
+        for (size_t corner = 0; corner < 4; corner++) {
+            output_mesh_uv(&scene->sheets[sheet].mesh, cell, (int)corner, cell_uv[corner]);
+            for (int k = 0; k < 2; k++) centroid[k] += cell_uv[corner][k] / 4;
+        }
+
+        for (int corner = 0; corner < 4; corner++) {
+            const int j = (corner + 1) & 3;
+            const float triangle[3][2] = {
+                {centroid[0], centroid[1]}, {cell_uv[corner][0], cell_uv[corner][1]}, {cell_uv[j][0], cell_uv[j][1]}};
+            uv_triangle(canvas->size, triangle, draw_chart, canvas);
+        }
+    }
+
+    for (uint32_t t = 0; t < frame->surface->triangle_count; t++) {
+        const uint32_t *v = frame->surface->triangles[t];
+        float uv[3][2];
+        if (frame->surface->sheet[v[0]] != (int32_t)sheet) continue;
+        for (int k = 0; k < 3; k++) {
+            memcpy(uv[k], frame->surface->uv[v[k]], sizeof uv[k]);
+            canvas->corners[k][0] = frame->surface->temperature[v[k]];
+            canvas->corners[k][1] = frame->surface->burn[v[k]];
+            canvas->corners[k][2] =
+                frame->surface->burn[v[k]] > EMBER_BURNT ? ember_light(frame->surface->temperature[v[k]]) : 0;
+        }
+
+        uv_triangle(canvas->size, (const float(*)[2])uv, draw_values, canvas);
+    }
+
+    uv_spread(canvas->size, TEXTURE_MARGIN, canvas->chart, canvas->nearest, canvas->queue);
+    for (size_t i = 0; i < canvas->pixels; i++)
+        canvas->values[TEXTURE_CHANNELS * i + 3] = canvas->nearest[i] != UV_NONE && canvas->covered[canvas->nearest[i]];
+    uv_spread(canvas->size, TEXTURE_MARGIN, canvas->covered, canvas->nearest, canvas->queue);
+    for (size_t i = 0; i < canvas->pixels; i++)
+        if (canvas->nearest[i] != UV_NONE && canvas->nearest[i] != i)
+            memcpy(canvas->values + TEXTURE_CHANNELS * i,
+                   canvas->values + TEXTURE_CHANNELS * (size_t)canvas->nearest[i], 3 * sizeof(float));
+}
+
 static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const OutputFrame *frame, uint32_t sheet,
                               const char *path, SingeError *error) {
     static const char letters[] = "RGBA";
@@ -68,47 +110,7 @@ static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const Ou
     const bool made = canvas_make(&canvas, a, scene->texture_size);
 
     if (made) {
-        // the uncut sheet: each cell as four triangles around the mean of its corners
-        for (uint32_t cell = 0; cell < scene->sheets[sheet].mesh.cell_count; cell++) {
-            float cell_uv[4][2], centroid[2] = {0, 0};
-            for (size_t corner = 0; corner < 4; corner++) {
-                output_mesh_uv(&scene->sheets[sheet].mesh, cell, (int)corner, cell_uv[corner]);
-                for (int k = 0; k < 2; k++) centroid[k] += cell_uv[corner][k] / 4;
-            }
-
-            for (int corner = 0; corner < 4; corner++) {
-                const int j = (corner + 1) & 3;
-                const float triangle[3][2] = {{centroid[0], centroid[1]},
-                                              {cell_uv[corner][0], cell_uv[corner][1]},
-                                              {cell_uv[j][0], cell_uv[j][1]}};
-                uv_triangle(canvas.size, triangle, draw_chart, &canvas);
-            }
-        }
-
-        for (uint32_t t = 0; t < frame->surface->triangle_count; t++) {
-            const uint32_t *v = frame->surface->triangles[t];
-            float uv[3][2];
-            if (frame->surface->sheet[v[0]] != (int32_t)sheet) continue;
-            for (int k = 0; k < 3; k++) {
-                memcpy(uv[k], frame->surface->uv[v[k]], sizeof uv[k]);
-                canvas.corners[k][0] = frame->surface->temperature[v[k]];
-                canvas.corners[k][1] = frame->surface->burn[v[k]];
-                canvas.corners[k][2] =
-                    frame->surface->burn[v[k]] > EMBER_BURNT ? ember_light(frame->surface->temperature[v[k]]) : 0;
-            }
-
-            uv_triangle(canvas.size, (const float(*)[2])uv, draw_values, &canvas);
-        }
-
-        uv_spread(canvas.size, TEXTURE_MARGIN, canvas.chart, canvas.nearest, canvas.queue);
-        for (size_t i = 0; i < canvas.pixels; i++)
-            canvas.values[TEXTURE_CHANNELS * i + 3] = canvas.nearest[i] != UV_NONE && canvas.covered[canvas.nearest[i]];
-        uv_spread(canvas.size, TEXTURE_MARGIN, canvas.covered, canvas.nearest, canvas.queue);
-        for (size_t i = 0; i < canvas.pixels; i++)
-            if (canvas.nearest[i] != UV_NONE && canvas.nearest[i] != i)
-                memcpy(canvas.values + TEXTURE_CHANNELS * i,
-                       canvas.values + TEXTURE_CHANNELS * (size_t)canvas.nearest[i], 3 * sizeof(float));
-
+        canvas_draw(&canvas, scene, frame, sheet);
         layers->values[layers->count] = canvas.values;
     }
 

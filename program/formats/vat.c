@@ -218,15 +218,13 @@ static void put_values(GlbFile *f, const char *name, const VatCorner *corners, u
     put_attribute(f, name, begin, count, 3, boxed ? box : NULL);
 }
 
-static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
-    const OutputMesh *mesh = &vat->scene->sheets[sheet].mesh;
+/// Equal corners of the cells become one vertex, whose `number` each corner has. Returns how many there are; 0 without
+/// memory.
+static uint32_t number_corners(const OutputMesh *mesh, VatCorner *corners, uint32_t *number) {
     const size_t all = 4 * (size_t)mesh->cell_count;
-    VatCorner *corners = calloc(all, sizeof *corners);
-    uint32_t *number = calloc(all, 4), *first = calloc(mesh->vertex_count, 4), *next = calloc(all, 4), count = 0;
-    const bool room = corners && number && first && next;
+    uint32_t *first = calloc(mesh->vertex_count, 4), *next = calloc(all, 4), count = 0;
 
-    // equal corners of the cells become one vertex
-    for (size_t i = 0; room && i < all; i++) {
+    for (size_t i = 0; first && next && i < all; i++) {
         VatCorner corner = {.vertex = mesh->cells[i]};
         if (output_mesh_has_uv(mesh)) output_mesh_uv(mesh, (uint32_t)(i / 4), (int)(i & 3), corner.uv);
         uint32_t at = first[corner.vertex];
@@ -239,6 +237,18 @@ static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
 
         number[i] = at - 1;
     }
+
+    free(first);
+    free(next);
+    return count;
+}
+
+static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
+    const OutputMesh *mesh = &vat->scene->sheets[sheet].mesh;
+    const size_t all = 4 * (size_t)mesh->cell_count;
+    VatCorner *corners = calloc(all, sizeof *corners);
+    uint32_t *number = calloc(all, 4);
+    const uint32_t count = corners && number ? number_corners(mesh, corners, number) : 0;
 
     if (count) {
         sink_text(&f->meshes, "%s{\"name\":", f->mesh_count ? "," : "");
@@ -277,7 +287,8 @@ static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
         f->mesh_count++, f->node_count++;
     }
 
-    free(corners), free(number), free(first), free(next);
+    free(corners);
+    free(number);
     return count > 0;
 }
 

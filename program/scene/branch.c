@@ -289,6 +289,41 @@ static SingeResult branch_objects(const SceneBuilder *builder, SceneWhole now, S
     return result;
 }
 
+/// What the scene says besides its objects: wind, gravity, pace, the temperature of the room.
+static SingeResult branch_settings(SceneWhole scene, SceneWhole before, SingeSim *sim, SceneMessages *messages) {
+    char *winds[2] = {NULL, NULL};
+    for (int i = 0; i < schema_scene.row_count; i++)
+        if (strcmp(schema_scene.rows[i].key, "wind") == 0) {
+            winds[0] = dump_row_text(&schema_scene.rows[i], ~0u, scene.scene);
+            winds[1] = dump_row_text(&schema_scene.rows[i], ~0u, before.scene);
+        }
+    bool no_memory = false;
+    const bool wind = !texts_equal(winds[0], winds[1], &no_memory);
+
+    const SingeSimDef *now = &scene.scene->sim, *was = &before.scene->sim;
+    const char *path = "wind";
+    SingeResult result = wind ? singe_sim_set_wind(sim, &now->wind) : SINGE_OK;
+    if (!result && memcmp(now->gravity, was->gravity, sizeof now->gravity) != 0) {
+        path = "gravity";
+        result = singe_sim_set_gravity(sim, now->gravity);
+    }
+
+    // one that has keys, or follows the fire, is where that has led
+    const SceneBurnBy *by = &scene.scene->burn_by, *by_before = &before.scene->burn_by;
+    const bool led = before.scene->pace_count || (by_before->given && !by->given);
+    if (!result && (now->pace != was->pace || led)) {
+        path = "pace";
+        result = singe_sim_set_pace(sim, now->pace);
+    }
+    if (!result && now->ambient_temperature != was->ambient_temperature) {
+        path = "ambient_temperature";
+        result = singe_sim_set_ambient_temperature(sim, now->ambient_temperature);
+    }
+    if (result)
+        message_add(messages, scene.scene->text, location_of(scene.scene, path), "%s", singe_sim_error(sim)->message);
+    return result;
+}
+
 SingeResult scene_branch(SceneWhole scene, SceneWhole before, int frame, SingeSim *sim, SceneMessages *messages) {
     SceneFault fault = {.object = FAULT_SIM};
     const uint32_t sheets = scene.scene->sheet_count;
@@ -316,37 +351,7 @@ SingeResult scene_branch(SceneWhole scene, SceneWhole before, int frame, SingeSi
                     no_memory ? "out of memory" : fault.error.message);
     }
     const uint32_t found = message_total(messages);
-
-    if (!result) {
-        char *winds[2] = {NULL, NULL};
-        for (int i = 0; i < schema_scene.row_count; i++)
-            if (strcmp(schema_scene.rows[i].key, "wind") == 0) {
-                winds[0] = dump_row_text(&schema_scene.rows[i], ~0u, scene.scene);
-                winds[1] = dump_row_text(&schema_scene.rows[i], ~0u, before.scene);
-            }
-        const bool wind = !texts_equal(winds[0], winds[1], &no_memory);
-        const SingeSimDef *now = &scene.scene->sim, *was = &before.scene->sim;
-        const char *path = "wind";
-        if (wind) result = singe_sim_set_wind(sim, &now->wind);
-        if (!result && memcmp(now->gravity, was->gravity, sizeof now->gravity) != 0) {
-            path = "gravity";
-            result = singe_sim_set_gravity(sim, now->gravity);
-        }
-        // one that has keys, or follows the fire, is where that has led
-        const SceneBurnBy *by = &scene.scene->burn_by, *by_before = &before.scene->burn_by;
-        const bool led = before.scene->pace_count || (by_before->given && !by->given);
-        if (!result && (now->pace != was->pace || led)) {
-            path = "pace";
-            result = singe_sim_set_pace(sim, now->pace);
-        }
-        if (!result && now->ambient_temperature != was->ambient_temperature) {
-            path = "ambient_temperature";
-            result = singe_sim_set_ambient_temperature(sim, now->ambient_temperature);
-        }
-        if (result)
-            message_add(messages, scene.scene->text, location_of(scene.scene, path), "%s",
-                        singe_sim_error(sim)->message);
-    }
+    if (!result) result = branch_settings(scene, before, sim, messages);
     if (!result) result = branch_objects(&builder, scene, before, frame, &fault);
     if (result && message_total(messages) == found) {
         fault.error.code = result;

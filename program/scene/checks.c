@@ -196,35 +196,10 @@ static void resolve_sheet(Reader *reader, const YamlNode *node, const Scene *sce
                 shown(word).text, nearest_hint(&nearest, hint, sizeof hint));
 }
 
-void finish_scene(Reader *reader, const YamlNode *map, void *object) {
-    Scene *scene = object;
-    const YamlNode *fps = node_find(map, "fps"), *steps = node_find(map, "steps"), *sheets = node_find(map, "sheets"),
-                   *pins = node_find(map, "pins"), *probes = node_find(map, "probes");
-
-    // the step of the simulation is 1/(fps * steps) seconds; the library takes 1e-9 to 10
-    double rate = (double)scene->fps * scene->steps;
-    if (!(rate >= 0.1 * (1 - 1e-6) && rate <= 1e9 * (1 + 1e-6)))
-        message_add(reader->messages, reader->text,
-                    (fps     ? fps
-                     : steps ? steps
-                             : map)
-                        ->location,
-                    "%.6g frames a second of %d steps each are %.6g steps a second, which must be 0.1 to 1e9",
-                    (double)scene->fps, scene->steps, rate);
-    scene->sim.solver.tearing = scene->tearing && scene->sim.solver.method == SINGE_SOLVER_STRAND;
-
-    const YamlNode *isotropic = node_find(node_find(map, "solver"), "isotropic");
-    if (isotropic && scene->sim.solver.isotropic && scene->sim.solver.method != SINGE_SOLVER_STRAND)
-        complain(reader, isotropic->key_location,
-                 "'isotropic' needs the solver 'strand': the paper's solvers lack its springs");
-
-    const YamlNode *detail = node_find(node_find(map, "gas"), "detail");
-    if (detail) scene->gas_detail_location = detail->location;
-    check_times(reader, node_find(map, "pace"), scene->paces, sizeof *scene->paces, scene->pace_count);
-    if (scene->pace_count) scene->sim.pace = fmaxf(scene->paces[0].value, SCENE_PACE_MIN);
-    if (scene->pace_count && scene->burn_by.given)
-        complain(reader, node_find(map, "burn_by")->key_location,
-                 "'burn_by' changes the pace, so 'pace' must be one number");
+/// How many there are, their names, and the sheets that they name.
+static void check_objects(Reader *reader, const YamlNode *map, Scene *scene) {
+    const YamlNode *sheets = node_find(map, "sheets"), *pins = node_find(map, "pins"),
+                   *probes = node_find(map, "probes");
 
     // a step takes as long as there are objects, and their names are compared
     static const char *const lists[] = {"sheets", "sources", "colliders", "pins", "probes"};
@@ -258,4 +233,36 @@ void finish_scene(Reader *reader, const YamlNode *map, void *object) {
             if (scene->probes[i].sheet && scene->sheet_count)
                 resolve_sheet(reader, node, scene, scene->probes[i].sheet, &scene->probes[i].sheet_index);
     }
+}
+
+void finish_scene(Reader *reader, const YamlNode *map, void *object) {
+    Scene *scene = object;
+    const YamlNode *fps = node_find(map, "fps"), *steps = node_find(map, "steps");
+
+    // the step of the simulation is 1/(fps * steps) seconds; the library takes 1e-9 to 10
+    double rate = (double)scene->fps * scene->steps;
+    if (!(rate >= 0.1 * (1 - 1e-6) && rate <= 1e9 * (1 + 1e-6)))
+        message_add(reader->messages, reader->text,
+                    (fps     ? fps
+                     : steps ? steps
+                             : map)
+                        ->location,
+                    "%.6g frames a second of %d steps each are %.6g steps a second, which must be 0.1 to 1e9",
+                    (double)scene->fps, scene->steps, rate);
+    scene->sim.solver.tearing = scene->tearing && scene->sim.solver.method == SINGE_SOLVER_STRAND;
+
+    const YamlNode *isotropic = node_find(node_find(map, "solver"), "isotropic");
+    if (isotropic && scene->sim.solver.isotropic && scene->sim.solver.method != SINGE_SOLVER_STRAND)
+        complain(reader, isotropic->key_location,
+                 "'isotropic' needs the solver 'strand': the paper's solvers lack its springs");
+
+    const YamlNode *detail = node_find(node_find(map, "gas"), "detail");
+    if (detail) scene->gas_detail_location = detail->location;
+    check_times(reader, node_find(map, "pace"), scene->paces, sizeof *scene->paces, scene->pace_count);
+    if (scene->pace_count) scene->sim.pace = fmaxf(scene->paces[0].value, SCENE_PACE_MIN);
+    if (scene->pace_count && scene->burn_by.given)
+        complain(reader, node_find(map, "burn_by")->key_location,
+                 "'burn_by' changes the pace, so 'pace' must be one number");
+
+    check_objects(reader, map, scene);
 }

@@ -38,6 +38,49 @@ static double carried(const SceneKey *keys, uint32_t count) {
     return length;
 }
 
+/// How far a sheet may come, and fall: by pins and colliders that carry it, wind, its velocity and gravity.
+static void add_motion(const Scene *scene, uint32_t index, Place *place, double diagonal) {
+    const double time = fmax((scene->frames - 1) / (double)scene->fps, 1); // a trial of few frames is no miss
+    bool held = false;
+    place->slack = diagonal;
+    for (uint32_t i = 0; i < scene->pin_count; i++) {
+        const ScenePin *pin = &scene->pins[i];
+        if (pin->sheet_index != index) continue;
+        held = true;
+        place->slack += carried(pin->keys, pin->key_count);
+        if (pin->motion.given) place->slack = INFINITY;
+    }
+    for (uint32_t i = 0; i < scene->collider_count; i++) {
+        place->slack += carried(scene->colliders[i].keys, scene->colliders[i].key_count);
+        if (scene->colliders[i].motion.given) place->slack = INFINITY;
+    }
+
+    if (!held) {
+        const float *gravity = scene->sim.gravity, *wind = scene->sim.wind.velocity;
+        double g = 0, blown = 0, flown = 0;
+        for (int c = 0; c < 3; c++) {
+            g += (double)gravity[c] * (double)gravity[c];
+            blown += (double)wind[c] * (double)wind[c];
+            flown += (double)scene->sheets[index].velocity[c] * (double)scene->sheets[index].velocity[c];
+        }
+        g = sqrt(g);
+        place->slack += (sqrt(blown) + sqrt(flown)) * time;
+
+        // until a plane that stands still below it stops it
+        double length = 0.5 * g * time * time;
+        for (uint32_t i = 0; i < scene->collider_count; i++) {
+            const SceneCollider *collider = &scene->colliders[i];
+            const bool level = collider->key_count == 1 && collider->keys[0].rotation[0] == 0 &&
+                               collider->keys[0].rotation[1] == 0 && gravity[0] == 0 && gravity[1] == 0 &&
+                               gravity[2] < 0;
+            if (collider->def.kind != SINGE_COLLIDER_PLANE || !level) continue;
+            const double gap = place->high[2] - (double)collider->keys[0].position[2];
+            if (gap >= 0) length = fmin(length, gap);
+        }
+        for (int c = 0; c < 3 && g > 0; c++) place->fall[c] = (double)gravity[c] / g * length;
+    }
+}
+
 static Place place_of(const Scene *scene, const SceneAssets *assets, uint32_t index) {
     const Mesh *mesh = &assets->meshes[index];
     const SceneSheet *sheet = &scene->sheets[index];
@@ -66,46 +109,7 @@ static Place place_of(const Scene *scene, const SceneAssets *assets, uint32_t in
         place.cell = fmax(place.cell, sqrt(side));
     }
 
-    // what moves it
-    const double time = fmax((scene->frames - 1) / (double)scene->fps, 1); // a trial of few frames is no miss
-    bool held = false;
-    place.slack = sqrt(diagonal);
-    for (uint32_t i = 0; i < scene->pin_count; i++) {
-        const ScenePin *pin = &scene->pins[i];
-        if (pin->sheet_index != index) continue;
-        held = true;
-        place.slack += carried(pin->keys, pin->key_count);
-        if (pin->motion.given) place.slack = INFINITY;
-    }
-    for (uint32_t i = 0; i < scene->collider_count; i++) {
-        place.slack += carried(scene->colliders[i].keys, scene->colliders[i].key_count);
-        if (scene->colliders[i].motion.given) place.slack = INFINITY;
-    }
-
-    if (!held) {
-        const float *gravity = scene->sim.gravity, *wind = scene->sim.wind.velocity;
-        double g = 0, blown = 0, flown = 0;
-        for (int c = 0; c < 3; c++) {
-            g += (double)gravity[c] * (double)gravity[c];
-            blown += (double)wind[c] * (double)wind[c];
-            flown += (double)sheet->velocity[c] * (double)sheet->velocity[c];
-        }
-        g = sqrt(g);
-        place.slack += (sqrt(blown) + sqrt(flown)) * time;
-
-        // until a plane that stands still below it stops it
-        double length = 0.5 * g * time * time;
-        for (uint32_t i = 0; i < scene->collider_count; i++) {
-            const SceneCollider *collider = &scene->colliders[i];
-            const bool level = collider->key_count == 1 && collider->keys[0].rotation[0] == 0 &&
-                               collider->keys[0].rotation[1] == 0 && gravity[0] == 0 && gravity[1] == 0 &&
-                               gravity[2] < 0;
-            if (collider->def.kind != SINGE_COLLIDER_PLANE || !level) continue;
-            const double gap = place.high[2] - (double)collider->keys[0].position[2];
-            if (gap >= 0) length = fmin(length, gap);
-        }
-        for (int c = 0; c < 3 && g > 0; c++) place.fall[c] = (double)gravity[c] / g * length;
-    }
+    add_motion(scene, index, &place, sqrt(diagonal));
     return place;
 }
 
@@ -167,6 +171,24 @@ static double heat_of(const Scene *scene, const SceneSource *source, const Place
     return fmax(place->start, (double)def->temperature - ((double)def->temperature - place->start) * rest);
 }
 
+/// m, from a point to the nearest particle of a sheet: its vertices and the centres of its cells.
+static double particle_distance(const Mesh *mesh, const float *point) {
+    double nearest = INFINITY;
+    for (uint32_t k = 0; k < mesh->vertex_count + mesh->cell_count; k++) {
+        const uint32_t *cell = k < mesh->vertex_count ? NULL : mesh->cells + 4 * (size_t)(k - mesh->vertex_count);
+        double sum = 0;
+        for (size_t c = 0; c < 3; c++) {
+            double x = cell ? 0 : (double)mesh->positions[3 * (size_t)k + c];
+            for (size_t corner = 0; cell && corner < 4; corner++)
+                x += 0.25 * (double)mesh->positions[3 * (size_t)cell[corner] + c];
+            x -= (double)point[c];
+            sum += x * x;
+        }
+        nearest = fmin(nearest, sqrt(sum));
+    }
+    return nearest;
+}
+
 /// Whether a source may light a sheet. Otherwise there is a warning, unless it touches one and `lit` says that something
 /// else lights the scene: a weaker source may warm it.
 static bool source_lights(const Scene *scene, const SceneAssets *assets, const SceneSource *source, const Place *places,
@@ -191,23 +213,8 @@ static bool source_lights(const Scene *scene, const SceneAssets *assets, const S
         if (!(gap <= places[i].slack)) continue;
 
         // a source that is smaller than the cells may lie between the particles of a sheet that has not moved yet
-        const Mesh *mesh = &assets->meshes[i];
         const bool small = gap <= 0 && source->key_count == 1 && reach < 0.5 * places[i].cell;
-        double particle = small ? INFINITY : 0;
-        for (uint32_t k = 0; small && k < mesh->vertex_count + mesh->cell_count; k++) {
-            double sum = 0;
-            for (size_t c = 0; c < 3; c++) {
-                double x = k < mesh->vertex_count ? (double)mesh->positions[3 * (size_t)k + c] : 0;
-                const uint32_t *cell =
-                    k < mesh->vertex_count ? NULL : mesh->cells + 4 * (size_t)(k - mesh->vertex_count);
-                for (size_t corner = 0; cell && corner < 4; corner++)
-                    x += 0.25 * (double)mesh->positions[3 * (size_t)cell[corner] + c];
-                x -= (double)source->keys[0].position[c];
-                sum += x * x;
-            }
-            particle = fmin(particle, sqrt(sum));
-        }
-        if (particle > reach) {
+        if (small && particle_distance(&assets->meshes[i], source->keys[0].position) > reach) {
             between = i;
             continue;
         }

@@ -103,6 +103,24 @@ static void put_key(FILE *file, const SchemaRow *row) {
     fputs("}, \"required\": [\"time\", \"value\"], \"additionalProperties\": false}", file);
 }
 
+/// A value, one between two by a texture, an attribute or noise, or keys.
+static void put_param(Definitions *definitions, const SchemaRow *row) {
+    FILE *file = definitions->file;
+    fputs("{\"anyOf\": [", file);
+    put_quantity(file, row);
+    fputs(", {\"type\": \"object\", \"properties\": {\"from\": ", file);
+    put_quantity(file, row);
+    fputs(", \"to\": ", file);
+    put_quantity(file, row);
+    fputs(", \"texture\": {\"type\": \"string\"}, \"attribute\": {\"type\": \"string\"}, \"noise\": ", file);
+    put_reference(definitions, &schema_noise);
+    fputs("}, \"required\": [\"from\", \"to\"], \"minProperties\": 3, \"maxProperties\": 3, "
+          "\"additionalProperties\": false}, ",
+          file);
+    put_list(file, 0, row, put_key);
+    fputs("]}", file);
+}
+
 static void put_value(Definitions *definitions, const SchemaRow *row) {
     FILE *file = definitions->file;
     switch (row->type) {
@@ -142,21 +160,7 @@ static void put_value(Definitions *definitions, const SchemaRow *row) {
         for (int i = 0; scene_material_name(i); i++) fprintf(file, "%s\"%s\"", i ? ", " : "", scene_material_name(i));
         fputs("]}, {\"type\": \"string\", \"pattern\": \"/|[.](yaml|yml|json)$\"}]}", file);
         break;
-    case ROW_PARAM:
-        fputs("{\"anyOf\": [", file);
-        put_quantity(file, row);
-        fputs(", {\"type\": \"object\", \"properties\": {\"from\": ", file);
-        put_quantity(file, row);
-        fputs(", \"to\": ", file);
-        put_quantity(file, row);
-        fputs(", \"texture\": {\"type\": \"string\"}, \"attribute\": {\"type\": \"string\"}, \"noise\": ", file);
-        put_reference(definitions, &schema_noise);
-        fputs("}, \"required\": [\"from\", \"to\"], \"minProperties\": 3, \"maxProperties\": 3, "
-              "\"additionalProperties\": false}, ",
-              file);
-        put_list(file, 0, row, put_key);
-        fputs("]}", file);
-        break;
+    case ROW_PARAM: put_param(definitions, row); break;
     case ROW_MAP:
         if (!row->sub->choice) {
             put_reference(definitions, row->sub);

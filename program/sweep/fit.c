@@ -262,10 +262,8 @@ static char *table_path(const Fit *fit) { return text_format("%s/fit.csv", fit->
 
 // ---- an evaluation
 
-/// The error of a row whose values are set: from fit.csv, or after running it.
-static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
-    // the row's line in fit.csv, up to its error
-    const Plan *plan = &fit->sweep->plan;
+/// A row's line in fit.csv, up to its error; NULL without memory.
+static char *noted_line(const Plan *plan, uint32_t row) {
     char *line = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&line, &size);
@@ -276,10 +274,15 @@ static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
     }
     if (file) fputc(',', file);
 
-    if (!text_stream_end(file, &line)) {
-        free(line);
-        return EXIT_FAILED;
-    }
+    if (text_stream_end(file, &line)) return line;
+    free(line);
+    return NULL;
+}
+
+/// The error of a row whose values are set: from fit.csv, or after running it.
+static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
+    char *line = noted_line(&fit->sweep->plan, row);
+    if (!line) return EXIT_FAILED;
 
     // the line that is there, after the header and the earlier rows
     const char *at = fit->noted;

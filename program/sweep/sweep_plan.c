@@ -397,6 +397,44 @@ bool plan_set_row(Plan *plan, uint32_t row, const double *coordinates) {
 
 // ---- the plan
 
+static void read_sets(PlanReader *reader, const YamlNode *node) {
+    Plan *plan = reader->plan;
+    if (!check_once(reader, node, "set")) return;
+    plan->sets = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->sets);
+    plan->set_locations = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->set_locations);
+    for (const YamlNode *child = node->first; child && plan->sets && plan->set_locations; child = child->next) {
+        char *prefix = arena_new(plan->arena, strlen(child->key) + 2, 1);
+        if (!prefix) return;
+        sprintf(prefix, "%s=", child->key);
+        plan->set_locations[plan->set_count] = child->key_location;
+        plan->sets[plan->set_count++] = flow_text(plan, child, prefix);
+    }
+}
+
+static void read_parameters(PlanReader *reader, const YamlNode *node) {
+    Plan *plan = reader->plan;
+    if (!check_once(reader, node, "parameters")) return;
+    plan->parameters = arena_new(plan->arena, node->count, sizeof *plan->parameters);
+
+    for (const YamlNode *child = node->first; child && plan->parameters; child = child->next) {
+        PlanParameter *parameter = &plan->parameters[plan->parameter_count++];
+        parameter->key = child->key;
+        parameter->location = child->location;
+        parameter->key_location = child->key_location;
+        if (strcmp(child->key, "name") == 0)
+            message_add(&reader->messages, &reader->text, child->key_location, "all rows have the scene's name");
+        if (child->kind == NODE_MAP) {
+            read_range(reader, child, parameter);
+        } else if (child->kind == NODE_LIST && child->count) {
+            parameter->values = arena_new(plan->arena, child->count, sizeof *parameter->values);
+            for (const YamlNode *value = child->first; value && parameter->values; value = value->next)
+                parameter->values[parameter->count++] = flow_text(plan, value, "");
+        } else {
+            plan_complain(reader, child, child->key, "a list of values, or a range {from: A, to: B, steps: N}");
+        }
+    }
+}
+
 static void read_key(PlanReader *reader, const YamlNode *node) {
     Plan *plan = reader->plan;
     const char *key = node->key;
@@ -414,40 +452,12 @@ static void read_key(PlanReader *reader, const YamlNode *node) {
     } else if (strcmp(key, "set") == 0 && node->kind != NODE_MAP) {
         plan_complain(reader, node, "set", "a map of keys of the scene");
     } else if (strcmp(key, "set") == 0) {
-        if (!check_once(reader, node, "set")) return;
-        plan->sets = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->sets);
-        plan->set_locations = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->set_locations);
-        for (const YamlNode *child = node->first; child && plan->sets && plan->set_locations; child = child->next) {
-            char *prefix = arena_new(plan->arena, strlen(child->key) + 2, 1);
-            if (!prefix) return;
-            sprintf(prefix, "%s=", child->key);
-            plan->set_locations[plan->set_count] = child->key_location;
-            plan->sets[plan->set_count++] = flow_text(plan, child, prefix);
-        }
+        read_sets(reader, node);
     } else if (strcmp(key, "parameters") == 0 &&
                (node->kind != NODE_MAP || !node->count || node->count > PLAN_PARAMETERS_MAX)) {
         plan_complain(reader, node, "parameters", "a map of 1 to 64 keys of the scene");
     } else if (strcmp(key, "parameters") == 0) {
-        if (!check_once(reader, node, "parameters")) return;
-        plan->parameters = arena_new(plan->arena, node->count, sizeof *plan->parameters);
-
-        for (const YamlNode *child = node->first; child && plan->parameters; child = child->next) {
-            PlanParameter *parameter = &plan->parameters[plan->parameter_count++];
-            parameter->key = child->key;
-            parameter->location = child->location;
-            parameter->key_location = child->key_location;
-            if (strcmp(child->key, "name") == 0)
-                message_add(&reader->messages, &reader->text, child->key_location, "all rows have the scene's name");
-            if (child->kind == NODE_MAP) {
-                read_range(reader, child, parameter);
-            } else if (child->kind == NODE_LIST && child->count) {
-                parameter->values = arena_new(plan->arena, child->count, sizeof *parameter->values);
-                for (const YamlNode *value = child->first; value && parameter->values; value = value->next)
-                    parameter->values[parameter->count++] = flow_text(plan, value, "");
-            } else {
-                plan_complain(reader, child, child->key, "a list of values, or a range {from: A, to: B, steps: N}");
-            }
-        }
+        read_parameters(reader, node);
     } else if (strcmp(key, "target") == 0) {
         read_target(reader, node);
     } else if (strcmp(key, "search") == 0) {

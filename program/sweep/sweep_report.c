@@ -132,13 +132,13 @@ static void put_member(FILE *file, const char *key, char *text) {
     free(text);
 }
 
-static void write_page(const Report *report, FILE *page) {
-    // the data of the page as JSON
+/// The data of the page as JSON, or NULL without memory.
+static char *page_data(const Report *report) {
     const Plan *plan = &report->sweep->plan;
     char *json = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&json, &size);
-    if (!file) return;
+    if (!file) return NULL;
 
     fputs("{\"name\": ", file);
     text_json_string(file, plan->name);
@@ -185,14 +185,21 @@ static void write_page(const Report *report, FILE *page) {
     }
 
     fputs("]}", file);
-    const bool good = text_stream_end(file, &json);
+    if (text_stream_end(file, &json)) return json;
+    free(json);
+    return NULL;
+}
+
+static void write_page(const Report *report, FILE *page) {
+    char *json = page_data(report);
+    if (!json) return;
 
     // the page, with the data in it: no '<' may end the script's element
     static const char mark[] = "{{DATA}}";
     const char *begin = sweep_pages[0].bytes, *end = begin + sweep_pages[0].size, *at = begin;
     while (at + sizeof mark <= end && memcmp(at, mark, sizeof mark - 1) != 0) at++;
     fwrite(begin, 1, (size_t)(at - begin), page);
-    for (const char *c = json; good && *c; c++)
+    for (const char *c = json; *c; c++)
         if (*c == '<') fputs("\\u003c", page);
         else fputc(*c, page);
     free(json);
