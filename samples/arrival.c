@@ -13,8 +13,7 @@ int main(void) {
     }
     SingeSim *sim = sample_sim(singe_default_sim());
     sample_sheet(sim, singe_default_sheet(), 0.15f, 30, 0.001f);
-    SingeColliderDef table = singe_default_collider();
-    TRY(sim, singe_sim_add_collider(sim, &table, NULL));
+    sample_table(sim);
     SingeSourceDef map = singe_default_source();
     map.kind = SINGE_SOURCE_ARRIVAL, map.texture = (SingeTexture){SIZE, SIZE, rings};
     map.arrival_from = 0.2f, map.arrival_to = 2; // s

@@ -14,9 +14,8 @@ int main(void) {
     SingeColliderDef ball = singe_default_collider();
     ball.kind = SINGE_COLLIDER_SPHERE, ball.radius = 0.05f, ball.position[2] = 0.05f;
     ball.temperature = 1000, ball.conductance = 300; // K, W/(m2 K); 0, the default, exchanges no heat
-    SingeColliderDef ground = singe_default_collider();
     TRY(sim, singe_sim_add_collider(sim, &ball, NULL));
-    TRY(sim, singe_sim_add_collider(sim, &ground, NULL));
+    sample_table(sim);
     TRY(sim, singe_sim_commit(sim));
     TRY(sim, singe_sim_advance(sim, 0.5, 0, NULL));
 

@@ -9,8 +9,7 @@ int main(void) {
     def.gas.enabled = true, def.gas.cell_size = 0.01f, def.gas.height = 0.15f; // m
     SingeSim *sim = sample_sim(def);
     sample_sheet(sim, singe_default_sheet(), 0.12f, 20, 0.001f);
-    SingeColliderDef table = singe_default_collider();
-    TRY(sim, singe_sim_add_collider(sim, &table, NULL));
+    sample_table(sim);
     sample_match(sim, 0, 0, 0);
     TRY(sim, singe_sim_commit(sim));
     TRY(sim, singe_sim_advance(sim, 1, 0, NULL));

@@ -22,8 +22,7 @@ int main(void) {
     Laser light = {30e3f, 0.004f};
     SingeSim *sim = sample_sim(singe_default_sim());
     sample_sheet(sim, singe_default_sheet(), 0.12f, 24, 0.001f);
-    SingeColliderDef table = singe_default_collider();
-    TRY(sim, singe_sim_add_collider(sim, &table, NULL));
+    sample_table(sim);
     SingeSourceDef source = singe_default_source();
     source.kind = SINGE_SOURCE_CALLBACK, source.callback = laser, source.callback_context = &light;
     TRY(sim, singe_sim_add_source(sim, &source, NULL));

@@ -11,8 +11,7 @@ int main(void) {
     SingeSim *sim = sample_sim(def);
     const SingeSheetId lower = sample_sheet(sim, singe_default_sheet(), 0.12f, 16, 0.001f);
     const SingeSheetId upper = sample_sheet(sim, singe_default_sheet(), 0.10f, 16, 0.01f);
-    SingeColliderDef table = singe_default_collider();
-    TRY(sim, singe_sim_add_collider(sim, &table, NULL));
+    sample_table(sim);
     TRY(sim, singe_sim_commit(sim));
     TRY(sim, singe_sim_advance(sim, 0.4, 0, NULL));
 

@@ -11,8 +11,7 @@ int main(void) {
     sheet.material.moisture = singe_param_field(0.06f, 1.5f, &wet); // kg of water a kg of paper
     SingeSim *sim = sample_sim(singe_default_sim());
     sample_sheet(sim, sheet, 0.15f, 16, 0.001f);
-    SingeColliderDef table = singe_default_collider();
-    TRY(sim, singe_sim_add_collider(sim, &table, NULL));
+    sample_table(sim);
     sample_match(sim, -0.06f, 0, 0);
     TRY(sim, singe_sim_commit(sim));
     TRY(sim, singe_sim_advance(sim, 2.5, 0, NULL));

@@ -12,8 +12,7 @@ int main(void) {
         sheet.material.ablate = !whole;
         sheet.material.char_yield = singe_param(0.05f); // little char, which would stay
         sample_sheet(sim, sheet, 0.08f, 20, 0.001f);
-        SingeColliderDef table = singe_default_collider();
-        TRY(sim, singe_sim_add_collider(sim, &table, NULL));
+        sample_table(sim);
         SingeSourceDef fire = singe_default_source();
         fire.radius = 0.1f, fire.temperature = 1100, fire.end = 1;
         TRY(sim, singe_sim_add_source(sim, &fire, NULL));

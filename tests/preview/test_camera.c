@@ -1,20 +1,29 @@
-// The lens and the shutter: what blurs, what does not, and that nothing depends on threads.
+// The lens and the shutter: what blurs, and what does not.
 
 #include "fixture.h"
-#include "synthetic.h"
 
 #include <math.h>
 
 enum { STRIPES = 32 };
 
 /// A sheet of black and white stripes across x, straight below the camera.
-static void striped(Float4 *q, PreviewDef *def, const Image **pictures, Image *image, uint8_t texels[3 * STRIPES]) {
-    for (int i = 0; i < STRIPES; i++) memset(texels + 3 * i, i & 1 ? 255 : 0, 3);
-    *image = (Image){.width = STRIPES, .height = 1, .rgb = texels};
-    *pictures = image;
-    quad_make(q, 0.1f, 0.1f);
-    *def = above();
-    def->pictures = pictures, def->sheet_count = 1, def->samples = 64;
+typedef struct Striped {
+    uint8_t texels[3 * STRIPES];
+    Image image;
+    const Image *pictures[1];
+    Float4 q;
+    PreviewDef def;
+} Striped;
+
+static void striped(Striped *s) {
+    for (int i = 0; i < STRIPES; i++) memset(s->texels + 3 * i, i & 1 ? 255 : 0, 3);
+    s->image = (Image){.width = STRIPES, .height = 1, .rgb = s->texels};
+    s->pictures[0] = &s->image;
+    quad_make(&s->q, 0.1f, 0.1f);
+    s->def = above();
+    s->def.pictures = s->pictures;
+    s->def.sheet_count = 1;
+    s->def.samples = 64;
 }
 
 /// Mean difference between neighbours along a direction, in the middle of the sheet.
@@ -29,29 +38,24 @@ static float sharpness(const uint8_t *rgb, int dx, int dy) {
 
 TEST(a_lens_blurs_what_is_out_of_focus) {
     static uint8_t rgb[BYTES];
-    uint8_t texels[3 * STRIPES];
-    Image image;
-    const Image *pictures[1];
-    Float4 q;
-    PreviewDef def;
-
-    striped(&q, &def, pictures, &image, texels);
-    draw(&def, &q.surface, 0, rgb);
+    Striped s;
+    striped(&s);
+    draw(&s.def, &s.q.surface, 0, rgb);
     float pinhole = sharpness(rgb, 1, 0);
-    def.camera.aperture = 0.04f, def.camera.focus = 0.4f; // the sheet's distance
-    draw(&def, &q.surface, 0, rgb);
+    s.def.camera.aperture = 0.04f, s.def.camera.focus = 0.4f; // the sheet's distance
+    draw(&s.def, &s.q.surface, 0, rgb);
     float focused = sharpness(rgb, 1, 0);
-    def.camera.focus = 0.25f;
-    draw(&def, &q.surface, 0, rgb);
+    s.def.camera.focus = 0.25f;
+    draw(&s.def, &s.q.surface, 0, rgb);
     float near = sharpness(rgb, 1, 0);
-    def.camera.focus = 2;
-    draw(&def, &q.surface, 0, rgb);
+    s.def.camera.focus = 2;
+    draw(&s.def, &s.q.surface, 0, rgb);
     float far = sharpness(rgb, 1, 0);
     static uint8_t target[BYTES];
-    def.camera.focus = 0; // the target's distance
-    draw(&def, &q.surface, 0, target);
-    def.camera.focus = 0.5f;
-    draw(&def, &q.surface, 0, rgb);
+    s.def.camera.focus = 0; // the target's distance
+    draw(&s.def, &s.q.surface, 0, target);
+    s.def.camera.focus = 0.5f;
+    draw(&s.def, &s.q.surface, 0, rgb);
     assert_memory_equal(target, rgb, BYTES);
     assert_true(pinhole > 30);
     assert_true(focused > 0.9f * pinhole);
@@ -63,19 +67,14 @@ TEST(a_lens_blurs_what_is_out_of_focus) {
 /// the bar in the root mean square, of 255. One sample, from which nothing is known of its noise, breaks it.
 TEST(out_of_focus_pictures_are_smooth) {
     static uint8_t exact[BYTES], few[BYTES];
-    uint8_t texels[3 * STRIPES];
-    Image image;
-    const Image *pictures[1];
-    Float4 q;
-    PreviewDef def;
-
-    striped(&q, &def, pictures, &image, texels);
-    def.camera.aperture = 0.04f, def.camera.focus = 0.25f, def.samples = 1024;
-    draw(&def, &q.surface, 0, exact);
+    Striped s;
+    striped(&s);
+    s.def.camera.aperture = 0.04f, s.def.camera.focus = 0.25f, s.def.samples = 1024;
+    draw(&s.def, &s.q.surface, 0, exact);
     const int samples[] = {16, 1};
     for (int k = 0; k < 2; k++) {
-        def.samples = samples[k];
-        draw(&def, &q.surface, 0, few);
+        s.def.samples = samples[k];
+        draw(&s.def, &s.q.surface, 0, few);
         float squares = 0;
         for (int y = H / 2 - 14; y < H / 2 + 14; y++)
             for (int x = W / 2 - 14; x < W / 2 + 14; x++) {
@@ -109,26 +108,21 @@ TEST(blur_is_drawn_wherever_it_reaches) {
 TEST(a_shutter_blurs_motion) {
     static uint8_t still[BYTES], moving[BYTES];
     static float velocity[4][3];
-    uint8_t texels[3 * STRIPES];
-    Image image;
-    const Image *pictures[1];
-    Float4 q;
-    PreviewDef def;
-
-    striped(&q, &def, pictures, &image, texels);
-    draw(&def, &q.surface, 0, still);
+    Striped s;
+    striped(&s);
+    draw(&s.def, &s.q.surface, 0, still);
     for (int i = 0; i < 4; i++) velocity[i][0] = 0.5f;
-    q.surface.velocity = velocity;
-    draw(&def, &q.surface, 0, moving); // with no shutter nothing may change
+    s.q.surface.velocity = velocity;
+    draw(&s.def, &s.q.surface, 0, moving); // with no shutter nothing may change
     assert_memory_equal(still, moving, BYTES);
-    def.shutter = 0.02f; // 1 cm of way, and stripes of 6 mm
-    draw(&def, &q.surface, 0, moving);
+    s.def.shutter = 0.02f; // 1 cm of way, and stripes of 6 mm
+    draw(&s.def, &s.q.surface, 0, moving);
     assert_true(sharpness(moving, 1, 0) < 0.5f * sharpness(still, 1, 0));
     for (int i = 0; i < 4; i++) velocity[i][0] = 0, velocity[i][1] = 0.5f;
-    draw(&def, &q.surface, 0, moving); // along the stripes
+    draw(&s.def, &s.q.surface, 0, moving); // along the stripes
     assert_true(sharpness(moving, 1, 0) > 0.9f * sharpness(still, 1, 0));
     for (int i = 0; i < 4; i++) velocity[i][0] = NAN, velocity[i][1] = 1e30f;
-    draw(&def, &q.surface, 0, moving); // without the ball's velocity
+    draw(&s.def, &s.q.surface, 0, moving); // without the ball's velocity
     assert_true(sharpness(moving, 1, 0) > 0.9f * sharpness(still, 1, 0));
 }
 
@@ -143,28 +137,4 @@ TEST(a_moving_ball_is_blurred) {
     int way = (int)(0.045f / (0.5f * tanf(0.35f)) * (H / 2)), off = (int)(0.045f / (0.5f * tanf(0.35f)) * (H / 2));
     assert_true(pixel(rgb, W / 2 + way, H / 2)[0] > 150 && pixel(rgb, W / 2 - way, H / 2)[0] > 150);
     assert_true(pixel(rgb, W / 2, H / 2 + off)[0] < 140);
-}
-
-TEST(pictures_do_not_depend_on_threads) {
-    enum { BIG_W = 200, BIG_H = 150, BIG = BIG_W * BIG_H * 3 };
-    static uint8_t pictures[3][BIG];
-    SingeSurface surface;
-    assert_true(synthetic_make(SYNTHETIC_FLAT, 24, 0.05f, &surface));
-    for (uint32_t i = 0; i < surface.vertex_count; i++) surface.velocity[i][2] = 0.2f * surface.rest_position[i][0];
-    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
-                         .position = {0, 0, 0.03f},
-                         .radius = 0.01f,
-                         .temperature = 1200,
-                         .velocity = {0.3f, 0.1f, 0}};
-    for (int threads = 1; threads <= 3; threads++) {
-        PreviewDef def = small();
-        def.width = BIG_W, def.height = BIG_H, def.thread_count = threads, def.shapes = &ball, def.shape_count = 1;
-        def.camera.aperture = 0.01f, def.shutter = 0.02f;
-        def.sky = PREVIEW_SKY_STUDIO, def.ground = PREVIEW_GROUND_STONE;
-        draw(&def, &surface, 0.5, pictures[threads - 1]);
-    }
-
-    assert_memory_equal(pictures[0], pictures[1], BIG);
-    assert_memory_equal(pictures[0], pictures[2], BIG);
-    synthetic_free(&surface);
 }

@@ -15,17 +15,24 @@ TEST(pictures_do_not_depend_on_threads) {
     // enough tiles that every thread gets some
     enum { BIG_W = 330, BIG_H = 250, BIG = BIG_W * BIG_H * 3 };
     static uint8_t pictures[3][BIG];
-    PreviewShape ball = {
-        .kind = SINGE_COLLIDER_SPHERE, .position = {0, 0, 0.03f}, .radius = 0.01f, .temperature = 1200};
-    for (int threads = 1; threads <= 3; threads++) {
-        PreviewDef def = small();
-        def.width = BIG_W, def.height = BIG_H;
-        def.thread_count = threads, def.shapes = &ball, def.shape_count = 1;
-        draw(&def, &surface, 0.5, pictures[threads - 1]);
+    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
+                         .position = {0, 0, 0.03f},
+                         .radius = 0.01f,
+                         .temperature = 1200,
+                         .velocity = {0.3f, 0.1f, 0}};
+    for (uint32_t i = 0; i < surface.vertex_count; i++) surface.velocity[i][2] = 0.2f * surface.rest_position[i][0];
+    for (int blurred = 0; blurred < 2; blurred++) {
+        for (int threads = 1; threads <= 3; threads++) {
+            PreviewDef def = small();
+            def.width = BIG_W, def.height = BIG_H;
+            def.thread_count = threads, def.shapes = &ball, def.shape_count = 1;
+            if (blurred) def.camera.aperture = 0.01f, def.shutter = 0.02f;
+            if (blurred) def.sky = PREVIEW_SKY_STUDIO, def.ground = PREVIEW_GROUND_STONE;
+            draw(&def, &surface, 0.5, pictures[threads - 1]);
+        }
+        assert_memory_equal(pictures[0], pictures[1], BIG);
+        assert_memory_equal(pictures[0], pictures[2], BIG);
     }
-
-    assert_memory_equal(pictures[0], pictures[1], BIG);
-    assert_memory_equal(pictures[0], pictures[2], BIG);
     synthetic_free(&surface);
 }
 

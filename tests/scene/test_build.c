@@ -9,6 +9,90 @@
 #include "scene/rotation.h"
 #include "scene/warnings.h"
 
+/// A scene and what it refers to.
+typedef struct Loaded {
+    Scene *scene;
+    SceneAssets assets;
+    SingeSim *sim; ///< NULL unless it was built
+} Loaded;
+
+/// Parses and loads a good scene, whose files are in `folder`.
+static Loaded load(const char *text, const char *folder) {
+    Loaded loaded = {0};
+    SceneMessages messages = {0};
+    SingeResult result = scene_parse("t.yaml", text, strlen(text), folder, NULL, 0, &loaded.scene, &messages);
+    if (!result) result = scene_load(loaded.scene, &loaded.assets, &messages);
+    scene_messages_print(&messages, stderr);
+    assert_int_equal(result, SINGE_OK);
+    return loaded;
+}
+
+/// The same, and builds its simulation.
+static Loaded build(const char *text, const char *folder, SingeLog log) {
+    Loaded loaded = load(text, folder);
+    SceneMessages messages = {0};
+    SingeSimDef hooks = singe_default_sim();
+    hooks.log = log;
+    SingeResult result = scene_build(loaded.scene, &loaded.assets, &hooks, &loaded.sim, &messages);
+    scene_messages_print(&messages, stderr);
+    assert_int_equal(result, SINGE_OK);
+    return loaded;
+}
+
+static void unload(Loaded *loaded) {
+    singe_sim_destroy(loaded->sim);
+    scene_assets_free(&loaded->assets);
+    scene_free(loaded->scene);
+}
+
+/// Loads and builds; the messages of whichever refuses.
+static SceneMessages refused(const char *text, const char *folder) {
+    Scene *scene;
+    SceneAssets assets;
+    SceneMessages messages = {0};
+    SingeSim *sim = NULL;
+    SingeSimDef hooks = singe_default_sim();
+
+    assert_int_equal(scene_parse("t.yaml", text, strlen(text), folder, NULL, 0, &scene, &messages), SINGE_OK);
+    SingeResult result = scene_load(scene, &assets, &messages);
+    if (!result) {
+        result = scene_build(scene, &assets, &hooks, &sim, &messages);
+        scene_assets_free(&assets);
+    }
+    assert_int_not_equal(result, SINGE_OK);
+    assert_null(sim);
+    scene_free(scene);
+    return messages;
+}
+
+// ---- a folder of files
+
+#define FOLDER "/tmp/singe-scene-XXXXXX"
+
+static void write_text(const char *folder, const char *name, const char *text) {
+    char path[100];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+/// Removes a folder with its files.
+static void remove_folder(const char *folder) {
+    DIR *list = opendir(folder);
+    char path[400];
+    assert_non_null(list);
+    for (struct dirent *entry; (entry = readdir(list));) {
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        if (entry->d_name[0] != '.') assert_int_equal(unlink(path), 0);
+    }
+    closedir(list);
+    assert_int_equal(rmdir(folder), 0);
+}
+
+// ---- tests
+
 static void turn(const float q[4], const double v[3], double out[3]) {
     double x = q[0], y = q[1], z = q[2], w = q[3];
     double t[3] = {2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])};
@@ -37,23 +121,15 @@ TEST(rotations_turn_about_x_then_y_then_z) {
 }
 
 TEST(a_simulation_has_what_the_scene_says) {
-    Scene *scene = good_scene("sheets:\n  - grid: {size: [0.2, 0.1], cells: [4, 2]}\n    rotate: [90, 0, 0]\n"
-                              "    translate: [0, 0, 1]\n    scale: 2\n"
-                              "    material: {mass_rate: {from: 1e-3, to: 2e-3, noise: {seed: 1}}}\n"
-                              "  - grid: {size: [1, 1], cells: [3, 3]}\n"
-                              "sources: [{kind: spot, position: [0, 0, 1]}, {kind: ball, position: [0, 0, 0]}]\n"
-                              "colliders: [{kind: plane, position: [0, 0, -1]}]\n"
-                              "pins: [{points: [[-0.2, 0, 1.1]], radius: 0}, {sheet: 1, vertices: [0, 1]}]\n",
-                              NULL, 0);
-    SceneAssets assets;
-    SceneMessages messages = {0};
-    SingeSim *sim;
-    SingeSimDef hooks = singe_default_sim();
-
-    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
-    SingeResult result = scene_build(scene, &assets, &hooks, &sim, &messages);
-    scene_messages_print(&messages, stderr);
-    assert_int_equal(result, SINGE_OK);
+    Loaded at = build("sheets:\n  - grid: {size: [0.2, 0.1], cells: [4, 2]}\n    rotate: [90, 0, 0]\n"
+                      "    translate: [0, 0, 1]\n    scale: 2\n"
+                      "    material: {mass_rate: {from: 1e-3, to: 2e-3, noise: {seed: 1}}}\n"
+                      "  - grid: {size: [1, 1], cells: [3, 3]}\n"
+                      "sources: [{kind: spot, position: [0, 0, 1]}, {kind: ball, position: [0, 0, 0]}]\n"
+                      "colliders: [{kind: plane, position: [0, 0, -1]}]\n"
+                      "pins: [{points: [[-0.2, 0, 1.1]], radius: 0}, {sheet: 1, vertices: [0, 1]}]\n",
+                      NULL, (SingeLog){0});
+    SingeSim *sim = at.sim;
     SingeCounts counts = singe_sim_counts(sim);
     assert_int_equal(counts.particles, 15 + 8 + 16 + 9);
     SingeView view = singe_sim_view(sim);
@@ -65,86 +141,34 @@ TEST(a_simulation_has_what_the_scene_says) {
     for (uint32_t i = 0; i < view.particle_count; i++) pinned += (view.particle_flags[i] & SINGE_PINNED) != 0;
     assert_int_equal(pinned, 3);
     assert_int_equal(singe_sim_step(sim), SINGE_OK);
-    singe_sim_destroy(sim);
-    scene_assets_free(&assets);
-    scene_free(scene);
+    unload(&at);
 }
 
 // A refusal of the library is reported at the object it concerns.
 TEST(refused_objects_are_named) {
-    Scene *scene = good_scene(SHEET "pins:\n  - {vertices: [0]}\n  - {vertices: [99999]}\n", NULL, 0);
-    SceneAssets assets;
-    SceneMessages messages = {0};
-    SingeSim *sim;
-    SingeSimDef hooks = singe_default_sim();
-
-    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
-    assert_int_not_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
-    assert_null(sim);
+    SceneMessages messages = refused(SHEET "pins:\n  - {vertices: [0]}\n  - {vertices: [99999]}\n", NULL);
     assert_int_equal(messages.count, 1);
-    assert_string_equal(messages.items[0].origin, "test.yaml:5:5");
+    assert_string_equal(messages.items[0].origin, "t.yaml:5:5");
     scene_messages_free(&messages);
-    scene_assets_free(&assets);
-    scene_free(scene);
 }
 
 // Files of the wrong kind are all reported, each at the line of its name.
 TEST(bad_files_are_reported) {
-    char folder[] = "/tmp/singe-scene-XXXXXX", path[64];
+    char folder[] = FOLDER;
     assert_non_null(mkdtemp(folder));
-    snprintf(path, sizeof path, "%s/bad.obj", folder);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 4\n", file);
-    fclose(file);
-    static const char text[] = "sheets:\n  - mesh: bad.obj\n    picture: bad.obj\n"
-                               "  - grid: {size: [1, 1], cells: [2, 2]}\n"
-                               "    material: {mass_rate: {from: 1, to: 2, attribute: density}}\n";
-    Scene *scene;
-    SceneAssets assets;
-    SceneMessages messages = {0};
-    assert_int_equal(scene_parse("t.yaml", text, strlen(text), folder, NULL, 0, &scene, &messages), SINGE_OK);
-    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_ERROR_FORMAT);
+    write_text(folder, "bad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 4\n");
+    SceneMessages messages = refused("sheets:\n  - mesh: bad.obj\n    picture: bad.obj\n"
+                                     "  - grid: {size: [1, 1], cells: [2, 2]}\n"
+                                     "    material: {mass_rate: {from: 1, to: 2, attribute: density}}\n",
+                                     folder);
     assert_int_equal(messages.count, 3);
     assert_string_equal(messages.items[0].origin, "t.yaml:2:11");
     assert_non_null(strstr(messages.items[0].text, "bad.obj:4"));
     assert_string_equal(messages.items[1].origin, "t.yaml:3:14");
     assert_string_equal(messages.items[2].origin, "t.yaml:5:55");
     assert_non_null(strstr(messages.items[2].text, "no attribute 'density'"));
-    assert_null(assets.meshes);
     scene_messages_free(&messages);
-    scene_free(scene);
-    unlink(path);
-    rmdir(folder);
-}
-
-static void write_text(const char *folder, const char *name, const char *text) {
-    char path[100];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
-}
-
-/// Loads and builds; the messages of whichever refuses.
-static SceneMessages refused(const char *text, const char *folder) {
-    Scene *scene;
-    SceneAssets assets;
-    SceneMessages messages = {0};
-    SingeSim *sim = NULL;
-    SingeSimDef hooks = singe_default_sim();
-
-    assert_int_equal(scene_parse("t.yaml", text, strlen(text), folder, NULL, 0, &scene, &messages), SINGE_OK);
-    SingeResult result = scene_load(scene, &assets, &messages);
-    if (!result) {
-        result = scene_build(scene, &assets, &hooks, &sim, &messages);
-        scene_assets_free(&assets);
-    }
-    assert_int_not_equal(result, SINGE_OK);
-    assert_null(sim);
-    scene_free(scene);
-    return messages;
+    remove_folder(folder);
 }
 
 // Meshes that can be read but not burnt are all reported, each with its file and line or face.
@@ -161,7 +185,7 @@ TEST(bad_meshes_are_reported) {
         {"far.obj", "v 20000 0 0\nv 20001 0 0\nv 20001 1 0\nv 20000 1 0\nf 1 2 3 4\n", "t.yaml:4:11",
          "the sheet reaches beyond 10 km from the origin"},
     };
-    char folder[] = "/tmp/singe-scene-XXXXXX", path[100];
+    char folder[] = FOLDER;
     assert_non_null(mkdtemp(folder));
     for (int i = 0; i < 3; i++) write_text(folder, meshes[i].name, meshes[i].text);
     write_text(folder, "words.obj", "v 0 0 x\n");
@@ -193,13 +217,7 @@ TEST(bad_meshes_are_reported) {
     assert_int_equal(messages.count, 1);
     assert_non_null(strstr(messages.items[0].text, "beyond 10 km"));
     scene_messages_free(&messages);
-    static const char *const names[] = {"line.obj", "flat.ply", "far.obj", "words.obj"};
-    for (int i = 0; i < 4; i++) {
-        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
-        unlink(path);
-    }
-
-    rmdir(folder);
+    remove_folder(folder);
 }
 
 static void keep_line(void *context, SingeLogLevel level, const char *line) {
@@ -207,23 +225,11 @@ static void keep_line(void *context, SingeLogLevel level, const char *line) {
     if (level == SINGE_LOG_WARNING) strcat(strcat(lines, line), "\n");
 }
 
-/// Parses, loads and builds a scene, and keeps its warnings.
+/// Loads and builds a scene, and keeps its warnings.
 static void warnings_of(const char *text, char *lines) {
-    SceneMessages messages = {0};
-    SceneAssets assets;
-    SingeSim *sim;
-    Scene *scene;
-    SingeSimDef hooks = singe_default_sim();
-    hooks.log = (SingeLog){keep_line, lines};
     lines[0] = 0;
-    if (scene_parse("t.yaml", text, strlen(text), NULL, NULL, 0, &scene, &messages))
-        fail_msg("%s: %s", text, messages.items[0].text);
-    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
-    assert_int_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
-    singe_sim_destroy(sim);
-    scene_assets_free(&assets);
-    scene_free(scene);
-    scene_messages_free(&messages);
+    Loaded at = build(text, NULL, (SingeLog){keep_line, lines});
+    unload(&at);
 }
 
 /// Values without effect cause warnings with their location.
@@ -369,7 +375,7 @@ static const char nut[] = "v -2 -2 0\nv 2 -2 0\nv 2 0 0\nv 1 0 0\nv 1 -1 0\nv -1
 /// A mesh in place of a sheet is placed as the sheet is, triangulated, and one vertex for each uv; one that does not fit
 /// is refused at its file.
 TEST(render_meshes_are_bound) {
-    char folder[] = "/tmp/singe-XXXXXX";
+    char folder[] = FOLDER;
     static const char mesh[] = "v -50 0 0\nv 50 0 0\nv 50 50 0\nv 0 90 0\nv -50 50 0\nv -50 -50 0\nv 50 -50 0\n"
                                "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
                                "f 1/1 2/2 3/3 4/4 5/4\nf 6/1 7/2 2/3 1/4\n";
@@ -381,44 +387,34 @@ TEST(render_meshes_are_bound) {
                  "sheets:\n  - grid: {size: [100 mm, 100 mm], cells: [10, 10], jitter: 0}\n    units: mm\n"
                  "    render_mesh: {mesh: a.obj, reach: %s}\n",
                  far ? "1 mm" : "50 mm");
-        Scene *scene;
-        SceneAssets assets;
+        Loaded at = load(text, folder);
         SceneMessages messages = {0};
-        SingeSim *sim;
         SingeSimDef hooks = singe_default_sim();
-        assert_int_equal(scene_parse("t.yaml", text, strlen(text), folder, NULL, 0, &scene, &messages), SINGE_OK);
-        assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
-        const RenderFile *file = &assets.renders[0];
+        const RenderFile *file = &at.assets.renders[0];
         assert_int_equal(file->def.vertex_count, 9);
         assert_int_equal(file->def.triangle_count, 5);
         assert_true(fabsf(file->positions[0] + 0.05f) < 1e-7f);
-        const SingeResult result = scene_build(scene, &assets, &hooks, &sim, &messages);
+        const SingeResult result = scene_build(at.scene, &at.assets, &hooks, &at.sim, &messages);
         assert_int_equal(result, far ? SINGE_ERROR_MESH : SINGE_OK);
         assert_int_equal(messages.count, far);
         if (far) assert_string_equal(messages.items[0].origin, "t.yaml:4:25");
         if (far) assert_non_null(strstr(messages.items[0].text, "vertices are farther from the sheet than its reach"));
-        if (!far) singe_sim_destroy(sim);
         scene_messages_free(&messages);
-        scene_assets_free(&assets);
-        scene_free(scene);
+        unload(&at);
     }
-    char path[80];
-    snprintf(path, sizeof path, "%s/a.obj", folder);
-    assert_int_equal(remove(path), 0);
-    assert_int_equal(rmdir(folder), 0);
+    remove_folder(folder);
 }
 
 /// Meshes and height fields become colliders and shapes; an open mesh is reported at its collider.
 TEST(solids_become_colliders_and_shapes) {
-    char folder[] = "/tmp/singe-scene-XXXXXX", text[600], path[100];
-    const char *const names[] = {"cube.obj", "open.obj", "heights.png", "nut.obj"};
+    char folder[] = FOLDER, text[600], path[100];
     SingeError error = {0};
     assert_non_null(mkdtemp(folder));
-    write_text(folder, names[3], nut);
+    write_text(folder, "nut.obj", nut);
     snprintf(text, sizeof text, cube, "f 4 1 5 8\n");
-    write_text(folder, names[0], text);
+    write_text(folder, "cube.obj", text);
     snprintf(text, sizeof text, cube, "");
-    write_text(folder, names[1], text);
+    write_text(folder, "open.obj", text);
     snprintf(path, sizeof path, "%s/heights.png", folder);
 
     // three columns and two rows: above, black, white, black; below, white, black, black
@@ -429,70 +425,43 @@ TEST(solids_become_colliders_and_shapes) {
                                    "     heights: [1 cm, 3 cm]}\n"
                                    "  - {kind: mesh, mesh: nut.obj, units: cm, scale: 0.5}\n";
     const char *const bad = SHEET "colliders:\n  - {kind: plane}\n  - {kind: mesh, mesh: open.obj}\n";
-    Scene *scene;
-    SceneAssets assets;
-    SceneMessages messages = {0};
-    SingeSim *sim;
-    SingeSimDef hooks = singe_default_sim();
-    assert_int_equal(scene_parse("t.yaml", good, strlen(good), folder, NULL, 0, &scene, &messages), SINGE_OK);
-    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
-    const SceneSolid *mesh = &assets.solids[0], *field = &assets.solids[1];
+    Loaded at = build(good, folder, (SingeLog){0});
+    const SceneSolid *mesh = &at.assets.solids[0], *field = &at.assets.solids[1];
     assert_true(mesh->surface.vertex_count == 8 && mesh->surface.triangle_count == 12);
     assert_true(fabsf(mesh->surface.vertices[3] - 0.02f) < 1e-7f);
     assert_true(field->columns == 3 && field->rows == 2 && field->surface.triangle_count == 4 + 12);
     assert_true(fabsf(field->heights[0] - 0.03f) < 1e-6f && fabsf(field->heights[1] - 0.01f) < 1e-6f); // least y first
     assert_true(fabsf(field->heights[3] - 0.01f) < 1e-6f && fabsf(field->heights[4] - 0.03f) < 1e-6f);
     assert_true(fabsf(field->surface.vertices[0] + 0.15f) < 1e-6f && fabsf(field->surface.vertices[1] + 0.1f) < 1e-6f);
-    assert_int_equal(assets.solids[2].surface.triangle_count, 2 * 6 + 8 * 2);
-    assert_true(fabsf(assets.solids[2].surface.vertices[0] + 0.01f) < 1e-7f);
+    assert_int_equal(at.assets.solids[2].surface.triangle_count, 2 * 6 + 8 * 2);
+    assert_true(fabsf(at.assets.solids[2].surface.vertices[0] + 0.01f) < 1e-7f);
     PreviewShape shapes[3];
-    assert_int_equal(scene_shapes(scene, &assets, 0, shapes, 3), 3);
+    assert_int_equal(scene_shapes(at.scene, &at.assets, 0, shapes, 3), 3);
     assert_true(shapes[0].solid == &mesh->surface && shapes[1].solid == &field->surface);
-    assert_int_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
-    singe_sim_destroy(sim);
-    scene_assets_free(&assets);
-    scene_free(scene);
-    assert_int_equal(scene_parse("t.yaml", bad, strlen(bad), folder, NULL, 0, &scene, &messages), SINGE_OK);
-    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
-    assert_int_not_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
+    unload(&at);
+
+    SceneMessages messages = refused(bad, folder);
     assert_int_equal(messages.count, 1);
     assert_non_null(strstr(messages.items[0].text, "has no neighbour along"));
     assert_string_equal(messages.items[0].origin, "t.yaml:5:5");
     scene_messages_free(&messages);
-    scene_assets_free(&assets);
-    scene_free(scene);
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
-        unlink(path);
-    }
-
-    rmdir(folder);
+    remove_folder(folder);
 }
 
 /// Steps from frame 1 to `frames`, and notes what has burnt at each, on the left half of the sheet and on the right.
 static void burn_frames(const char *text, const char *folder, int frames, double burnt[][2]) {
-    Scene *scene = NULL;
-    SceneAssets assets;
-    SceneMessages messages = {0};
-    SingeSim *sim;
+    Loaded at = build(text, folder, (SingeLog){0});
+    SingeSim *sim = at.sim;
     SingeError error;
-    const SingeSimDef hooks = singe_default_sim();
-    SingeResult result = scene_parse("t", text, strlen(text), folder, NULL, 0, &scene, &messages);
-    if (!result) result = scene_load(scene, &assets, &messages);
-    if (!result) result = scene_build(scene, &assets, &hooks, &sim, &messages);
-    scene_messages_print(&messages, stderr);
-    assert_int_equal(result, SINGE_OK);
     for (int frame = 1; frame <= frames; frame++) {
-        assert_int_equal(scene_follow(scene, &assets, sim, frame, &error), SINGE_OK);
-        for (int step = 0; step < scene->steps; step++) assert_int_equal(singe_sim_step(sim), SINGE_OK);
+        assert_int_equal(scene_follow(at.scene, &at.assets, sim, frame, &error), SINGE_OK);
+        for (int step = 0; step < at.scene->steps; step++) assert_int_equal(singe_sim_step(sim), SINGE_OK);
         const SingeView view = singe_sim_view(sim);
         burnt[frame][0] = burnt[frame][1] = 0;
         for (uint32_t i = 0; i < view.vertex_count; i++)
             burnt[frame][view.rest_position[i][0] > 0] += 1 - (double)view.mass[i];
     }
-    singe_sim_destroy(sim);
-    scene_assets_free(&assets);
-    scene_free(scene);
+    unload(&at);
 }
 
 // A sheet that begins hot burns where and while its material does.
@@ -508,7 +477,7 @@ TEST(materials_follow_keys_and_numbered_pictures) {
     // white on the left, and from the third frame on on the right; the last picture stays
     static const char text[] = "frames: 6\n" HOT "mass_rate: {from: 0, to: 9e-3, texture: matte.####.png}}\n";
     const uint8_t sides[2][6] = {{255, 255, 255, 0, 0, 0}, {0, 0, 0, 255, 255, 255}};
-    char folder[] = "/tmp/singe-scene-XXXXXX", path[3][100];
+    char folder[] = FOLDER, path[3][100];
     SingeError error;
     assert_non_null(mkdtemp(folder));
     for (int n = 0; n < 3; n++) {
@@ -520,23 +489,16 @@ TEST(materials_follow_keys_and_numbered_pictures) {
     assert_true(burnt[3][1] > burnt[2][1] + 8 && burnt[5][1] > burnt[3][1] + 0.5);
 
     // the second is missing
-    Scene *scene;
-    SceneAssets assets;
-    SceneMessages messages = {0};
     remove(path[1]);
-    assert_int_equal(scene_parse("t", text, strlen(text), folder, NULL, 0, &scene, &messages), SINGE_OK);
-    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_ERROR_FORMAT);
+    SceneMessages messages = refused(text, folder);
     assert_non_null(strstr(messages.items[0].text, "matte.0002.png: there is no such file, but the next one exists"));
     assert_int_equal(messages.items[0].location.line, 8);
     scene_messages_free(&messages);
-    scene_free(scene);
-    remove(path[0]);
-    remove(path[2]);
-    rmdir(folder);
+    remove_folder(folder);
 }
 
 TEST(the_preview_has_what_the_scene_says) {
-    Scene *scene = good_scene(
+    Loaded at = load(
         SHEET "    colour: [0.5, 0.25, 1]\n"
               "sources:\n"
               "  - {kind: ball, radius: 2 cm, temperature: 1300, start: 1, end: 3,\n"
@@ -544,25 +506,22 @@ TEST(the_preview_has_what_the_scene_says) {
               "  - {kind: ball, position: [0, 0, 0], visible: no}\n"
               "colliders:\n  - {kind: plane}\n  - {kind: sphere, radius: 1, position: [1, 2, 3], temperature: 900}\n"
               "preview: {size: [64, 32], ground: {height: 1 cm}, camera: {fov: 60}}\n",
-        NULL, 0);
-    SceneAssets assets;
-    SceneMessages messages = {0};
-
-    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+        NULL);
+    const Scene *scene = at.scene;
+    const SceneAssets *assets = &at.assets;
     PreviewDef def;
-    scene_preview(scene, &assets, &def);
+    scene_preview(scene, assets, &def);
     assert_true(def.width == 64 && def.height == 32 && def.sheet_count == 1 && def.colours[0][1] == 0.25f);
     assert_true(def.ground_height == 0.01f && fabsf(def.camera.fov - 1.04719755f) < 1e-6f && !def.pictures[0]);
     PreviewShape shapes[2];
-    assert_int_equal(scene_shapes(scene, &assets, 0.5, NULL, 0), 1); // before the ball's start
-    assert_int_equal(scene_shapes(scene, &assets, 2, shapes, 2), 2);
+    assert_int_equal(scene_shapes(scene, assets, 0.5, NULL, 0), 1); // before the ball's start
+    assert_int_equal(scene_shapes(scene, assets, 2, shapes, 2), 2);
     assert_true(shapes[0].kind == SINGE_COLLIDER_SPHERE && shapes[0].position[1] == 2);
     assert_true(shapes[0].temperature == scene->sim.ambient_temperature); // it gives no heat
     assert_true(shapes[1].position[0] == 1 && shapes[1].position[2] == 2 && shapes[1].temperature == 1300);
     assert_true(shapes[1].radius == 0.02f && shapes[1].rotation[3] == 1);
-    assert_int_equal(scene_shapes(scene, &assets, 2, shapes, 1), 2);
-    scene_assets_free(&assets);
-    scene_free(scene);
+    assert_int_equal(scene_shapes(scene, assets, 2, shapes, 1), 2);
+    unload(&at);
 }
 
 TEST(the_examples_build) {
@@ -619,23 +578,16 @@ static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
 
 // A file of triangles, in millimetres and y up. A pin takes the file's vertex numbers, also that of a welded vertex.
 TEST(mesh_files_are_scaled_and_welded) {
-    char folder[] = "/tmp/singe-scene-XXXXXX", path[100];
+    char folder[] = FOLDER;
     assert_non_null(mkdtemp(folder));
     write_text(folder, "a.obj",
                "v 5 5 5\nv 0 0 0\nv 100 0 0\nv 100 200 -300\nv 0 0 0\nv 100 200 -300\nv 0 200 -300\n"
                "f 2 3 4\nf 5 6 7\n");
     static const char text[] = "sheets: [{mesh: a.obj, units: mm, up: y, scale: 2, translate: [0, 0, 1]}]\n"
                                "pins: [{vertices: [4, 6]}]\ntearing: no\n"; // no vertices in reserve
-    Scene *scene;
-    SceneAssets assets;
-    SceneMessages messages = {0};
-    SingeSim *sim;
-    SingeSimDef hooks = singe_default_sim();
-    assert_int_equal(scene_parse("t.yaml", text, strlen(text), folder, NULL, 0, &scene, &messages), SINGE_OK);
-    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
-    assert_int_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
-    assert_int_equal(assets.reports[0].count[MESH_WELDED], 2);
-    SingeView view = singe_sim_view(sim);
+    Loaded at = build(text, folder, (SingeLog){0});
+    assert_int_equal(at.assets.reports[0].count[MESH_WELDED], 2);
+    SingeView view = singe_sim_view(at.sim);
     assert_int_equal(view.vertex_count, 4);
     assert_int_equal(view.cell_count, 1);
     int held = 0;
@@ -650,16 +602,12 @@ TEST(mesh_files_are_scaled_and_welded) {
     }
 
     assert_int_equal(held, 2);
-    singe_sim_destroy(sim);
-    scene_assets_free(&assets);
-    scene_free(scene);
-    messages = refused("sheets: [{mesh: a.obj, units: mm}]\npins: [{vertices: [0]}]\n", folder);
+    unload(&at);
+    SceneMessages messages = refused("sheets: [{mesh: a.obj, units: mm}]\npins: [{vertices: [0]}]\n", folder);
     assert_int_equal(messages.count, 1);
     assert_non_null(strstr(messages.items[0].text, "vertex 0 is out of range or belongs to no face"));
     scene_messages_free(&messages);
-    snprintf(path, sizeof path, "%s/a.obj", folder);
-    unlink(path);
-    rmdir(folder);
+    remove_folder(folder);
 }
 
 /// The camera passes its path's entries at their times, smoothly: its speed at an entry does not jump, as on straight
@@ -703,19 +651,16 @@ TEST(the_camera_finds_the_sheets) {
     };
     for (size_t i = 0; i <= sizeof scenes / sizeof *scenes; i++) {
         bool given = i == sizeof scenes / sizeof *scenes;
-        Scene *scene = good_scene(given ? "{sheets: [{grid: {size: [1, 1], cells: [2, 2]}}], "
-                                          "preview: {camera: {eye: [5, 5, 5]}}}"
-                                        : scenes[i],
-                                  NULL, 0);
-        SceneAssets assets;
-        SceneMessages messages = {0};
-        assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
-        scene_frame(scene, &assets);
-        const PreviewCamera *camera = &scene->preview.camera;
+        Loaded at = load(given ? "{sheets: [{grid: {size: [1, 1], cells: [2, 2]}}], "
+                                 "preview: {camera: {eye: [5, 5, 5]}}}"
+                               : scenes[i],
+                         NULL);
+        scene_frame(at.scene, &at.assets);
+        const PreviewCamera *camera = &at.scene->preview.camera;
+        const double reach = reach_in_picture(at.scene, &at.assets);
         if (given) assert_true(camera->eye[0] == 5 && camera->target[0] == 0);
-        else assert_true(reach_in_picture(scene, &assets) > 0.55 && reach_in_picture(scene, &assets) < 1);
-        scene_assets_free(&assets);
-        scene_free(scene);
+        else assert_true(reach > 0.55 && reach < 1);
+        unload(&at);
     }
 
     // sheets that are nearly a point: the camera still has a direction
@@ -724,30 +669,22 @@ TEST(the_camera_finds_the_sheets) {
         "sheets: [{grid: {size: [2 mm, 2 mm], cells: [4, 6]}, translate: [8000, -7000, 900]}]",
     };
     for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
-        Scene *scene = good_scene(points[i], NULL, 0);
-        SceneAssets assets;
-        SceneMessages messages = {0};
-        assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
-        scene_frame(scene, &assets);
-        const PreviewCamera *camera = &scene->preview.camera;
+        Loaded at = load(points[i], NULL);
+        scene_frame(at.scene, &at.assets);
+        const PreviewCamera *camera = &at.scene->preview.camera;
         double square = 0;
         for (int k = 0; k < 3; k++) square += pow((double)camera->eye[k] - (double)camera->target[k], 2);
         print_message("%g m from the sheet\n", sqrt(square));
         assert_true(sqrt(square) > 9e-6 && sqrt(square) < 0.1);
-        scene_assets_free(&assets);
-        scene_free(scene);
+        unload(&at);
     }
 
     // too far for a camera: the default one stays
-    Scene *scene = good_scene("sheets: [{grid: {size: [9000, 9000], cells: [2, 2]}}]", NULL, 0);
-    SceneAssets assets;
-    SceneMessages messages = {0};
-    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
-    PreviewCamera before = scene->preview.camera;
-    scene_frame(scene, &assets);
-    assert_memory_equal(&scene->preview.camera, &before, sizeof before);
-    scene_assets_free(&assets);
-    scene_free(scene);
+    Loaded at = load("sheets: [{grid: {size: [9000, 9000], cells: [2, 2]}}]", NULL);
+    PreviewCamera before = at.scene->preview.camera;
+    scene_frame(at.scene, &at.assets);
+    assert_memory_equal(&at.scene->preview.camera, &before, sizeof before);
+    unload(&at);
 
     // an up along the default line of sight is good where that is not used
     scene_free(good_scene(SHEET "preview: {camera: {up: [0, 0.5, -0.4]}}\n", NULL, 0));
