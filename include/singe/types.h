@@ -114,7 +114,7 @@ typedef struct SingeSourceDef {
     uint32_t path_count;      ///< of ball, spot, jet, vortex and attract; 0: at rest at position. A spot has at most 1
     const SingePoseKey *path; ///< [path_count] positions only
     SingeTexture texture;     ///< texture source, or arrival map
-    /// W/m2, texture, -1e9 to 1e9; into each of the sheet's two layers where the texture is white; at most 1e15 W/m2
+    /// W/m2, texture, -1e15 to 1e15; into each of the sheet's two layers where the texture is white; at most 1e15 W/m2
     /// after strength and the texture. Below 0 it cools, but not below 1 K
     float flux;
     /// texture, water and what moves air: key frames that multiply flux, wetting or speed; 0 means 1

@@ -162,7 +162,7 @@ static TestBytes small_snapshot(void) {
 /// At the ends of what is legal a step may fail, but what it leaves can be saved and loaded.
 TEST(the_state_after_any_step_loads) {
     static const float temperatures[] = {1, 293.15f, 1e4f, 1e15f}, masses[] = {1e-6f, 0.08f, 1e6f};
-    static const float heats[] = {1e-3f, 1400, 1e9f}, exchanges[] = {0, 14, 1e30f}, fluxes[] = {-1e9f, 30e3f, 1e9f};
+    static const float heats[] = {1e-3f, 1400, 1e9f}, exchanges[] = {0, 14, 1e30f}, fluxes[] = {-1e15f, 30e3f, 1e15f};
     uint32_t refused = 0, loaded = 0;
     for (int k = 0; k < 4 * 3 * 3 * 3 * 3; k++) {
         SingeSimDef def = singe_default_sim();

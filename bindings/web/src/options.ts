@@ -40,7 +40,7 @@ export interface SourceOptions {
     /** W, ball and spot, 0 to 1e6; of a flame that it carries: the flame's gas rises and burns from its centre, if
      *  the scene has gas; a match has 60 W. It heats sheets through the gas alone */
     power?: number;
-    /** W/m2, texture, -1e9 to 1e9; into each of the sheet's two layers where the texture is white; at most 1e15
+    /** W/m2, texture, -1e15 to 1e15; into each of the sheet's two layers where the texture is white; at most 1e15
      *  W/m2 after strength and the texture. Below 0 it cools, but not below 1 K */
     flux?: number;
     /** s, arrival, 0 to 1e9; when the front arrives where the map is black */
