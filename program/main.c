@@ -38,7 +38,7 @@ static const Command commands[] = {
      "compares the physics with outside sources, on a page"},
     {"materials", command_materials, &materials_command, "help", "lists the built-in materials, or prints one"},
     {"scene-schema", command_scene_schema, &scene_schema_command, "help",
-     "prints the JSON Schema of scenes, by which editors complete and check them"},
+     "prints the JSON Schema of scenes, for completion and checks in editors"},
     {"manual", command_manual, &manual_command, "help", "prints a command's manual page"},
     {"completion", command_completion, &completion_command, "help", "prints what bash, zsh or fish complete"},
     {"scene-doc", command_scene_doc, &scene_doc_command, NULL, NULL},

@@ -67,6 +67,7 @@ static ExitCode book_open(Book *book, Console *console, const char *folder) {
         book->frames = number_member(json, size, "frames");
         book->done = number_member(json, size, "frames_done");
     }
+
     const bool good = !result && value_names_files(book->name) && book->frames > 0;
     if (!result && !good) job_refuse_record(console, path);
     free(path);
@@ -108,13 +109,14 @@ static void print_ranges(const int *frames, size_t count) {
             printf(end > i + 1 ? "%s%d to %d" : end > i ? "%s%d, %d" : "%s%d", i ? ", " : "", frames[i], frames[end]);
         i = end + 1;
     }
+
     if (ranges > RANGES_MAX) printf(" and %zu more", ranges - RANGES_MAX);
 }
 
 const ArgCommand info_command = {
     "info",
     "DIR",
-    "Prints what a run's folder holds: frames, sizes, checkpoints, and what it is a branch of.",
+    "Prints what a run's folder holds: frames, sizes, checkpoints, and the run that it branches from.",
     NULL,
     0,
     "Exit codes: 0 success, 1 the folder cannot be listed, 2 bad input.",
@@ -128,6 +130,7 @@ int command_info(int argc, char **argv) {
         if (option != ARG_OPERAND) return EXIT_INPUT;
         path = value;
     }
+
     Console console = console_make(false);
     Book book;
     ExitCode code = book_open(&book, &console, path);
@@ -153,6 +156,7 @@ int command_info(int argc, char **argv) {
         json = from;
         size = length;
     }
+
     printf("%-13s %ld\n", "frames asked", book.frames);
     for (int k = 0; k < FOLDER_COUNT && !result; k++) {
         Kind kind = {0};
@@ -164,10 +168,12 @@ int command_info(int argc, char **argv) {
             print_ranges(kind.frames, kind.count);
             printf(": %.1f MB\n", 1e-6 * kind.bytes);
         }
+
         bytes += kind.bytes;
         shared += kind.shared;
         store_free((SingeAllocator){0}, kind.frames, kind.capacity, sizeof *kind.frames);
     }
+
     if (!result) printf("%-13s %.1f MB of frames", "in all", 1e-6 * bytes);
     if (!result && shared > 0) printf(", %.1f MB of them shared with other folders", 1e-6 * shared);
     if (!result) printf("\n");
@@ -212,6 +218,7 @@ int command_clean(int argc, char **argv) {
         }
         if (!good) return EXIT_INPUT;
     }
+
     if (!every) {
         args_complain(&reader, "--keep-every says which frames remain");
         return EXIT_INPUT;
@@ -225,6 +232,7 @@ int command_clean(int argc, char **argv) {
                       shown_path(path).text);
         code = EXIT_INPUT;
     }
+
     if (code) {
         book_close(&book);
         return code;

@@ -11,7 +11,7 @@ const ArgCommand scene_doc_command = {.name = "scene-doc",
 
 const ArgCommand scene_schema_command = {
     .name = "scene-schema",
-    .summary = "Prints the JSON Schema of scene files, by which editors complete and check scenes.",
+    .summary = "Prints the JSON Schema of scene files, for completion and checks in editors.",
     .footer = "An editor with the YAML language server takes it by a comment in the scene's first line:\n"
               "  # yaml-language-server: $schema=singe.schema.json",
     .examples = "singe scene-schema > singe.schema.json\n"

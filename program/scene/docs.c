@@ -28,7 +28,7 @@ static const char introduction[] =
     "\n"
     "`singe check SCENE` reads a scene and reports all errors, with their lines and columns. Unknown keys,\n"
     "wrong units, values out of range and missing files are errors; nothing is guessed. Keys come in any order.\n"
-    "Names of files are looked for in the scene file's folder. Anchors, aliases and tags of YAML are not supported.\n"
+    "Paths of files are relative to the scene file's folder. Anchors, aliases and tags of YAML are not supported.\n"
     "A scene is a regular file of at most 1 MiB, and nested at most 64 deep. Messages repeat at most 80 characters of\n"
     "a word, and nothing that would not print: that is escaped (`\\x1b`, `\\u202e`). For other files that it names, only the\n"
     "location of an error is reported. Objects that cannot have an effect, such as a pin that misses its sheet, cause a\n"
@@ -63,8 +63,8 @@ static const char after_units[] =
     "drag: [{time: 0, value: 1.3}, {time: 2 s, value: 4}]        # over time, interpolated\n"
     "```\n"
     "\n"
-    "Keys and numbered pictures are taken at each frame ([directing.md](directing.md#values-over-time)). Initial\n"
-    "values accept neither: `grammage`, `specific_heat`, `thickness`, `temperature`, `moisture`.\n"
+    "Keys and numbered pictures apply frame by frame ([directing.md](directing.md#values-over-time)). Initial\n"
+    "values cannot change: `grammage`, `specific_heat`, `thickness`, `temperature`, `moisture`.\n"
     "\n"
     "## Changing a value from the command line\n"
     "\n"
@@ -171,6 +171,7 @@ static const void *default_object(SceneArena *arena, const Schema *wanted, const
         const void *found = begun ? default_object(arena, wanted, row->sub, begun) : NULL;
         if (found) return found;
     }
+
     return NULL;
 }
 
@@ -185,11 +186,13 @@ void scene_document(FILE *file) {
             if (units[0])
                 fprintf(file, "| %s | %s%s |\n", quantity_name((Dimension)d), d == DIM_FRACTION ? "bare, " : "", units);
         }
+
         fputs(after_units, file);
         Sections sections = {0};
         add_section(&sections, &schema_scene);
         for (int i = 0; i < sections.count; i++)
             put_section(file, sections.items[i], default_object(arena, sections.items[i], &schema_scene, scene));
     }
+
     arena_destroy(arena);
 }

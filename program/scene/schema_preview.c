@@ -69,7 +69,8 @@ static const SchemaRow environment_rows[] = {
      .doc = "`even`: the same from everywhere above; `studio`: a dim room with a tall window across from the light and "
             "a lamp; `open`: a clear day"},
     {"picture", ROW_FILE, DIM_NONE, AT(ScenePreview, environment_picture),
-     .doc = "PNG or JPEG of all around, in place of a kind: twice as wide as high, its centre towards +y, its top up"},
+     .doc =
+         "PNG or JPEG of the whole surroundings, instead of a kind: twice as wide as high; its centre faces +y, its top is up"},
 #include "preview/preview.def"
 };
 #undef OF
@@ -105,7 +106,7 @@ static const SchemaRow preview_rows[] = {
      .doc = "width and height in pixels, even numbers for video"},
     {"camera", ROW_MAP, DIM_NONE, AT(ScenePreview, camera), .sub = &schema_camera, .doc = "the camera"},
     {"camera_path", ROW_LIST, DIM_NONE, AT(ScenePreview, camera_keys), EXTRA(ScenePreview, camera_key_count),
-     .sub = &schema_camera_key, .doc = "where the camera is when, and what it focuses; empty: it stands still"},
+     .sub = &schema_camera_key, .doc = "positions, targets and focus of the camera over time; empty: it stands still"},
     {"light", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_light, .doc = "the distant light"},
     {"lamp", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_lamp, .doc = "a near lamp"},
     {"environment", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_environment,

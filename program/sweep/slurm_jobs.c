@@ -30,6 +30,7 @@ static char *sbatch_quote(const char *text, bool pattern) {
         if (*text == '%' && pattern) *to++ = '%';
         *to++ = *text == '\n' || *text == '\r' ? ' ' : *text;
     }
+
     memcpy(to, "\"", 2);
     return quoted;
 }
@@ -56,7 +57,7 @@ static char *write_job(const Sweep *sweep, JobKind kind, const char *rows, Singe
         if (o->max_running) fprintf(file, "%%%d", o->max_running);
         fprintf(file,
                 "\n#SBATCH --requeue\n#SBATCH --signal=B:TERM@10\n#SBATCH --cpus-per-task=%d\n"
-                "# a shell takes a signal when what it waits for ends, or at once in `wait`\n"
+                "# a shell handles a signal when its command ends; during `wait` it does so at once\n"
                 "trap 'kill -TERM \"$row\"' TERM\n%s &\nrow=$!\nwait \"$row\"\ncode=$?\n"
                 "if [ \"$code\" -gt 128 ]; then wait \"$row\"; code=$?; fi\nexit \"$code\"\n",
                 o->threads, line);
@@ -118,6 +119,7 @@ ExitCode sweep_submit(Sweep *sweep) {
         free(line);
         free(path);
     }
+
     free(rows);
     free(folder);
     return good ? EXIT_GOOD : EXIT_FAILED;

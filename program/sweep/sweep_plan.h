@@ -66,6 +66,10 @@ typedef struct Plan {
 ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan);
 void plan_free(Plan *plan);
 
+/// Creates the rows (plan_rows.c); those of a fit have no values yet. `message` says why there are none, about
+/// `parameter`; without memory the arena has failed.
+void plan_make_rows(Plan *plan, bool fit, uint32_t *parameter, char *message, size_t size);
+
 /// Sets a row's values from coordinates in [0, 1] of the ranges. False when out of memory.
 bool plan_set_row(Plan *plan, uint32_t row, const double *coordinates);
 
