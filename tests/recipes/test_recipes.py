@@ -112,7 +112,6 @@ def main():
 
         # the method keeps springs at their lengths
         run("build/singe", "run", "scene.yaml", "-o", "relaxed", "--set", "solver=relax", "--quiet", "--no-preview", cwd=tree)
-        run("build/singe", "verify", "relaxed", cwd=tree)
         rows = (tree / "relaxed/stats.csv").read_text(encoding="utf-8").splitlines()
         strain = float(rows[-1].split(",")[rows[0].split(",").index("strain_mean")])
         print(f"the relaxed springs are {100 * strain:.1f} % off their lengths")
