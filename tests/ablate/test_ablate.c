@@ -322,7 +322,7 @@ TEST(pieces_split_and_keep_ids) {
     finish(b, plan);
 }
 
-TEST(equal_parts_keep_by_smallest_particle) {
+TEST(of_equal_parts_the_first_particle_keeps_the_number) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(7, 3, 0.01f, &material);
     AblatePlan *plan = plan_for(b);

@@ -140,7 +140,7 @@ static double ripple(double x, double y, double length) {
     return (x < side / 3 + 0.011 ? 0.1 : 0.01) * length / (2 * pi) * sin(2 * pi * x / length);
 }
 
-TEST(power_is_that_of_its_waves) {
+TEST(power_matches_the_waves) {
     const double lengths[] = {0.006, 0.008, 0.012, 0.06};
     for (int k = 0; k < 4; k++) {
         Wrinkles w = look(192, ripple, lengths[k]);

@@ -188,7 +188,7 @@ TEST(crossing_input_is_left_alone) {
 }
 
 /// Two cells that approach, each crossed by another cell: they still keep each other apart.
-TEST(cells_of_other_crossings_are_kept_apart) {
+TEST(cells_crossed_by_others_are_kept_apart) {
     const float side = 0.02f, speed = 0.5f;
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
@@ -216,7 +216,7 @@ TEST(cells_of_other_crossings_are_kept_apart) {
 }
 
 /// Two cells that approach, both crossed by a third: each is left alone by it, not by the other.
-TEST(cells_that_one_crosses_are_kept_apart) {
+TEST(cells_crossed_by_one_cell_are_kept_apart) {
     const float side = 0.02f, speed = 0.5f;
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;

@@ -59,7 +59,7 @@ static void check_list(uint32_t capacity, uint32_t grown, Pool *pool) {
     assert_int_equal(memory.held, 0);
 }
 
-TEST(a_list_keeps_what_comes_first) {
+TEST(full_lists_keep_the_first_entries) {
     Memory memory = memory_make((SingeAllocator){0});
     for (int threads = 1; threads <= 4; threads++) {
         Pool *pool;

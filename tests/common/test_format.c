@@ -38,7 +38,7 @@ TEST(prints_as_the_c_library) {
     same("100 %% of %d", 3);
 }
 
-TEST(cuts_what_is_too_long) {
+TEST(long_text_is_cut) {
     for (size_t size = 1; size < 40; size++) {
         char ours[40], theirs[40];
         memset(ours, 'x', sizeof ours);
@@ -49,7 +49,7 @@ TEST(cuts_what_is_too_long) {
     }
 }
 
-TEST(ends_where_it_knows_no_more) {
+TEST(unknown_formats_end_the_text) {
     static const char *const formats[] = {"one %", "one %q two", "one %l", "one %0000000000000000000000000000000d"};
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
         char text[40];

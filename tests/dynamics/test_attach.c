@@ -124,7 +124,7 @@ TEST(a_loose_piece_is_free) {
 }
 
 /// Neither a pin that was removed nor a vertex that is gone holds anything.
-TEST(nothing_is_held_by_what_is_gone) {
+TEST(removed_pins_and_burnt_particles_hold_nothing) {
     const uint32_t corner = vertex(0, 0);
     for (int burnt = 0; burnt < 2; burnt++) {
         Bench bench;

@@ -225,7 +225,7 @@ TEST(bad_buffers_are_refused) {
 }
 
 /// Normalized and plain numbers of every width are what the format says.
-TEST(widths_of_numbers_are_read) {
+TEST(numbers_of_every_width_are_read) {
     static const struct {
         const char *accessor;
         float x; // of the second vertex: the bytes at 12, or behind the width

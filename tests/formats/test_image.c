@@ -238,7 +238,7 @@ static void claim_png(Encoded *encoded, uint32_t width, uint32_t height) {
     put_big(encoded->bytes + 29, crc_of(encoded->bytes + 12, 17));
 }
 
-TEST(refuses_what_is_no_picture) {
+TEST(files_that_are_not_pictures_are_refused) {
     static Encoded encoded;
     Image image;
     SingeError error;

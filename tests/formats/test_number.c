@@ -79,7 +79,7 @@ TEST(agrees_with_libc) {
     }
 }
 
-TEST(refuses_what_is_no_number) {
+TEST(text_that_is_not_a_number_is_refused) {
     static const char *const junk[] = {"",  "-",   "+",   ".",   "-.", "e5", "1e", "1e+",
                                        "x", "--1", "+-1", "abc", " 1", ",5", "#"};
     float value;

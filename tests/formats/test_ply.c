@@ -279,7 +279,7 @@ TEST(faces_have_uv_of_their_own) {
                  SINGE_ERROR_MESH, -1, "u and v for each");
 }
 
-TEST(every_cut_of_ascii_is_an_error) {
+TEST(every_truncation_of_ascii_is_an_error) {
     static const char text[] = GOOD_HEADER SQUARE "4 0 1 2 3\n";
     Polygons mesh;
     SingeError error;

@@ -284,7 +284,7 @@ TEST(flow_goes_around) {
 
 /// A sheet that stands over the fire is heated from where the gas comes, by no more than the gas is hot, and takes that
 /// heat from it.
-TEST(gas_heats_what_it_flows_by) {
+TEST(gas_heats_what_it_flows_past) {
     double left[2];
     for (int k = 0; k < 2; k++) {
         GasSettings settings = settings_default();
@@ -319,7 +319,7 @@ TEST(gas_heats_what_it_flows_by) {
 }
 
 /// When all is over it rests, and wakes when something burns again.
-TEST(it_comes_to_rest) {
+TEST(the_gas_comes_to_rest) {
     GasSettings settings = settings_default();
     Air air;
     air_open(&air, &settings);

@@ -202,7 +202,7 @@ TEST(umbrella_as_printed_is_the_umbrella_on_a_sheet_at_rest) {
     rig_close(&initial), rig_close(&printed);
 }
 
-TEST(umbrella_as_printed_goes_with_the_lengths_of_the_moment) {
+TEST(the_printed_umbrella_uses_current_lengths) {
     // at half its size heat spreads four times as well; as well as with four times the diffusivity
     RigDef def = rig_default(80, 80, 0.002f, 0.002f);
     for (int k = 0; k < 2; k++) {

@@ -65,7 +65,7 @@ TEST(cooling_follows_radiation_and_convection) {
     }
 }
 
-TEST(one_step_of_losses_is_the_formula) {
+TEST(one_step_of_losses_matches_the_formula) {
     RigDef def = lossy();
     Rig rig;
     rig_open(&rig, &def);

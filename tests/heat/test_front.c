@@ -172,7 +172,7 @@ TEST(thickening_has_limits) {
 }
 
 /// One F for a sheet whose parameters vary: that of their means.
-TEST(thickening_goes_by_the_means) {
+TEST(thickening_follows_the_means) {
     static const float halves[] = {0, 1};
     RigDef def = rig_default(16, 4, 0.01f, 0.01f);
     SingeParam *params[] = {&def.material.rate_ceiling, &def.material.mass_rate};

@@ -23,7 +23,7 @@ MUTATIONS = [
     ("heat/heat.c", "float T1 = T + combustion;", "float T1 = T - combustion;",
      "heat_exchange", "combustion_is_eta_times_burnt_mass"),
     ("heat/heat.c", "float loss = rate * (T2 - ambient) / (1 + rate);", "float loss = rate * (T2 - ambient);",
-     "heat_exchange", "one_step_of_losses_is_the_formula"),
+     "heat_exchange", "one_step_of_losses_matches_the_formula"),
     ("heat/source.c", "float reach = def->radius + def->falloff", "float reach = def->radius",
      "heat_source", "falls_off_smoothly_and_moves"),
     ("heat/conduct.c", "double rise = (double)pass->dt * inflow[i % HEAT_ROWS] / plan->measure[i];",
@@ -35,7 +35,7 @@ MUTATIONS = [
     ("heat/operator.c", "plan->measure[a] += length / 2;", "plan->measure[a] += length;",
      "heat_diffusion", "umbrella_has_its_derived_diffusivity"),
     ("heat/operator.c", "return fmaxf(length, LIVE_LENGTH_MIN * rest);", "return rest;",
-     "heat_diffusion", "umbrella_as_printed_goes_with_the_lengths_of_the_moment"),
+     "heat_diffusion", "the_printed_umbrella_uses_current_lengths"),
     # eq 4 to 6: burning
     ("burn/lose_mass.c", "if (p == 0.0f) return k > x ? x : k;", "if (p == 0.0f) return k > x ? x : 0.9f * k;",
      "burn", "no_exponent_is_a_straight_line"),
@@ -94,7 +94,7 @@ MUTATIONS = [
     ("dynamics/crease.c", "hinge.max = real_atan2f(2 * thickness, hinge.arc);",
      "hinge.max = real_atan2f(thickness, hinge.arc);", "crease", "*"),
     ("tear/line_force.c", "along /= float4_all(shell", "along /= 2 * float4_all(shell",
-     "tear", "line_force_of_a_hanging_strip_is_its_weight"),
+     "tear", "line_force_of_a_hanging_strip_equals_its_weight"),
 ]
 
 

@@ -171,7 +171,7 @@ TEST(material_files_are_found) {
 }
 
 /// A material file may be one that the reader of the messages must not see: no message repeats any of its text.
-TEST(messages_repeat_nothing_of_other_files) {
+TEST(messages_quote_no_other_file) {
     static const char *const secrets[] = {
         "SECRET:$6$SECRET:19000:0:99999:7:::\n",
         "SECRET\nSECRET\n",

@@ -147,7 +147,7 @@ TEST(all_ranges_are_reported_at_once) {
     scene_messages_free(&messages);
 }
 
-TEST(steps_that_cannot_be_are_reported) {
+TEST(impossible_steps_are_reported) {
     static const char words[] = "steps a second, which must be 0.1 to 1e9";
     one("fps: 0.001", "bad.yaml:3:6", "0.001 frames a second of 20 steps each are 0.02 steps a second");
     one("steps: 100000\nfps: 1e5", "bad.yaml:4:6", words);

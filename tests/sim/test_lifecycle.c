@@ -197,7 +197,7 @@ TEST(the_log_has_no_locale) {
 }
 
 /// The commit reports what was built; a step too long for the cells causes a warning.
-TEST(the_log_hears_of_the_commit) {
+TEST(the_commit_is_logged) {
     for (int slow = 0; slow < 2; slow++) {
         Heard heard = {0};
         SingeSimDef def = singe_default_sim();
@@ -216,7 +216,7 @@ TEST(the_log_hears_of_the_commit) {
 
 /// A sheet that begins more than a cell behind a plane causes a warning in the first step; one that lies on it does
 /// not.
-TEST(the_log_hears_of_what_begins_inside) {
+TEST(sheets_that_begin_inside_a_collider_are_logged) {
     for (int deep = 0; deep < 2; deep++) {
         Heard heard = {0};
         SingeSimDef def = singe_default_sim();
@@ -263,7 +263,7 @@ static void count_warnings(void *context, SingeLogLevel level, const char *line)
 }
 
 /// Steps too long for the solver of the heat equation are taken all the same, and one line reports it.
-TEST(warns_once_of_conduction_cut_short) {
+TEST(conduction_cut_short_is_warned_of_once) {
     int warnings = 0;
     SingeSimDef def = singe_default_sim();
     def.log = (SingeLog){count_warnings, &warnings};

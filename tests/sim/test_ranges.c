@@ -107,7 +107,7 @@ static int try_table(SingeSim *sim, const DefTable *table, const void *standard,
     return tried;
 }
 
-TEST(ranges_are_those_of_the_tables) {
+TEST(ranges_match_the_tables) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
     test_ok(NULL, singe_sim_create(&def, &sim, NULL));

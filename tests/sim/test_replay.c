@@ -72,7 +72,7 @@ TEST(a_recording_changes_nothing) {
     free(tape.bytes);
 }
 
-TEST(threads_change_only_the_note_of_their_number) {
+TEST(recordings_differ_only_in_the_number_of_threads) {
     Tape one = {0}, three = {0};
     SingeSimDef def = scene_def();
     def.thread_count = 1;
@@ -295,7 +295,7 @@ static void count_warning(void *context, SingeLogLevel level, const char *line) 
     if (level == SINGE_LOG_WARNING && strstr(line, "recording")) ++*(int *)context;
 }
 
-TEST(a_writer_that_refuses_ends_the_recording_alone) {
+TEST(a_failing_writer_ends_only_the_recording) {
     Tape tape = {.refuse_at = 20000};
     int warnings = 0;
     SingeSimDef def = recorded(scene_def(), &tape);

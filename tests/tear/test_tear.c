@@ -192,7 +192,7 @@ TEST(springs_take_over_smoothly) {
 }
 
 /// In a strip that hangs at rest the line force is the weight of what hangs below, over the width.
-TEST(line_force_of_a_hanging_strip_is_its_weight) {
+TEST(line_force_of_a_hanging_strip_equals_its_weight) {
     enum { WIDE = 6, LONG = 16 };
     SingeSimDef def = pull_def();
     def.gravity[1] = -9.81f, def.air_density = 0, def.solver.attachments = false;
@@ -592,7 +592,7 @@ static void flux_fails(void *context, const SingeView *view, float *flux, float 
     for (uint32_t i = 0; i < view->particle_count && *(bool *)context; i++) flux[i] = NAN;
 }
 
-TEST(failed_steps_leave_it_as_it_was) {
+TEST(failed_steps_change_nothing) {
     SingeSim *sim = burning(1, SINGE_INSTRUCTIONS_BEST);
     SingeSourceDef source = singe_default_source();
     SingeSourceId id;

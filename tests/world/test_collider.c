@@ -75,7 +75,7 @@ static void expect(SingeColliderKind kind, Float3 p, float d, Float3 n) {
                  (double)normal.z);
 }
 
-TEST(distances_are_those_by_hand) {
+TEST(distances_match_those_by_hand) {
     expect(SINGE_COLLIDER_PLANE, float3(5, -7, 0.25f), 0.25f, float3(0, 0, 1));
     expect(SINGE_COLLIDER_PLANE, float3(5, -7, -2), -2, float3(0, 0, 1));
     expect(SINGE_COLLIDER_SPHERE, float3(0, -1, 0), 0.3f, float3(0, -1, 0));

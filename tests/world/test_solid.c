@@ -69,7 +69,7 @@ static int compare(const Triangles *mesh, const char *name, int count, float siz
     return inside;
 }
 
-TEST(distances_are_those_of_all_triangles) {
+TEST(distances_match_a_search_of_all_triangles) {
     Triangles mesh = triangles_sphere(24, 0.05f, 0);
     assert_true(compare(&mesh, "sphere", 1500, 0.1f) > 100);
     triangles_free(&mesh);
@@ -227,7 +227,7 @@ static Triangles column(uint32_t columns, uint32_t rows, const float *heights, c
     return mesh;
 }
 
-TEST(heights_are_those_of_their_triangles) {
+TEST(heights_match_their_triangles) {
     enum { COLUMNS = 31, ROWS = 22 };
     static float heights[COLUMNS * ROWS];
     const float size[2] = {0.2f, 0.14f};
