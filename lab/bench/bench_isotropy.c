@@ -121,6 +121,7 @@ static SingeResult isotropy_build(const Burn *burn, double angle, SingeSim **sim
         if (!result) result = singe_sim_add_source(*sim, &spot, &source);
         if (result) *error = *singe_sim_error(*sim);
     }
+
     if (result) singe_sim_destroy(*sim), *sim = NULL;
     return result;
 }

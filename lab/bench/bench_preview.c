@@ -288,6 +288,7 @@ static SingeResult picture_measure(const BenchOptions *options, const Shot *shot
         squares += 0.5 * (first * first + second * second);
         changes += (second - first) * (second - first);
     }
+
     const bool good = whole;
     free(drawn);
     free(whole);

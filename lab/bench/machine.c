@@ -34,6 +34,7 @@ const char *machine_name(void) {
         line[strcspn(line, "\n")] = 0;
         found = snprintf(name, sizeof name, "%s", colon + 1 + strspn(colon + 1, " ")) > 0;
     }
+
     if (file) fclose(file);
     if (found) return name;
 

@@ -119,6 +119,7 @@ static SingeResult trajectories(const Comparison *c, BenchState state, double sp
         if (!result && no_more(&ours.blue, &paper.blue)) best_edges = fmax(best_edges, paper.step_ms / ours.step_ms);
         if (!result && no_more(&ours.all, &paper.all)) best_all = fmax(best_all, paper.step_ms / ours.step_ms);
     }
+
     if (!result && c->table->text)
         fprintf(c->table->text,
                 "%s, %.0f springs: %.1f times as fast at equal error of edges, %.1f times at equal error of all springs"

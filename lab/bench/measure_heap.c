@@ -83,6 +83,7 @@ static SingeResult add_cloth(SingeSim *sim, int n) {
         cells[4 * c + 2] = v + row + 1;
         cells[4 * c + 3] = v + row;
     }
+
     if (!result) {
         SingeSheetDef def = singe_default_sheet();
         SingeSheetId id;
@@ -219,6 +220,7 @@ static SingeResult heap_measure(const BenchOptions *options, int cells, bool clo
         row[INVERTED] = bench_number(stats.inverted_cells);
         row[SPEED] = bench_number(stats.speed_rms_unburnt);
     }
+
     if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
     singe_sim_destroy(sim);
     return result;

@@ -91,6 +91,7 @@ static SingeResult plate_open(const Plate *plate, bool disc, SingeSim **sim, Mes
         material->shrink_front = singe_param(0);
         material->shrink_back = singe_param_field(0.7f, 1.3f, &noise);
     }
+
     result = singe_sim_add_sheet(*sim, &sheet, &id);
     if (!result) result = singe_sim_commit(*sim);
     return result;
@@ -182,6 +183,7 @@ static SingeResult strip_bend(const Plate *plate, double *ratio, SingeError *err
         sag -= (double)view.position[v][2];
         count++;
     }
+
     const SingeMaterialDef usual = singe_default_material();
     const double l = strip_length - clamped + 0.5 * strip_length / plate->cells, load = grammage * gravity,
                  t = (double)usual.thickness.value;

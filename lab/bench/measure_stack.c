@@ -79,6 +79,7 @@ static SingeResult stack_fill(SingeSim *sim, uint32_t sheets, uint32_t cells, Si
         singe_mesh_destroy(mesh);
         if (result) return result;
     }
+
     SingeResult result = singe_sim_commit(sim);
 
     // the ground, and the sphere on it
@@ -156,6 +157,7 @@ static SingeResult stack_measure(const BenchOptions *options, uint32_t sheets, u
         };
         if (!table_add(table, row)) result = SINGE_ERROR_MEMORY;
     }
+
     singe_surface_free(&surface);
     singe_sim_destroy(sim);
     return result;

@@ -35,6 +35,7 @@ static SingeResult width_measure(const BenchOptions *options, const BenchSetup *
         row[BYTES] = bench_text("not here");
         return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
     }
+
     if (result) return result;
     int steps = options->steps ? options->steps : timing_steps(timing_springs(sim), 5, 200);
     result = timing_measure(&timing, sim, NULL, steps, steps);

@@ -38,6 +38,7 @@ const char *args_nearest(const char *word, const void *first, int count, unsigne
         if (!begun) nearest_offer(&nearest, name);
         else if (!nearest.best || nearest.distance > 1) nearest = (Nearest){word, name, 1};
     }
+
     return nearest.best;
 }
 

@@ -85,6 +85,7 @@ static SingeResult time_frame(const Job *job, SingeSim *sim, CheckTimes *times, 
         times->checkpoint = (double)taken.size;
         checkpoint_drop(sim, &taken);
     }
+
     if (result) return result;
 
     int count = 0;
@@ -188,6 +189,7 @@ static SingeResult report_materials(const Scene *scene, float thickening, SingeE
         }
         printf("\n");
     }
+
     return result;
 }
 
@@ -226,6 +228,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
         if (!code && unread) report_size(&job, &job.assets, pictures);
         if (!code) code = job_build(&job, console, &sim);
     }
+
     if (code) {
         job_close(&job);
         return code;

@@ -82,6 +82,7 @@ static uint64_t hash_files(uint64_t hash, const SceneAssets *assets) {
             hash = hash_array(hash, render->uv, 2 * (size_t)render->vertex_count, sizeof(float));
             hash = hash_array(hash, render->triangles, 3 * (size_t)render->triangle_count, sizeof(uint32_t));
         }
+
         hash = hash_image(hash, &assets->images[i]);
         for (int k = 0; k < SCENE_PARAM_SLOTS; k++) hash = hash_picture(hash, &assets->fields[i][k].texture);
     }
@@ -95,6 +96,7 @@ static uint64_t hash_files(uint64_t hash, const SceneAssets *assets) {
         hash = hash_array(hash, assets->solids[i].heights, (size_t)assets->solids[i].columns * assets->solids[i].rows,
                           sizeof(float));
     }
+
     return hash;
 }
 
@@ -162,6 +164,7 @@ SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator
         *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "checkpoint", .element = -1};
         return SINGE_ERROR_MEMORY;
     }
+
     Trailer trailer = {.snapshot_size = size,
                        .hash = hash,
                        .frame = (uint64_t)progress.frame,
@@ -239,6 +242,7 @@ SingeResult checkpoint_read_file(const char *path, const SingeSimDef *hooks, Sce
         checkpoint->totals = trailer.totals;
         checkpoint->other_looks = trailer.hash.looks != hash.looks;
     }
+
     bytes_free(&bytes);
     return result;
 }
@@ -255,6 +259,7 @@ SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, Scen
         // the previous one would be of another scene, too, or need the same memory
         if (!result || !before || result == SINGE_ERROR_STATE || result == SINGE_ERROR_MEMORY) return result;
     }
+
     const SingeError refused = last ? *error : (SingeError){0};
     *checkpoint = (Checkpoint){.previous = true, .refused = refused};
     SingeResult result = checkpoint_read_file(folder->previous_checkpoint, hooks, hash, assets, checkpoint, error);

@@ -24,6 +24,7 @@ static const CommandValue *value_of(const char *name) {
         if (strncmp(name, command_table.values[i].name, length) == 0 && (!name[length] || strchr("].|", name[length])))
             return &command_table.values[i];
     }
+
     return NULL;
 }
 
@@ -77,6 +78,7 @@ static void bash_command(const Command *command) {
         bash_value(option->value);
         fputs("\n            return ;;\n", stdout);
     }
+
     fputs("        esac\n        options='--help", stdout);
     for (int i = 0; i < arguments->option_count; i++)
         if (!named_before(arguments, i)) printf(" --%s", arguments->options[i].name);
@@ -157,11 +159,13 @@ static void zsh_command(const Command *command) {
         if (option->value) zsh_value(option->value);
         putchar('\'');
     }
+
     if (arguments->operand) {
         fputs(strstr(arguments->operand, "...") ? " \\\n        '*" : " \\\n        '1", stdout);
         zsh_value(arguments->operand);
         putchar('\'');
     }
+
     fputs(" ;;\n", stdout);
 }
 
@@ -180,6 +184,7 @@ static void zsh(void) {
         put_quoted(command->summary, ":\\");
         fputs("'\n", stdout);
     }
+
     fputs("  )\n"
           "  _arguments -C '(- *)'{-h,--help}'[prints the commands]' '(- *)--version[prints the version]' \\\n"
           "    '1:command:->command' '*::argument:->argument'\n"
@@ -233,6 +238,7 @@ static void fish(void) {
         put_quoted(command->summary, "\\");
         fputs("'\n", stdout);
     }
+
     for (int i = 0; i < command_table.command_count; i++) {
         const Command *command = &command_table.commands[i];
         const ArgCommand *arguments = command->arguments;
@@ -247,6 +253,7 @@ static void fish(void) {
             if (option->value) fish_value(option->value, true);
             putchar('\n');
         }
+
         if (!value_of(arguments->operand)) continue;
         printf("complete -c singe -n '__fish_seen_subcommand_from %s'", command->name);
         fish_value(arguments->operand, false);
@@ -276,6 +283,7 @@ int command_completion(int argc, char **argv) {
         shells[i].print();
         return EXIT_GOOD;
     }
+
     args_complain(&reader, "expected bash, zsh or fish, got '%s'", shown(word).text);
     return EXIT_INPUT;
 }

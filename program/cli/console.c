@@ -186,6 +186,7 @@ ExitCode console_write_table(Console *console, const char *path, void (*print)(F
         reason = ours ? 0 : write_through(path, text, size);
         if (ours) result = file_write(path, text, size, &error);
     }
+
     free(text);
     if (reason) console_error(console, "cannot write %s: %s", path, strerror(reason));
     if (result) console_result(console, &error);

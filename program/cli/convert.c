@@ -54,6 +54,7 @@ const char *convert_format_word(int index) {
         if (single ? single->by_option : i == OUTPUT_ply) continue; // the former are formats of frames too
         if (--index == 0) return single ? single->name : output_formats[i].name;
     }
+
     return NULL;
 }
 
@@ -137,6 +138,7 @@ static bool show_progress(void *context, int frame) {
         console_picture(progress->console, done, progress->parts * progress->last,
                         (console_clock() - progress->begun) / done);
     }
+
     return !interrupt_asked();
 }
 
@@ -161,6 +163,7 @@ static SingeResult convert_all(const Outputs *outputs, const ConvertOptions *o, 
         result = outputs_write_single(outputs, i, last, show_progress, &progress, error);
         progress.part++;
     }
+
     return result;
 }
 

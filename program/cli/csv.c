@@ -124,9 +124,11 @@ static bool read_rows(StatsTable *table, Text *text) {
             for (int c = 0; c < COLUMNS; c++)
                 if (column[c] == i && number_double(&begin, end, values[c]) == NUMBER_OK && begin == end) read++;
         }
+
         text_next_line(text);
         if (read != COLUMNS || !(row->inverted_cells >= 0) || !(row->triangles >= 0)) return false;
     }
+
     return true;
 }
 

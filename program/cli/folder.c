@@ -117,6 +117,7 @@ SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *e
         if (!result && access(path, W_OK) != 0) result = folder_fail(path, "write", errno, error);
         free(path);
     }
+
     return result;
 }
 
@@ -166,6 +167,7 @@ static bool is_temporary(const char *rest) {
         rest += attempt + 4;
         if (!*rest) return true;
     }
+
     return false;
 }
 
@@ -178,6 +180,7 @@ static SingeResult remove_at(DIR *dir, const char *path, const char *name, int *
         free(file);
         return result;
     }
+
     return SINGE_OK;
 }
 
@@ -258,6 +261,7 @@ SingeResult folder_sweep(const Folder *folder, SingeError *error) {
             if (ending && strncmp(rest, ending, strlen(ending)) == 0)
                 ours = ours || is_temporary(rest + strlen(ending));
         }
+
         if (ours) result = remove_at(dir, folder->path, file, &removed, error);
     }
 
@@ -297,6 +301,7 @@ SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, 
         rmdir(path); // may fail: other files are in it
         free(path);
     }
+
     return result;
 }
 
@@ -330,6 +335,7 @@ SingeResult folder_each(const Folder *folder, int kind, FolderVisit *visit, void
         if (!frame || *rest || fstatat(dirfd(dir), entry->d_name, &info, AT_SYMLINK_NOFOLLOW) != 0) continue;
         if (S_ISREG(info.st_mode)) visit(context, frame, (uint64_t)info.st_size, info.st_nlink > 1);
     }
+
     if (dir) closedir(dir);
     free(path);
     return result;

@@ -65,6 +65,7 @@ SingeResult lock_take(Lock *lock, const char *path, const char *what, bool share
                              "%.*s: the file system does not support locks: make sure that nothing else writes there",
                              (int)(strrchr(path, '/') - path), path);
             }
+
             close(fd);
             return result;
         }
@@ -79,8 +80,10 @@ SingeResult lock_take(Lock *lock, const char *path, const char *what, bool share
             *lock = (Lock){.fd = fd, .shared = shared, .path = text_format("%s", path)};
             return SINGE_OK;
         }
+
         close(fd);
     }
+
     return folder_fail(path, "lock", EAGAIN, error);
 }
 

@@ -35,6 +35,7 @@ static void put(FILE *page, const char *text) {
         else fputc(*c, page);
         if (*c == '\n' && (c[1] == '.' || c[1] == '\'')) fputs("\\&", page);
     }
+
     fputc('\n', page);
 }
 
@@ -71,6 +72,7 @@ static void put_command(FILE *page, const Command *command) {
                 option->value ? "\\fR" : "");
         put(page, option->help);
     }
+
     fputs(".TP\n\\fB\\-h\\fR, \\fB\\-\\-help\\fR\nprints the options\n", page);
 
     if (arguments->examples) {
@@ -78,6 +80,7 @@ static void put_command(FILE *page, const Command *command) {
         put(page, arguments->examples);
         fputs(".fi\n", page);
     }
+
     if (arguments->footer) {
         fputs(".SH NOTES\n", page);
         put(page, arguments->footer);
@@ -98,6 +101,7 @@ static void put_program(FILE *page) {
         fputs(" (1)\n", page);
         put(page, command->summary);
     }
+
     fputs(".SH EXIT STATUS\n.TP\n0\nsuccess\n.TP\n1\nthe run failed or was interrupted\n.TP\n2\nbad input\n"
           ".SH ENVIRONMENT\n.TP\n.B NO_COLOR\nturns colours of messages off\n",
           page);
@@ -150,5 +154,6 @@ int command_manual(int argc, char **argv) {
         code = console_write_table(&console, path, print_page, i < 0 ? NULL : &commands[i]);
         free(path);
     }
+
     return code;
 }

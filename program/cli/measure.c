@@ -130,6 +130,7 @@ static bool is_cold(const float *rest, uint32_t count, float (*burnt)[3], const 
             if (distance < square) return false;
         }
     }
+
     return true;
 }
 
@@ -162,6 +163,7 @@ static bool moment_take(const SingeSurface *surface, double time, Moment *moment
             box->high[k] = !first && box->high[k] > x ? box->high[k] : x;
             burnt[burnt_count][k] = x;
         }
+
         burnt_count++;
     }
 
@@ -194,6 +196,7 @@ static double jitter(const Moment *before, const Moment *now, const Moment *afte
         }
         counted++;
     }
+
     return counted && after->time > before->time ? sqrt(sum / counted) : (double)NAN;
 }
 
@@ -247,6 +250,7 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
             for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
             area += 0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
         }
+
         fill_row(&wrinkles, &folds, rim, area, row);
 
         const Moment *m = measure->moments;

@@ -141,6 +141,7 @@ int command_materials(int argc, char **argv) {
         const char *text = material->bytes + strspn(material->bytes, "# "), *dot = strpbrk(text, ":.");
         printf("%-14s %.*s\n", material->name, (int)(dot - text), text);
     }
+
     if (!word) return EXIT_GOOD;
 
     const char *near = args_nearest(word, scene_builtins, count, sizeof *scene_builtins);

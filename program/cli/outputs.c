@@ -31,10 +31,12 @@ static char *path_from(const char *folder, const char *file) {
             free(relative);
             relative = longer;
         }
+
         char *whole = text_format("%s%s", relative, to + same);
         free(relative);
         relative = whole;
     }
+
     free(from);
     free(to);
     return relative ? relative : text_format("%s", file);
@@ -114,6 +116,7 @@ OutputSet outputs_missing(const Outputs *outputs, int number) {
         if (!folder_has(path)) missing |= 1u << i;
         free(path);
     }
+
     return missing;
 }
 
@@ -178,8 +181,10 @@ static SingeResult whole_open(WholeScene *whole, const Outputs *outputs, int fra
             shape->triangles = now.solid->triangles;
             poses[frame].vertices = now.solid->vertices;
         }
+
         whole->scene.shape_count += ever;
     }
+
     return SINGE_OK;
 }
 
@@ -237,6 +242,7 @@ SingeResult outputs_write_single(const Outputs *outputs, int single, int frames,
         result = folder_make(path, error);
         *slash = '/';
     }
+
     if (!result) result = format->write(path, &whole.scene, &cache, error);
     free(path);
     frame_free(&reader.frame);
@@ -280,6 +286,7 @@ static void refine(const SingeGas *coarse, int detail, Gas *fine) {
                         (k & 1 ? s[0] : 1 - s[0]) * (k >> 1 & 1 ? s[1] : 1 - s[1]) * (k >> 2 ? s[2] : 1 - s[2]);
                     for (int d = 0; d < 3; d++) moved[d] += weight * coarse->velocity[from][d];
                 }
+
                 for (int d = 0; d < 3; d++) fine->velocity[i][d] = moved[d];
             }
 
@@ -314,6 +321,7 @@ SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Picture
         snprintf(error->message, sizeof error->message, "%.200s: the frame has no gas", path);
         return SINGE_ERROR_FILE;
     }
+
     SingeResult result = gas_detail_shape(coarse, detail, &fine.view, error);
     if (!result) result = gas_make(&fine, path, 0, error);
     if (!result)
@@ -324,6 +332,7 @@ SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Picture
         gas_decode(&fine);
         result = vdb_write_fine(path, &fine, frame->time, error);
     }
+
     gas_free(&fine);
     return result;
 }
@@ -350,6 +359,7 @@ SingeResult gas_detail_write(const Job *job, const Folder *folder, int last, Out
         *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "gas", .element = -1, .message = "interrupted"};
         result = SINGE_ERROR_STATE;
     }
+
     pictures_close(pictures);
     return result;
 }

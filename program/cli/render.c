@@ -138,6 +138,7 @@ static bool put_tiles(Render *render, int frame, const uint8_t *rgb) {
         any = true;
         if (rgb) contact_sheet_put(&render->sheet, tile, rgb);
     }
+
     return any;
 }
 
@@ -160,6 +161,7 @@ static SingeResult draw_all(Render *render, bool *interrupted, SingeError *error
             free(png);
             free(exr);
         }
+
         *interrupted = result && interrupt_left_work();
         if (*interrupted) return SINGE_OK;
         if (result) return result;
@@ -234,6 +236,7 @@ int command_render(int argc, char **argv) {
             render.last = options.last;
             code = folder_span(&render.folder, &console, &render.first, &render.last);
         }
+
         if (!code) code = render_frames(&render);
         contact_sheet_free(&render.sheet);
         pictures_close(render.pictures);

@@ -132,6 +132,7 @@ SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error) {
         free(exr);
         *whole = --count == 0 || !interrupt_asked();
     }
+
     return result;
 }
 
@@ -152,6 +153,7 @@ SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error) {
         free(path);
         if (missing || coarse) *whole = !interrupt_asked();
     }
+
     return result;
 }
 
@@ -183,6 +185,7 @@ SingeResult run_take_over(Run *run, SingeError *error) {
         result = file_publish(run->files[i].draft, run->files[i].path, error);
         run->files[i].draft = NULL;
     }
+
     if (!result) result = run->branch.frame ? branch_fill(run, error) : tables_begin(&run->tables, error);
     return result;
 }
@@ -242,6 +245,7 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
         if (lineage) return EXIT_INPUT;
         console_note(run->console, "no checkpoint in %s: starting from the beginning", run->folder.path);
     }
+
     if (!run->sim && !options->force && !may_replace(run)) return EXIT_FAILED;
     if (!run->sim && options->from && (code = branch_prepare(run, options->from))) return code;
     if (!run->sim && (code = job_build(&run->job, run->console, &run->sim))) return code;

@@ -71,6 +71,7 @@ static bool scene_at(Ancestor record, int frame, Ancestor *scene, int *first) {
         if (frame >= *first) return true;
         *scene = from;
     }
+
     return false;
 }
 
@@ -90,8 +91,10 @@ static char *lineage_text(const char *folder, int frame, Ancestor scene) {
             fprintf(file, ", \"%s\": ", copied[i]);
             fwrite(value.json, 1, value.size, file);
         }
+
         fputc('}', file);
     }
+
     free(whole);
     if (text_stream_end(file, &text)) return text;
     free(text);
@@ -199,6 +202,7 @@ static ExitCode load_checkpoint(Run *run, Progress *progress) {
         if (refused == SINGE_ERROR_STATE || refused == SINGE_ERROR_MEMORY) result = refused;
         else if (refused) console_warn(run->console, "%s; an earlier checkpoint is used", error.message);
     }
+
     for (size_t i = 0; i < candidates.count; i++) free(candidates.items[i].path);
     store_free((SingeAllocator){0}, candidates.items, candidates.capacity, sizeof *candidates.items);
     if (!result) return EXIT_GOOD;
@@ -270,6 +274,7 @@ static ExitCode check_branch(Run *run) {
                       now.scene->frames);
         code = EXIT_INPUT;
     }
+
     for (int frame = 1; frame <= branch->frame && !code; frame++) {
         char *ply = folder_ply(&branch->folder, frame), *vdb = folder_vdb(&branch->folder, frame);
         const char *missing = !folder_has(ply) ? ply : now.scene->sim.gas.enabled && !folder_has(vdb) ? vdb : NULL;
@@ -280,6 +285,7 @@ static ExitCode check_branch(Run *run) {
         free(ply);
         free(vdb);
     }
+
     return code;
 }
 
@@ -304,6 +310,7 @@ static ExitCode open_branch(Run *run, const char *from) {
                       shown_path(folder).text);
         code = EXIT_INPUT;
     }
+
     if (!code) code = read_record(run, folder);
     free(folder);
     return code;
@@ -322,6 +329,7 @@ ExitCode branch_prepare(Run *run, const char *from) {
                       shown_path(branch->folder.path).text, branch->first, branch->frame);
         code = EXIT_INPUT;
     }
+
     branch->job.hooks = run->job.hooks;
     if (!code && !run->sim) code = job_build(&branch->job, run->console, &run->sim);
     if (code) return code;
@@ -394,6 +402,7 @@ SingeResult branch_fill(Run *run, SingeError *error) {
         if (!result && parts.exr && branch->alike)
             result = link_optional(folder_exr(from, i), folder_exr(to, i), error);
     }
+
     KeptLinks links = {branch, to, SINGE_OK, error};
     if (!result) result = folder_each(from, FOLDER_CHECKPOINTS, link_kept, &links, error);
     if (!result) result = links.result;

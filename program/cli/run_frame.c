@@ -46,6 +46,7 @@ static SingeResult count_crossings(Run *run, SingeError *error) {
             .code = SINGE_ERROR_MEMORY, .element = -1, .message = "out of memory while looking for crossings"};
         return SINGE_ERROR_MEMORY;
     }
+
     if (run->totals->crossed)
         console_warn(run->console,
                      "%" PRIu64 " pairs of triangles cross initially, the first near (%.4g, %.4g, %.4g) m; `singe "
@@ -86,10 +87,12 @@ SingeResult run_advance(Run *run, int frame, SingeError *error) {
             run->totals->holes_opened += events[i].kind == SINGE_EVENT_HOLE_OPENED;
             run->totals->pieces_freed += events[i].kind == SINGE_EVENT_PIECE_FREED;
         }
+
         if ((result = tables_take_step(&run->tables, run->sim, error))) return result;
         run->step++;
         if (interrupt_asked()) break;
     }
+
     return SINGE_OK;
 }
 

@@ -26,6 +26,7 @@ int spawn_program(char *const *arguments, const char *log, pid_t *child) {
         // otherwise Ctrl-C would reach the child twice, and the second ends a run at once
         posix_spawnattr_setpgroup(&attributes, 0);
     }
+
     posix_spawnattr_setflags(&attributes, (short)(POSIX_SPAWN_SETSIGDEF | (log ? POSIX_SPAWN_SETPGROUP : 0)));
 
     const int reason = posix_spawnp(child, arguments[0], &actions, &attributes, arguments, environ);

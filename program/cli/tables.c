@@ -69,6 +69,7 @@ static SingeResult lines_append(LineFile *file, const char *text, size_t size, S
             if (ftruncate(file->fd, (off_t)file->size) != 0) return folder_fail(file->path, "cut", errno, error);
             return folder_fail(file->path, "write", reason, error);
         }
+
         done += (size_t)n;
     }
 
@@ -99,6 +100,7 @@ static SingeResult lines_read(const char *path, const char *header, uint64_t cou
         good = end && (size_t)(end - line) >= strlen(number) && memcmp(line, number, strlen(number)) == 0;
         if (good) at += (size_t)(end - line) + 1;
     }
+
     *size = at;
     if (good) return SINGE_OK;
 
@@ -162,6 +164,7 @@ SingeResult tables_cut(Tables *tables, int frames, const Totals *totals, SingeEr
         snprintf(what, sizeof what, "the %" PRIu64 " events up to frame %d", events, frames);
         result = lines_cut(&tables->events, events_header, events, 0, what, error);
     }
+
     return result;
 }
 
@@ -192,6 +195,7 @@ SingeResult tables_copy(const Folder *from, const Folder *to, const Scene *scene
         if (!result && to) result = file_write(parts[i].to, bytes.data, size, error);
         if (!result) bytes_free(&bytes);
     }
+
     return result;
 }
 
@@ -227,6 +231,7 @@ SingeResult tables_take_step(Tables *tables, const SingeSim *sim, SingeError *er
         *held = (HeldEvent){.event = events[i]};
         if (events[i].kind != SINGE_EVENT_PIECE_FREED) memcpy(held->uv, view.uv[events[i].element], sizeof held->uv);
     }
+
     return SINGE_OK;
 }
 

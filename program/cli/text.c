@@ -86,6 +86,7 @@ static const char *skip_value(const char *p, const char *end) {
         } else if (*p == ',' && depth == 0) return p;
         p++;
     }
+
     return NULL;
 }
 
@@ -109,10 +110,12 @@ bool text_json_member(const char *json, size_t size, const char *name, const cha
             *value_size = (size_t)(p - begin);
             return true;
         }
+
         p = skip_space(p, end);
         if (p >= end || *p != ',') return false;
         p = skip_space(p + 1, end);
     }
+
     return false;
 }
 
@@ -125,6 +128,7 @@ static int32_t read_hex(const char *text, const char *end) {
         if (!digit) return -1;
         value = 16 * value + (int32_t)((digit - digits) % 16);
     }
+
     return value;
 }
 
@@ -188,6 +192,7 @@ char *text_shell_quote(const char *text) {
         free(quoted);
         quoted = longer;
     }
+
     return quoted;
 }
 

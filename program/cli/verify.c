@@ -107,6 +107,7 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
             snprintf(error->message, sizeof error->message, "out of memory while frame %d was verified", frame);
             result = SINGE_ERROR_MEMORY;
         }
+
         *row = (Row){.vertices = cache.vertex_count,
                      .triangles = cache.triangle_count,
                      .near = findings->near,
@@ -140,6 +141,7 @@ static uint64_t print_table(const Verify *verify) {
             frames[f] += row->count[f] > 0;
             if (row->count[f] > verify->rows[worst[f]].count[f]) worst[f] = i;
         }
+
         bad += faults_of(row) > 0;
         all += faults_of(row);
         triangles += row->triangles;

@@ -112,9 +112,11 @@ static VideoResult movie_make(Console *console, const Folder *folder, const Movi
             free(line);
             line = longer;
         }
+
         console_more(line);
         free(line);
     }
+
     char *const texts[] = {path, name, input, final, rate, start, count};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) free(texts[i]);
     return result;

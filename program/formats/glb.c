@@ -91,6 +91,7 @@ static uint32_t picture_of(const OutputScene *scene, uint32_t sheet, uint32_t *b
         if (strcmp(scene->sheets[i].picture, scene->sheets[sheet].picture) == 0) return i;
         *before += picture_of(scene, i, &ignored) == i;
     }
+
     return sheet;
 }
 
@@ -109,6 +110,7 @@ static SingeResult put_pictures(GlbFile *f, const char *path, SingeError *error)
         sink_align(&f->data, 4);
         bytes_free(&bytes);
     }
+
     return SINGE_OK;
 }
 
@@ -299,6 +301,7 @@ static void list_corners(GlbMeshes *w, SheetPart *part) {
         p->local[corners[i]] = count;
         vertices[count++] = corners[i];
     }
+
     part->count = count;
 }
 
@@ -312,8 +315,10 @@ static int grid_of(const SingeSurface *s) {
             low = i && low < x ? low : x;
             high = i && high > x ? high : x;
         }
+
         side = fmaxf(side, high - low);
     }
+
     return side > 0 && isfinite(side) ? ilogbf(side) - 15 : -17;
 }
 

@@ -146,6 +146,7 @@ uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, Glb
             sink_float(&f->accessors, bounds[side][c]);
         }
     }
+
     sink_text(&f->accessors, box ? "]}" : "}");
     return f->view_count++;
 }

@@ -213,6 +213,7 @@ SingeResult ply_read_surface(const char *name, const uint8_t *bytes, size_t size
             if (!array) result = refuse_memory(error, "ply", name);
             memcpy((uint8_t *)surface + columns[i].array, &array, sizeof array);
         }
+
         if (!result) surface->triangles = store_new(allocator, surface->triangle_capacity, sizeof *surface->triangles);
         if (!result && !surface->triangles) result = refuse_memory(error, "ply", name);
     }

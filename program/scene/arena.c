@@ -26,6 +26,7 @@ void arena_destroy(SceneArena *arena) {
         free(arena->blocks);
         arena->blocks = next;
     }
+
     free(arena);
 }
 

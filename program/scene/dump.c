@@ -32,6 +32,7 @@ static void put_text(FILE *file, const char *text) {
         else if (*c < 0x20 || *c == 0x7f) fprintf(file, "\\u%04x", *c);
         else fputc(*c, file);
     }
+
     fputc('"', file);
 }
 
@@ -62,6 +63,7 @@ static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param,
         put_number(file, followed->keys[i].value, row->dimension);
         fputs(i + 1 < followed->key_count ? "}" : "}]", file);
     }
+
     if (followed->key_count) return;
     if (!field) {
         put_number(file, param->value, row->dimension);
@@ -81,6 +83,7 @@ static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param,
         fprintf(file, ", \"%s\": ", is_texture ? "texture" : "attribute");
         put_text(file, name ? name : "");
     }
+
     fputc('}', file);
 }
 
@@ -119,6 +122,7 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
             fprintf(file, "%s\"%s\"", between, output_formats[i].name);
             between = ", ";
         }
+
         fputc(']', file);
         break;
     }
@@ -177,6 +181,7 @@ static void dump_list(const Dumper *dumper, const SchemaRow *row, const void *ob
         if (!dumper->json) fputs("- ", dumper->file);
         dump_map(dumper, row->sub, items + i * row->sub->size, dumper->json ? indent : indent + 2, true);
     }
+
     if (dumper->json) fputc(']', dumper->file);
 }
 
@@ -209,6 +214,7 @@ static void dump_map(const Dumper *dumper, const Schema *schema, const void *obj
         dump_row(dumper, row, object, indent);
         first = false;
     }
+
     if (dumper->json) {
         dump_line(dumper, indent);
         fputc('}', dumper->file);

@@ -63,6 +63,7 @@ static void add_names(char *buffer, size_t size, const char *const *names) {
         if (last) expected_add(buffer, size, last);
         last = names[i];
     }
+
     expected_add(buffer, size, names[0] == last ? "" : " or ");
     expected_add(buffer, size, last);
 }

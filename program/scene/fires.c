@@ -35,6 +35,7 @@ static double carried(const SceneKey *keys, uint32_t count) {
         }
         length += sqrt(sum);
     }
+
     return length;
 }
 
@@ -50,6 +51,7 @@ static void add_motion(const Scene *scene, uint32_t index, Place *place, double 
         place->slack += carried(pin->keys, pin->key_count);
         if (pin->motion.given) place->slack = INFINITY;
     }
+
     for (uint32_t i = 0; i < scene->collider_count; i++) {
         place->slack += carried(scene->colliders[i].keys, scene->colliders[i].key_count);
         if (scene->colliders[i].motion.given) place->slack = INFINITY;
@@ -63,6 +65,7 @@ static void add_motion(const Scene *scene, uint32_t index, Place *place, double 
             blown += (double)wind[c] * (double)wind[c];
             flown += (double)scene->sheets[index].velocity[c] * (double)scene->sheets[index].velocity[c];
         }
+
         g = sqrt(g);
         place->slack += (sqrt(blown) + sqrt(flown)) * time;
 
@@ -77,6 +80,7 @@ static void add_motion(const Scene *scene, uint32_t index, Place *place, double 
             const double gap = place->high[2] - (double)collider->keys[0].position[2];
             if (gap >= 0) length = fmin(length, gap);
         }
+
         for (int c = 0; c < 3 && g > 0; c++) place->fall[c] = (double)gravity[c] / g * length;
     }
 }
@@ -101,6 +105,7 @@ static Place place_of(const Scene *scene, const SceneAssets *assets, uint32_t in
         }
         diagonal += (place.high[c] - place.low[c]) * (place.high[c] - place.low[c]);
     }
+
     for (size_t k = 0; k < 4 * (size_t)mesh->cell_count; k++) {
         const float *a = mesh->positions + 3 * (size_t)mesh->cells[k];
         const float *b = mesh->positions + 3 * (size_t)mesh->cells[k % 4 == 3 ? k - 3 : k + 1];
@@ -139,14 +144,17 @@ static double path_distance(const SceneSource *source, const Place *place) {
                     const double out = fmax(fmax(below, above), 0);
                     sum += out * out;
                 }
+
                 distance[side] = sqrt(sum);
             }
+
             least = fmin(least, fmin(distance[0], distance[1]));
             if (distance[0] < distance[1]) high = at[1];
             else low = at[0];
             if (a == b || least == 0) break;
         }
     }
+
     return least;
 }
 
@@ -163,6 +171,7 @@ static double heat_of(const Scene *scene, const SceneSource *source, const Place
             strength = fmax(strength, (double)source->strength[i].value);
         return place->start + fmax((double)def->flux, 0) * strength * time / place->capacity;
     }
+
     double conductance = 0;
     for (uint32_t i = 0; i < scene->source_count; i++)
         if ((scene->sources[i].def.kind == SINGE_SOURCE_BALL || scene->sources[i].def.kind == SINGE_SOURCE_SPOT))
@@ -184,8 +193,10 @@ static double particle_distance(const Mesh *mesh, const float *point) {
             x -= (double)point[c];
             sum += x * x;
         }
+
         nearest = fmin(nearest, sqrt(sum));
     }
+
     return nearest;
 }
 
@@ -240,6 +251,7 @@ static bool source_lights(const Scene *scene, const SceneAssets *assets, const S
                      "the source lights nothing: it brings a sheet to %.0f C at most, which ignites at %.0f C",
                      hottest - 273.15, ignition - 273.15);
     }
+
     return false;
 }
 
@@ -282,5 +294,6 @@ void scene_warn_of_fires(const Scene *scene, const SceneAssets *assets, const Si
                 source_lights(scene, assets, &scene->sources[i], places, lit, pass ? log : &silent))
                 lit = true;
     }
+
     free(places);
 }

@@ -62,6 +62,7 @@ static void put_quantity(FILE *file, const SchemaRow *row) {
         else if (*c == '(' || *c == ')') fprintf(file, "[%c]", *c);
         else fputc(*c, file);
     }
+
     if (row->dimension == DIM_ANGLE) fputs("|\u00b0", file);
     fputs(units[0] ? ")?" : ")", file);
     if (row->flags & ROW_INF) fputs("|inf", file);
@@ -173,6 +174,7 @@ static void put_value(Definitions *definitions, const SchemaRow *row) {
             fputs(", ", file);
             put_value(definitions, &row->sub->rows[i]);
         }
+
         fputs("]}", file);
         break;
     case ROW_STRENGTH:
@@ -182,6 +184,7 @@ static void put_value(Definitions *definitions, const SchemaRow *row) {
             put_quantity(file, row);
             fputs(", ", file);
         }
+
         fprintf(file, "{\"type\": \"array\", %s\"items\": ",
                 row->type == ROW_STRENGTH || (row->flags & ROW_KEYED) ? "\"minItems\": 1, " : "");
         put_reference(definitions, row->sub);
@@ -214,6 +217,7 @@ static void put_property(Definitions *definitions, const Schema *schema, int fir
         if (count++) fputs(", ", file);
         put_value(definitions, &schema->rows[i]);
     }
+
     fputs("]}", file);
 }
 
@@ -232,6 +236,7 @@ static void put_kind(FILE *file, const Schema *schema, int kind) {
                                   row_allowed(&schema->rows[j], 1u << kind));
         if (!allowed && is_first(schema, i)) fprintf(file, "%s\"%s\": false", count++ ? ", " : "", schema->rows[i].key);
     }
+
     fputs("}}}", file);
 }
 
@@ -262,6 +267,7 @@ static void put_map(Definitions *definitions, const Schema *schema) {
         fputs(count++ ? ",\n  " : "\n  ", file);
         put_kind(file, schema, kind);
     }
+
     fputc(']', file);
 }
 
@@ -275,5 +281,6 @@ void scene_json_schema(FILE *file) {
         put_map(&definitions, definitions.items[i]);
         fputc('}', file);
     }
+
     fputs("}}\n", file);
 }

@@ -160,6 +160,7 @@ void messages_sort(SceneMessages *messages, uint32_t first) {
             if ((by_text ? by_text : by_place) >= 0) break;
             messages->items[j] = messages->items[j - 1];
         }
+
         messages->items[j] = moved;
     }
 }
@@ -170,6 +171,7 @@ void scene_messages_print(const SceneMessages *messages, FILE *file) {
         fprintf(file, "%s: error: %s\n", message->origin, message->text);
         if (message->source) fprintf(file, "    %s\n    %*s\n", message->source, message->caret, "^");
     }
+
     if (messages->left_out) fprintf(file, "... and %u more\n", (unsigned)messages->left_out);
 }
 
@@ -179,6 +181,7 @@ void scene_messages_free(SceneMessages *messages) {
         free(messages->items[i].text);
         free(messages->items[i].source);
     }
+
     free(messages->items);
     *messages = (SceneMessages){0};
 }

@@ -25,6 +25,7 @@ static double nearest_in_cell(const double p[3], const double corners[4][3], dou
         weight[i] += share[1];
         weight[j] += share[2];
     }
+
     return best;
 }
 
@@ -50,6 +51,7 @@ void probes_find(const Scene *scene, SceneAssets *assets, SceneMessages *message
                 const float *from = in_uv ? uv : mesh->positions + 3 * vertex;
                 for (int x = 0; x < 3; x++) corners[k][x] = in_uv && x == 2 ? 0 : (double)from[x];
             }
+
             const double gap = nearest_in_cell(p, (const double(*)[3])corners, weight);
             if (!(gap < best)) continue;
             best = gap;

@@ -120,6 +120,7 @@ SingeResult sequence_read(const SceneMotion *motion, int frames, SceneSequence *
         result = path ? sequence_read_frame(motion, path, frame, length, sequence, error) : sequence_no_memory(error);
         free(path);
     }
+
     if (!result && (sequence->vertex_count == 0 || sequence->triangle_count == 0))
         result = refuse(error, SINGE_ERROR_MESH, "scene", -1, "%s: the motion's mesh has no faces",
                         short_name(motion->mesh.path));
@@ -247,6 +248,7 @@ static SingeResult follow_burn_by(const Scene *scene, SingeSim *sim, int frame, 
         pace = fmin(fmax(pace, base / most), base * most);
         pace = fmin(fmax(pace, 1e-6), 1e6);
     }
+
     const SingeResult result = singe_sim_set_pace(sim, (float)pace);
     if (result) *error = *singe_sim_error(sim);
     return result;
@@ -288,6 +290,7 @@ SingeResult follow_material(const Scene *scene, const SceneAssets *assets, Singe
         else if (by->texture.name && sequence_name_fits(by->texture.name))
             changed |= sequence_has(by->texture.path, frame);
     }
+
     if (!changed) return SINGE_OK;
 
     SingeSheetDef def;
@@ -320,6 +323,7 @@ SingeResult follow_material(const Scene *scene, const SceneAssets *assets, Singe
         result = singe_sim_set_material(sim, ids[sheet], &def.material, NULL);
         if (result) *error = *singe_sim_error(sim);
     }
+
     free(ids);
     for (int k = 0; k < SCENE_PARAM_SLOTS; k++) free((void *)fields[k].texture.values);
     return result;

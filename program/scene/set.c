@@ -76,6 +76,7 @@ static YamlNode *setter_walk(Setter *setter, YamlNode *root) {
             node->last = child;
             node->count++;
         }
+
         node = child;
     }
 
@@ -106,5 +107,6 @@ bool tree_set(SceneArena *arena, const SceneText *text, YamlNode *root, SceneMes
         value->next = target->next;
         *target = *value;
     }
+
     return !arena_failed(arena);
 }

@@ -72,6 +72,7 @@ static size_t number_length(const char *text) {
             c = power;
         }
     }
+
     return (size_t)(c - text);
 }
 
@@ -101,6 +102,7 @@ static bool unit_spelt(const char *text, const char *name) {
         name += strlen(spellings[i].piece);
         text += strlen(spellings[i].text);
     }
+
     return !*text;
 }
 

@@ -56,6 +56,7 @@ bool value_float(Reader *reader, const SchemaRow *row, const YamlNode *node, flo
                     units[0] ? units : "none, only a bare number");
         return false;
     }
+
     if (fault) {
         value_wrong(reader, node, row);
         return false;
@@ -83,6 +84,7 @@ static bool read_whole(Reader *reader, const SchemaRow *row, const YamlNode *nod
         large = large || (good && value > (highest - digit) / 10);
         value = value * 10 + digit;
     }
+
     if (!good) {
         value_wrong(reader, node, row);
         return false;
@@ -160,6 +162,7 @@ bool value_word(Reader *reader, const SchemaRow *row, const YamlNode *node, cons
         }
         nearest_offer(&nearest, names[i]);
     }
+
     char expected[240], seen[NODE_WORDS], hint[80];
     SchemaRow choice = *row;
     choice.type = ROW_ENUM;
@@ -184,6 +187,7 @@ void value_order(Reader *reader, const SchemaRow *row, const YamlNode *node, Sin
                         enum_words.SingeColour[colour]);
             return;
         }
+
         seen |= 1 << colour;
         *field++ = (SingeColour)colour;
     }
@@ -206,6 +210,7 @@ void value_formats(Reader *reader, const SchemaRow *row, const YamlNode *node, O
         }
         set |= 1u << format;
     }
+
     *field = set | 1u << OUTPUT_ply;
 }
 
@@ -245,6 +250,7 @@ void value_file(Reader *reader, const SchemaRow *row, const YamlNode *node, Scen
                     row->key);
         return;
     }
+
     field->location = node->location;
     field->name = field->path = value_join(reader->arena, reader->prefix, "", node->text);
     if (!reader->base_dir || !field->name) return;

@@ -14,6 +14,7 @@ static double diagonal(const Mesh *mesh) {
         }
         sum += (high - low) * (high - low);
     }
+
     return sqrt(sum);
 }
 

@@ -77,6 +77,7 @@ static void write_material(FILE *out, const char *name, const SingeMaterialDef *
                 same = a->to == b->to && a->field->kind == b->field->kind && p->scale == q->scale &&
                        p->octaves == q->octaves && p->seed == q->seed;
             }
+
             if (!same) write_param(out, &params[i], colour, a);
         }
     if (def->reference_grammage != standard.reference_grammage) {
@@ -127,6 +128,7 @@ int main(int argc, char **argv) {
         for (const char *c = name; *c; c++) fputc(*c == '-' ? '_' : *c, out);
         fprintf(out, "},\n");
     }
+
     fprintf(out, "    {0},\n};\n");
     if (fclose(out)) return 1;
     if (argc < 2) return fwrite(text, 1, size, stdout) == size && fflush(stdout) == 0 ? 0 : 1;

@@ -54,6 +54,7 @@ static size_t scalar_unquote(const char *c, const char *end, char *out) {
         }
         line = length;
     }
+
     return length;
 }
 
@@ -264,6 +265,7 @@ static SingeResult sink_work(void *context, IsolateAnswer *answer, SingeError *e
             sink_event(sink, YAML_FAULT, 0, found->msg, found->msg ? strlen(found->msg) : 0);
             any = true;
         }
+
         if (!any) sink_event(sink, YAML_FAULT, 0, NULL, 0);
     }
 

@@ -176,10 +176,12 @@ static bool masks_error(const FitTarget *target, const Sweep *sweep, uint32_t ro
                 all++;
                 different += burnt == (fresh[pixel] != 0);
             }
+
             if (good) sum += all ? (double)different / all : 1;
             image_free(&image);
             bytes_free(&bytes);
         }
+
         free(mask);
     }
 
@@ -324,6 +326,7 @@ static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
             fit->noted = longer;
         }
     }
+
     free(line);
     return code;
 }
@@ -484,6 +487,7 @@ int command_fit(int argc, char **argv) {
         free(fit.noted);
         free(fit.errors);
     }
+
     free(target.curve.times);
     free(target.curve.temperatures);
     sweep_close(&sweep);

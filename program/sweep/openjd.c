@@ -32,6 +32,7 @@ ExitCode sweep_print_openjd(const Sweep *sweep) {
         console_error(sweep->console, "--openjd: Open Job Description reserves '{{'; rename %s", shown(texts[i]).text);
         return EXIT_INPUT;
     }
+
     if (strlen(sweep->plan.name) > NAME_MAX_OPENJD) {
         console_error(sweep->console, "--openjd: a job's name has at most %d characters: %s", NAME_MAX_OPENJD,
                       shown(sweep->plan.name).text);
@@ -54,6 +55,7 @@ ExitCode sweep_print_openjd(const Sweep *sweep) {
         fputs("    },\n", stdout);
         free(row);
     }
+
     printf("    {\n      \"name\": \"Report\",\n%s",
            *rows ? "      \"dependencies\": [{\"dependsOn\": \"Rows\"}],\n" : "");
     print_script(sweep, "\"--report\"");

@@ -163,6 +163,7 @@ static ExitCode note_or_compare(Sweep *sweep, const char *name, const char *text
                           path);
         code = EXIT_INPUT;
     }
+
     bytes_free(&bytes);
     free(path);
     return code;
@@ -266,6 +267,7 @@ char *sweep_due_rows(const Sweep *sweep) {
         free(rows);
         rows = longer;
     }
+
     return rows;
 }
 

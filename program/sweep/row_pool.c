@@ -150,6 +150,7 @@ static void fill_slots(Pool *pool) {
                 pool->queue[pool->queued - 1] = row;
             }
         }
+
         if (state == ROW_ELSEWHERE) continue;
         if (state == ROW_COMPLETE) { // by another process
             pool->complete++;
@@ -182,6 +183,7 @@ static void run_queue(Pool *pool) {
             if (stop) kill(slot->process, SIGTERM);
             if (waitpid(slot->process, &status, WNOHANG) == slot->process) next_stage(pool, slot, status);
         }
+
         fill_slots(pool);
 
         uint32_t running = 0;
@@ -200,6 +202,7 @@ static void run_queue(Pool *pool) {
                                                                 .frames_all = all,
                                                                 .seconds_left = each * (double)(all - done)});
         }
+
         if (over) break;
         nanosleep(&pause, NULL);
     }

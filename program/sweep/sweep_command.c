@@ -205,6 +205,7 @@ int command_sweep(int argc, char **argv) {
         if (!code) code = sweep_rows(&sweep);
         sweep_close(&sweep);
     }
+
     set_free(&options.slurm);
     return code;
 }

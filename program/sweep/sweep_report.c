@@ -242,8 +242,10 @@ static void write_sheet(const Report *report, FILE *file) {
                 write_xml(file, picture);
                 fputs("\"/>\n", file);
             }
+
             free(picture);
         }
+
         fprintf(file, "<text x=\"%u\" y=\"%u\"><tspan font-weight=\"bold\">%u</tspan>%s</text>\n", x + 8,
                 y + TILE_HEIGHT + TILE_LINE, row + 1, report->complete[row] ? "" : " not complete");
         for (uint32_t p = 0; p < plan->parameter_count; p++) {
@@ -310,6 +312,7 @@ ExitCode sweep_report(Sweep *sweep) {
             all = folder_has(png);
             free(png);
         }
+
         if (all) video_make(sweep->console, &folder, fps, 1, (int)sweep->frames[row]);
         folder_free(&folder);
         free(path);

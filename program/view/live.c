@@ -55,6 +55,7 @@ static void remove_left(const char *base) {
         }
         free(path);
     }
+
     closedir(entries);
 }
 
@@ -104,6 +105,7 @@ static void start(View *view) {
         command[n++] = live->scene; // and NULL
         reason = spawn_program(command, live->log, &live->process);
     }
+
     if (reason) {
         live->process = 0;
         console_error(view->console, "cannot run %s: %s", live->program, strerror(reason));
@@ -124,6 +126,7 @@ SingeResult live_begin(View *view, SingeError *error) {
         live->room = NULL;
         return SINGE_ERROR_FILE;
     }
+
     live->lock = open_lock(live->room, O_CREAT); // held to the end; runs inherit it, and hold it if they outlive us
     start(view);
     return SINGE_OK;

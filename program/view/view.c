@@ -61,6 +61,7 @@ static ExitCode view_parse(int argc, char **argv, ViewOptions *o, bool *done) {
         }
         if (!good) return EXIT_INPUT;
     }
+
     return EXIT_GOOD;
 }
 
@@ -139,6 +140,7 @@ int command_view(int argc, char **argv) {
         shown_close(&view.shown);
         live_end(&view);
     }
+
     set_free(&options.sets);
     return code;
 }
