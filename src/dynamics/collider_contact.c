@@ -35,10 +35,10 @@ enum { CONTACT_FEW = 4, CONTACT_LISTED = 256 };
 /// A position this near outside a surface, as a share of the offset or in m, counts as on it.
 static const float CONTACT_SKIN = 1.0f / 16, CONTACT_SKIN_MIN = 1e-6f;
 
-/// Shapes whose distance a few operations give.
+/// Shapes whose distance a few operations give. Planes have a kernel of their own.
 static bool collider_is_simple(const Collider *collider) {
-    return collider->def.kind == SINGE_COLLIDER_PLANE || collider->def.kind == SINGE_COLLIDER_SPHERE ||
-           collider->def.kind == SINGE_COLLIDER_BOX || collider->def.kind == SINGE_COLLIDER_CAPSULE;
+    return collider->def.kind == SINGE_COLLIDER_SPHERE || collider->def.kind == SINGE_COLLIDER_BOX ||
+           collider->def.kind == SINGE_COLLIDER_CAPSULE;
 }
 
 MovingCollider contact_collider(const Collider *collider, double before, double after) {
@@ -250,8 +250,7 @@ static inline Float4 simple_distance(const SingeColliderDef *def, Float3s p, Flo
         p.z = p.z - float4_min(float4_max(p.z, -half), half);
         break;
     }
-    case SINGE_COLLIDER_SPHERE: break;
-    default: *normal = (Float3s){zero, zero, one}; return p.z;
+    default: break; // a sphere
     }
 
     const Float4 length = float4_sqrt(float3s_dot(p, p)), inverse = 1 / length;
@@ -347,27 +346,20 @@ static inline Float3 contact_previous(const Contact *job, int i) {
 static inline Float4Mask contact_simple(const Contact *job, const MovingCollider *moving, const int particle[4],
                                         Float4Mask moves, Float3s *x, Float4Mask *through) {
     const SingeColliderDef *def = &moving->collider->def;
-    const bool plane = def->kind == SINGE_COLLIDER_PLANE;
     const Float3s origin = float3s_all(moving->after.position);
     const Float3s local = float3s_rotate(moving->after.rotation, float3s_sub(*x, origin), true);
     Float3s normal;
     const Float4 distance = simple_distance(def, local, &normal);
     Float4Mask touches = moves & (distance < def->offset);
-    *through = (Float4Mask){0, 0, 0, 0};
-    if (plane && !float4_bits(touches)) return touches;
-
-    // a plane is never passed
     const Float3s velocity = float3s_load((const float(*)[4])job->dynamics->velocity, particle);
     const Float3s previous =
         float3s_mad(float3s_load((const float(*)[4])job->plan->predicted, particle), velocity, float4_all(-job->h));
-    if (!plane) {
-        const Float3s from =
-            float3s_rotate(moving->before.rotation, float3s_sub(previous, float3s_all(moving->before.position)), true);
-        const Float3s displacement = float3s_sub(local, from);
-        *through = moves & (distance < float4_sqrt(float3s_dot(displacement, displacement)));
-        touches &= ~*through;
-        if (!float4_bits(touches)) return touches;
-    }
+    const Float3s from =
+        float3s_rotate(moving->before.rotation, float3s_sub(previous, float3s_all(moving->before.position)), true);
+    const Float3s displacement = float3s_sub(local, from);
+    *through = moves & (distance < float4_sqrt(float3s_dot(displacement, displacement)));
+    touches &= ~*through;
+    if (!float4_bits(touches)) return touches;
 
     // out
     const Float4 depth = def->offset - distance;
@@ -459,7 +451,7 @@ static uint64_t contact_colliders(const Contact *job, int begin, int end) {
     return contacts;
 }
 
-/// Contact with a plane, in lanes. What is left over goes as with other colliders.
+/// Contact with a plane, in lanes; of what is left over one by one.
 static uint64_t contact_plane(const Contact *job, uint32_t c, int begin, int end) {
     const MovingCollider *moving = &job->plan->colliders[c];
     const int whole = end - (end - begin) % 4;
@@ -472,10 +464,12 @@ static uint64_t contact_plane(const Contact *job, uint32_t c, int begin, int end
                               .is_still = moving->is_still,
                               .offset = moving->collider->def.offset,
                               .friction = moving->collider->def.friction};
-    Contact rest = *job;
-    rest.from = c;
-    rest.to = c + 1;
-    return job->plan->kernels->plane(&plane, (size_t)begin, (size_t)whole) + contact_colliders(&rest, whole, end);
+    uint64_t contacts = job->plan->kernels->plane(&plane, (size_t)begin, (size_t)whole);
+    for (int i = whole; i < end; i++) {
+        float *position = job->dynamics->position[i];
+        if (position[3] != 0) contacts += contact_particle(moving, plane.offset, contact_previous(job, i), position);
+    }
+    return contacts;
 }
 
 static bool contact_is_plane(const Contact *job, uint32_t c) {

@@ -18,7 +18,7 @@
 /// contact, whatever the shape. A plane's box is infinite except along its normal.
 typedef struct MovingCollider {
     const Collider *collider;
-    bool is_simple; ///< a plane, sphere, box or capsule: four particles at once
+    bool is_simple; ///< a sphere, box or capsule: four particles at once
     bool is_still;  ///< before and after are the same
     Pose before, after;
     Float3 axis[3];                    ///< of the box, which has `after.position` for its origin

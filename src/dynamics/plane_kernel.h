@@ -1,5 +1,5 @@
-// Contact of as many particles with a plane as there are lanes: see collider_contact.c, whose contact_simple computes the
-// same to the bit. One file per instruction set defines the operations on lanes and quadruples, as for
+// Contact of as many particles with a plane as there are lanes: see collider_contact.c, whose contact_particle computes
+// the same to the bit. One file per instruction set defines the operations on lanes and quadruples, as for
 // strand_kernel.h, and includes this.
 #include "dynamics/lane_points.h"
 #include "dynamics/plane.h"
