@@ -1,6 +1,7 @@
 // The program's readers of meshes and its writer of USD for JavaScript: a module of its own, singe-files.wasm, which a
 // page loads when a file comes or goes. Each call has a new instance of it, so nothing is freed.
 #include "formats/usd.h"
+#include "singe/mesh.h"
 
 #include <assert.h>
 #include <stdint.h>
@@ -9,6 +10,7 @@
 static_assert(sizeof(void *) == 4, "JavaScript passes pointers as words");
 
 const char *files_read_mesh(const char *name, const uint8_t *bytes, size_t size, uintptr_t words[7]);
+const char *files_make_quads(uintptr_t words[7]);
 const char *files_write_usdc(const char *name, const float colour[3], uintptr_t *words);
 
 /// What the module keeps of its one call.
@@ -23,6 +25,27 @@ const char *files_read_mesh(const char *name, const uint8_t *bytes, size_t size,
     const uintptr_t found[7] = {mesh.vertex_count,         mesh.face_count,       mesh.corner_count,
                                 (uintptr_t)mesh.positions, (uintptr_t)mesh.first, (uintptr_t)mesh.corners,
                                 (uintptr_t)mesh.uv};
+    memcpy(words, found, sizeof found);
+    return NULL;
+}
+
+/// Makes quads of faces. `words` has vertices, faces, and where lie: positions, corners, corners of each face or 0, uv of
+/// vertices or 0, uv of corners or 0. It becomes vertices, cells, and where lie: positions, cells, uv of vertices or 0, uv
+/// of corners or 0. Returns as above.
+const char *files_make_quads(uintptr_t words[7]) {
+    SingeMeshDef def = singe_default_mesh();
+    def.vertex_count = words[0];
+    def.face_count = words[1];
+    def.positions = (const float *)words[2];
+    def.corners = (const uint32_t *)words[3];
+    def.face_sizes = (const uint32_t *)words[4];
+    def.uv = (const float *)words[5];
+    def.corner_uv = (const float *)words[6];
+    SingeMesh *mesh;
+    if (singe_mesh_create(&def, &mesh, &error)) return error.message;
+    const SingeMeshView view = singe_mesh_view(mesh);
+    const uintptr_t found[6] = {view.vertex_count,     view.cell_count,    (uintptr_t)view.positions,
+                                (uintptr_t)view.cells, (uintptr_t)view.uv, (uintptr_t)view.corner_uv};
     memcpy(words, found, sizeof found);
     return NULL;
 }

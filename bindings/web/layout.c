@@ -182,20 +182,6 @@ static const LayoutField fields[] = {
     FIELD(seed, 1, UINT32),
 #undef STRUCT
 #undef STRUCT_NAME
-#define STRUCT SingeMeshDef
-#define STRUCT_NAME "mesh"
-    PART(vertex_count),
-    PART(positions),
-    PART(face_count),
-    PART(face_sizes),
-    PART(corners),
-    PART(uv),
-    PART(corner_uv),
-    FIELD(quads, 1, INT),
-    FIELD(weld, 1, FLOAT),
-    FIELD(smallest, 1, FLOAT),
-#undef STRUCT
-#undef STRUCT_NAME
 #define STRUCT SingeError
 #define STRUCT_NAME "error"
     FIELD(code, 1, INT),
@@ -344,18 +330,29 @@ static const LayoutWord words[] = {
 #define SIZE(name, type) \
     { name, sizeof(type) }
 static const LayoutStruct structs[] = {
-    SIZE("sim", SingeSimDef),           SIZE("wind", SingeWindDef),
-    SIZE("solver", SingeSolverDef),     SIZE("gas", SingeGasDef),
-    SIZE("contact", SingeContactDef),   SIZE("sheet", SingeSheetDef),
-    SIZE("material", SingeMaterialDef), SIZE("source", SingeSourceDef),
-    SIZE("collider", SingeColliderDef), SIZE("pin", SingePinDef),
-    SIZE("grid", SingeGridDef),         SIZE("mesh", SingeMeshDef),
-    SIZE("meshview", SingeMeshView),    SIZE("param", SingeParam),
-    SIZE("field", SingeField),          SIZE("texture", SingeTexture),
-    SIZE("error", SingeError),          SIZE("view", SingeView),
-    SIZE("surface", SingeSurface),      SIZE("air", SingeGas),
-    SIZE("stats", SingeStats),          SIZE("event", SingeEvent),
-    SIZE("counts", SingeCounts),        SIZE("pose", SingePoseKey),
+    SIZE("sim", SingeSimDef),
+    SIZE("wind", SingeWindDef),
+    SIZE("solver", SingeSolverDef),
+    SIZE("gas", SingeGasDef),
+    SIZE("contact", SingeContactDef),
+    SIZE("sheet", SingeSheetDef),
+    SIZE("material", SingeMaterialDef),
+    SIZE("source", SingeSourceDef),
+    SIZE("collider", SingeColliderDef),
+    SIZE("pin", SingePinDef),
+    SIZE("grid", SingeGridDef),
+    SIZE("meshview", SingeMeshView),
+    SIZE("param", SingeParam),
+    SIZE("field", SingeField),
+    SIZE("texture", SingeTexture),
+    SIZE("error", SingeError),
+    SIZE("view", SingeView),
+    SIZE("surface", SingeSurface),
+    SIZE("air", SingeGas),
+    SIZE("stats", SingeStats),
+    SIZE("event", SingeEvent),
+    SIZE("counts", SingeCounts),
+    SIZE("pose", SingePoseKey),
 };
 
 /// The lists, each by its address and its length.

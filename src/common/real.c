@@ -35,6 +35,8 @@ double portable_exp(double x) {
     return (1 + real_exp_series(r)) * real_power(half) * real_power((int)k - half);
 }
 
+double portable_exp2(double x) { return portable_exp(x * 0.69314718055994530942); }
+
 float portable_expf(float x) { return (float)portable_exp((double)x); }
 
 float portable_expm1f(float x) {
@@ -77,7 +79,7 @@ float portable_powf(float x, float y) {
 }
 
 /// sin(x + turn pi/2).
-static float real_wave(float x, int turn) {
+static double real_wave(double x, int turn) {
     static const double high = 0x1.921fb544p0, mid = 0x1.0b4611a6p-34, low = 0x1.3198a2e037073p-69; // of pi/2
     static const double sine[] = {1.0 / 355687428096000, -1.0 / 1307674368000, 1.0 / 6227020800, -1.0 / 39916800,
                                   1.0 / 362880,          -1.0 / 5040,          1.0 / 120,        -1.0 / 6};
@@ -86,19 +88,21 @@ static float real_wave(float x, int turn) {
     if (!isfinite(x)) return NAN;
 
     // x less the nearest multiple k of pi/2, which is in parts of 33, 33 and 53 bits
-    double y = (double)x, k = floor(y * (2 / PI) + 0.5);
-    double r = ((y - k * high) - k * mid) - k * low;
+    double k = floor(x * (2 / PI) + 0.5);
+    double r = ((x - k * high) - k * mid) - k * low;
     int quarter = ((int)(k - 4 * floor(0.25 * k)) + turn) & 3;
 
     const double *over_factorial = quarter & 1 ? cosine : sine;
     double square = r * r, sum = 0;
     for (int i = 0; i < 8; i++) sum = sum * square + over_factorial[i];
     double value = quarter & 1 ? 1 + square * sum : r + r * square * sum;
-    return (float)(quarter & 2 ? -value : value);
+    return quarter & 2 ? -value : value;
 }
 
-float portable_sinf(float x) { return real_wave(x, 0); }
-float portable_cosf(float x) { return real_wave(x, 1); }
+float portable_sinf(float x) { return (float)real_wave((double)x, 0); }
+float portable_cosf(float x) { return (float)real_wave((double)x, 1); }
+double portable_sin(double x) { return real_wave(x, 0); }
+double portable_cos(double x) { return real_wave(x, 1); }
 
 /// atan t for 0 <= t <= 1: a quarter of the angle has a tangent of 0.199 at most.
 static double real_atan(double t) {

@@ -20,6 +20,11 @@ float portable_acosf(float x);
 float portable_atan2f(float y, float x);
 /// Accurate to 1e-15 of the result.
 double portable_exp(double x);
+/// Accurate to 1e-15 of the result for |x| of a few units.
+double portable_exp2(double x);
+/// Accurate to 1e-15; |x| at most 1e6.
+double portable_sin(double x);
+double portable_cos(double x);
 /// x >= 0.
 double portable_cbrt(double x);
 
@@ -38,6 +43,9 @@ static inline float real_cosf(float x) { return REAL(cosf)(x); }
 static inline float real_acosf(float x) { return REAL(acosf)(x); }
 static inline float real_atan2f(float y, float x) { return REAL(atan2f)(y, x); }
 static inline double real_exp(double x) { return REAL(exp)(x); }
+static inline double real_exp2(double x) { return REAL(exp2)(x); }
+static inline double real_sin(double x) { return REAL(sin)(x); }
+static inline double real_cos(double x) { return REAL(cos)(x); }
 static inline double real_cbrt(double x) { return REAL(cbrt)(x); }
 
 #undef REAL

@@ -8,6 +8,7 @@
 // with mean 0 and mean square 1.
 
 #include "mesh/polygons.h"
+#include "common/real.h"
 #include "common/store.h"
 #include "mesh/to_quads.h"
 
@@ -29,8 +30,8 @@ static double grid_noise(double x, double y, double wavelength, uint32_t seed) {
     double sum = 0;
     for (uint32_t k = 0; k < WAVES; k++) {
         double angle = pi * ((double)k + grid_random(seed, 3 * k)) / WAVES;
-        double f = 2 * pi / wavelength * exp2(grid_random(seed, 3 * k + 1) - 0.5);
-        sum += cos(f * (cos(angle) * x + sin(angle) * y) + 2 * pi * grid_random(seed, 3 * k + 2));
+        double f = 2 * pi / wavelength * real_exp2(grid_random(seed, 3 * k + 1) - 0.5);
+        sum += real_cos(f * (real_cos(angle) * x + real_sin(angle) * y) + 2 * pi * grid_random(seed, 3 * k + 2));
     }
     return sum * sqrt(2.0 / WAVES);
 }

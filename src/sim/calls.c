@@ -153,7 +153,7 @@ static const float *velocities_read(const SingeSim *sim, SingeSheetId id, uint32
         WRITE_##A WRITE_##B WRITE_##C                                                                              \
     }                                                                                                              \
     SingeResult singe_sim_##name(SingeSim *sim PARAMETERS_##A PARAMETERS_##B PARAMETERS_##C) {                     \
-        if (!sim->recorder) return call_##name(sim ARGUMENTS_##A ARGUMENTS_##B ARGUMENTS_##C);                     \
+        if (!sim_recorder(sim)) return call_##name(sim ARGUMENTS_##A ARGUMENTS_##B ARGUMENTS_##C);                 \
         RECORD(sim->recorder, number, tape) { write_##name(tape, sim ARGUMENTS_##A ARGUMENTS_##B ARGUMENTS_##C); } \
         recorder_flush(sim->recorder);                                                                             \
         SingeResult result = call_##name(sim ARGUMENTS_##A ARGUMENTS_##B ARGUMENTS_##C);                           \

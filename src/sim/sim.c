@@ -125,10 +125,15 @@ SingeResult singe_sim_create(const SingeSimDef *def, SingeSim **sim, SingeError 
 }
 
 SingeResult sim_record(SingeSim *sim, const uint8_t *bytes, size_t size, SingeError *error) {
+#ifdef __wasm__
+    (void)sim, (void)bytes, (void)size, (void)error;
+    return SINGE_OK;
+#else
     if (!sim->def.record.write) return SINGE_OK;
     sim->recorder = recorder_open(&sim->def, bytes, size);
     if (sim->recorder) return SINGE_OK;
     return error_set(error, SINGE_ERROR_MEMORY, "simulation", -1, "out of memory");
+#endif
 }
 
 /// Frees what sim_build made, also so that a failed commit can be tried again.
@@ -158,7 +163,7 @@ static void sim_unbuild(SingeSim *sim) {
 void singe_sim_destroy(SingeSim *sim) {
     if (!sim) return;
     Memory *memory = &sim->memory;
-    recorder_close(sim->recorder);
+    recorder_close(sim_recorder(sim));
     pool_destroy(memory, sim->pool);
     for (uint32_t i = 0; i < sim->sources.count; i++) sim_free_source(sim, &sim->sources.items[i]);
     for (uint32_t i = 0; i < sim->colliders.count; i++) collider_free(memory, &sim->colliders.items[i]);
@@ -289,6 +294,6 @@ SingeResult call_commit(SingeSim *sim) {
     sim->committed = true;
     shell_assert(&sim->shell, &sim->state);
     sim_log_commit(sim);
-    if (sim->recorder) recorder_state(sim->recorder, &sim->shell, &sim->state);
+    if (sim_recorder(sim)) recorder_state(sim_recorder(sim), &sim->shell, &sim->state);
     return SINGE_OK;
 }

@@ -65,6 +65,17 @@ struct SingeSim {
 /// One step, for singe_sim_step and singe_sim_advance.
 SingeResult sim_step(SingeSim *sim);
 
+/// Its recorder; NULL: nothing is recorded. A module of WebAssembly cannot be given the hook, so that all that writes
+/// recordings is left out of it.
+static inline Recorder *sim_recorder(const SingeSim *sim) {
+#ifdef __wasm__
+    (void)sim;
+    return NULL;
+#else
+    return sim->recorder;
+#endif
+}
+
 /// Makes an empty simulation, without a recorder.
 SingeResult sim_make(const SingeSimDef *def, SingeSim **sim, SingeError *error);
 

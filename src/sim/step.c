@@ -48,8 +48,8 @@ StepContext sim_context(SingeSim *sim, const SingeView *view) {
                          .sources = &sim->sources,
                          .wind = &sim->def.wind,
                          .view = view,
-                         .heard = sim->recorder ? recorder_hear : NULL,
-                         .hearer = sim->recorder,
+                         .heard = sim_recorder(sim) ? recorder_hear : NULL,
+                         .hearer = sim_recorder(sim),
                          .pool = sim->pool,
                          .events = &sim->events,
                          .error = &sim->error,
@@ -171,7 +171,7 @@ SingeResult sim_step(SingeSim *sim) {
     sim->state.step++;
     sim->state.time = (double)sim->state.step * (double)sim->def.time_step;
     sim->timers.steps++;
-    if (sim->recorder) recorder_state(sim->recorder, &sim->shell, &sim->state);
+    if (sim_recorder(sim)) recorder_state(sim_recorder(sim), &sim->shell, &sim->state);
 
     // with assertions: checks everything that a step may have changed
     shell_assert(&sim->shell, &sim->state);

@@ -49,6 +49,8 @@ TEST(doubles_are_close) {
     for (int i = 1; i < 100000; i++) {
         double x = 0.013 * i - 700, y = 1e-3 * i * i;
         assert_true(fabs(portable_exp(x) / exp(x) - 1) < 1e-15);
+        assert_true(fabs(portable_exp2(x / 100) / exp2(x / 100) - 1) < 2e-15);
+        assert_true(fabs(portable_sin(x) - sin(x)) < 1e-15 && fabs(portable_cos(x) - cos(x)) < 1e-15);
         assert_true(fabs(portable_cbrt(y) / cbrt(y) - 1) < 1e-15);
     }
 }

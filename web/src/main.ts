@@ -6,7 +6,7 @@ import { FLOATS } from "./fields.js";
 import { glbOf } from "./glb.js";
 import type { Frame, FromWorker, Shape, ToWorker } from "./messages.js";
 import { Renderer } from "./renderer.js";
-import { shapeOf } from "./shape.js";
+import { placed } from "./shape.js";
 import { FireSound } from "./sound.js";
 import { fromLink, MATERIALS, PLACES, RANGES, SHEET, TIME_STEP, toLink, toYaml, type Place, type Point, type Settings, type Slider } from "./scene.js";
 
@@ -499,7 +499,7 @@ async function takeFile(file: File): Promise<void> {
         if (file.size > FILE_MOST) throw new Error(`it has more than ${FILE_MOST / 1e6} MB`);
         if (/\.(obj|ply|stl|glb|gltf)$/i.test(file.name)) {
             const reader = await files().catch(() => { throw new Error("the reader of meshes could not be loaded"); });
-            shape = shapeOf(reader.readMesh(file.name, new Uint8Array(await file.arrayBuffer())), file.name);
+            shape = reader.quads(placed(reader.readMesh(file.name, new Uint8Array(await file.arrayBuffer())), file.name));
             shapeName = file.name;
             renderer.print((picture = null));
             settings = { ...settings, begin: false };

@@ -1,9 +1,9 @@
 // Between the page and its worker.
-import type { Surface } from "singe";
+import type { FileQuads, Surface } from "singe";
 import type { Fire, Lights } from "./fields.js";
 import type { Point, Settings, Stroke } from "./scene.js";
 
-export interface Shape { positions: Float32Array; corners: Uint32Array; sizes: Uint32Array; corner_uv: Float32Array | null }
+export type Shape = FileQuads;
 
 export type ToWorker =
     | { kind: "load"; wasm: string }

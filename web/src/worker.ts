@@ -58,9 +58,7 @@ function begin(wanted: Settings, shape: Shape | null, linked: Stroke[], pinned: 
     const made = singe.create(simulationOptions(wanted)), where = PLACES[shape ? "table" : wanted.place];
     try {
         const material = materialOptions(wanted), place = { rotate: where.rotate, translate: where.translate, drop_pieces_below: 4e-6 };
-        const added = shape
-            ? made.addSheet({ positions: shape.positions, corners: shape.corners, sizes: shape.sizes, ...(shape.corner_uv ? { corner_uv: shape.corner_uv } : {}) }, material, place)
-            : made.addSheet(gridOf(wanted), material, place);
+        const added = shape ? made.addSheet(shape, material, place) : made.addSheet(gridOf(wanted), material, place);
         made.commit();
         sim?.destroy();
         sim = made;

@@ -323,6 +323,10 @@ const CASES = {
         assert.deepEqual([...Array(12).keys()].filter((v) => !places[4 * v + 3]), [2, 5]);
         assert.deepEqual([...places.slice(28, 32)], [7, 1, 0, 1]);
     },
+    async "the core has at most 200 kB, all of the page 600 kB"() {
+        const [core, all] = (await readFile(new URL("../dist/size.txt", import.meta.url), "utf8")).split(" ").map(Number);
+        assert.ok(core > 50_000 && core <= 200_000 && all <= 600_000, `${core} and ${all} bytes gzipped; without wasm-opt (binaryen) the core is larger`);
+    },
     async "without WebGL 2 the page says so"() {
         const other = await page.context().browser().newPage();
         await other.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });

@@ -1,7 +1,7 @@
 // Files of meshes in, USD out, by the readers and the writer of the command `singe` (files.c): a module of its own, which
 // is needed only when a file comes or goes.
 import type { Exports } from "./memory.js";
-import type { Faces, Surface } from "./index.js";
+import type { Faces, Quads, Surface } from "./index.js";
 
 /** The fields of SingeSurface, in its order. */
 const FIELDS = [
@@ -10,6 +10,8 @@ const FIELDS = [
 ] as const;
 
 export interface FileFaces extends Faces { positions: Float32Array; corners: Uint32Array; sizes: Uint32Array; corner_uv?: Float32Array }
+
+export interface FileQuads extends Quads { positions: Float32Array; cells: Uint32Array; uv?: Float32Array; corner_uv?: Float32Array }
 
 export class Files {
     constructor(private readonly module: WebAssembly.Module) {}
@@ -26,6 +28,20 @@ export class Files {
         return {
             positions: floats(words(position, 3 * vertices)), corners: words(corner, corners).slice(),
             sizes: Uint32Array.from({ length: faces }, (_, i) => begins[i + 1]! - begins[i]!), ...(uv ? { corner_uv: floats(words(uv, 2 * corners)) } : {}),
+        };
+    }
+
+    /** Faces of any kind as the cells of a sheet (docs/meshes.md): repaired, or refused with the face that is wrong. */
+    quads({ positions, corners, sizes, uv, corner_uv }: Faces): FileQuads {
+        const { put, room, call, words } = this.begin(), out = room(28), real = (list?: ArrayLike<number>) => (list ? put(bytesOf(Float32Array.from(list))) : 0);
+        const given = [positions.length / 3, sizes ? sizes.length : corners.length / 3, real(positions), put(bytesOf(Uint32Array.from(corners))),
+            sizes ? put(bytesOf(Uint32Array.from(sizes))) : 0, real(uv), real(corner_uv)];
+        words(out, 7).set(given); // now that the memory grows no more
+        fail(words, call.files_make_quads!(out));
+        const [vertices, cells, position, cell, flat, seams] = words(out, 6) as unknown as [number, number, number, number, number, number];
+        return {
+            positions: floats(words(position, 3 * vertices)), cells: words(cell, 4 * cells).slice(),
+            ...(flat ? { uv: floats(words(flat, 2 * vertices)) } : {}), ...(seams ? { corner_uv: floats(words(seams, 8 * cells)) } : {}),
         };
     }
 

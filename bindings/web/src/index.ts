@@ -29,6 +29,18 @@ export interface Grid {
     seed?: number;
 }
 
+/** The cells of a sheet as they are; `Files.quads` makes them of faces. */
+export interface Quads {
+    /** x, y, z of each vertex, m */
+    positions: ArrayLike<number>;
+    /** four vertices of each cell */
+    cells: ArrayLike<number>;
+    /** u, v of each vertex */
+    uv?: ArrayLike<number>;
+    /** u, v of each corner of the cells, where there are seams */
+    corner_uv?: ArrayLike<number>;
+}
+
 /** Faces of any number of corners. */
 export interface Faces {
     /** x, y, z of each vertex, m */
@@ -147,37 +159,29 @@ export class Simulation {
         this.sim = 0;
     }
 
-    /** Adds a sheet before the commit. Faces of any kind become quads (docs/meshes.md). */
-    addSheet(shape: Grid | Faces, material: Material = {}, options: SheetOptions & Placement = {}): Handle {
+    /** Adds a sheet before the commit. */
+    addSheet(shape: Grid | Quads, material: Material = {}, options: SheetOptions & Placement = {}): Handle {
         const { memory } = this;
         return memory.during(() => {
             const { translate, rotate, ...rest } = options, { base, ...changes } = material;
-            const mesh = makeMesh(memory, shape), def = memory.take(memory.size("sheet"));
-            try {
-                const view = memory.take(memory.size("meshview"));
-                memory.call.singe_mesh_read(mesh, view, memory.size("meshview"));
-                const inside = memory.at(def, "sheet", "material");
-                memory.set(inside, "material", "struct_size", memory.size("material"));
-                memory.call.singe_init_sheet(def, memory.size("sheet"));
-                if (base) {
-                    const error = memory.take(memory.size("error"));
-                    if (memory.call.singe_material_preset(memory.putText(base), inside, error)) throw errorAt(memory, error);
-                }
-                memory.write(inside, "material", changes);
-                memory.write(def, "sheet", rest);
-                const positions = memory.array(view, "meshview", "positions") as Float32Array;
-                place(positions, rotate ?? [0, 0, 0], translate ?? [0, 0, 0]);
-                const cells = memory.array(view, "meshview", "cells"), uv = memory.array(view, "meshview", "uv");
-                const seams = memory.array(view, "meshview", "corner_uv");
-                memory.write(def, "sheet", {
-                    vertex_count: positions.length / 3, positions: positions.byteOffset, cell_count: cells.length / 4,
-                    cells: cells.byteOffset, uv: uv.length ? uv.byteOffset : 0,
-                    corner_uv: seams.length ? seams.byteOffset : 0,
-                });
-                return this.handle((id) => memory.call.singe_sim_add_sheet(this.sim, def, id));
-            } finally {
-                memory.call.singe_mesh_destroy(mesh);
+            const def = memory.take(memory.size("sheet")), inside = memory.at(def, "sheet", "material");
+            memory.set(inside, "material", "struct_size", memory.size("material"));
+            memory.call.singe_init_sheet(def, memory.size("sheet"));
+            if (base) {
+                const error = memory.take(memory.size("error"));
+                if (memory.call.singe_material_preset(memory.putText(base), inside, error)) throw errorAt(memory, error);
             }
+            memory.write(inside, "material", changes);
+            memory.write(def, "sheet", rest);
+
+            const { positions, cells, uv, corner_uv } = "cells" in shape && "positions" in shape ? shape : gridQuads(memory, shape);
+            const placed = Float32Array.from(positions);
+            place(placed, rotate ?? [0, 0, 0], translate ?? [0, 0, 0]);
+            memory.write(def, "sheet", {
+                vertex_count: placed.length / 3, positions: memory.put(placed), cell_count: cells.length / 4, cells: memory.put(cells, "uint32"),
+                uv: uv ? memory.put(uv) : 0, corner_uv: corner_uv ? memory.put(corner_uv) : 0,
+            });
+            return this.handle((id) => memory.call.singe_sim_add_sheet(this.sim, def, id));
         });
     }
 
@@ -428,28 +432,18 @@ function simDef(memory: Memory, options: SimulationOptions): number {
     return def;
 }
 
-function makeMesh(memory: Memory, shape: Grid | Faces): number {
-    const place = memory.take(4), error = memory.take(memory.size("error"));
-    let result: number;
-    if ("positions" in shape) {
-        const def = memory.take(memory.size("mesh")), { positions, corners, sizes, uv, corner_uv } = shape;
-        const face_count = sizes ? sizes.length : corners.length / 3;
-        memory.call.singe_init_mesh(def, memory.size("mesh"));
-        memory.write(def, "mesh", {
-            vertex_count: positions.length / 3, positions: memory.put(positions), face_count, corners: memory.put(corners, "uint32"),
-            face_sizes: sizes ? memory.put(sizes, "uint32") : 0, uv: uv ? memory.put(uv) : 0,
-            corner_uv: corner_uv ? memory.put(corner_uv) : 0,
-        });
-        result = memory.call.singe_mesh_create(def, place, error);
-    } else {
-        const def = memory.take(memory.size("grid"));
-        memory.call.singe_init_grid(def, memory.size("grid"));
-        memory.write(def, "grid", shape);
-        result = memory.call.singe_mesh_create_grid(def, place, error);
-    }
-    if (result) throw errorAt(memory, error);
-    return memory.u32(place);
+/** The cells of a grid, by the library. */
+function gridQuads(memory: Memory, grid: Grid): Quads {
+    const place = memory.take(4), error = memory.take(memory.size("error")), def = memory.take(memory.size("grid"));
+    memory.call.singe_init_grid(def, memory.size("grid"));
+    memory.write(def, "grid", grid);
+    if (memory.call.singe_mesh_create_grid(def, place, error)) throw errorAt(memory, error);
+    const mesh = memory.u32(place), view = memory.take(memory.size("meshview"));
+    memory.call.singe_mesh_read(mesh, view, memory.size("meshview"));
+    const [positions, cells, uv] = ["positions", "cells", "uv"].map((key) => memory.array(view, "meshview", key).slice());
+    memory.call.singe_mesh_destroy(mesh);
+    return { positions: positions!, cells: cells!, uv: uv! };
 }
 
-export { Files, loadFiles, type FileFaces } from "./files.js";
+export { Files, loadFiles, type FileFaces, type FileQuads } from "./files.js";
 export type { Numbers };

@@ -12,15 +12,15 @@ const CELLS = 24, SIDE = 0.15, CORNERS = CELLS + 1;
 /** The run "burn" of tests/platforms/hash_runs.c. */
 function burnAsInC() {
     const sim = singe.create({ pace: 30, contact: { enabled: true }, wind: { velocity: [0, 1, 0], gust: 0.5 } });
-    const positions = [], corners = [], uv = [], f = Math.fround;
+    const positions = [], cells = [], uv = [], f = Math.fround;
     for (let y = 0; y < CORNERS; y++)
         for (let x = 0; x < CORNERS; x++) {
             const u = f(x / CELLS), v = f(y / CELLS), corner = y * CORNERS + x;
             positions.push(f(f(SIDE) * f(u - 0.5)), f(f(SIDE) * f(v - 0.5)), 0);
             uv.push(u, v);
-            if (x < CELLS && y < CELLS) corners.push(corner, corner + 1, corner + 1 + CORNERS, corner + CORNERS);
+            if (x < CELLS && y < CELLS) cells.push(corner, corner + 1, corner + 1 + CORNERS, corner + CORNERS);
         }
-    const sheet = sim.addSheet({ positions, corners, sizes: new Array(CELLS * CELLS).fill(4), uv });
+    const sheet = sim.addSheet({ positions, cells, uv });
     sim.commit();
     const match = { time: 0, position: [f(f(SIDE) / 2), 0, 0] };
     sim.addSource({ kind: "spot", path: [match], radius: 0.01, falloff: 0.01, temperature: 1123, end: 0.5 });
@@ -98,9 +98,9 @@ test("a wrong option is refused by name", () => {
     sim.destroy();
 });
 
-test("a mesh that is no sheet is refused with the face that is wrong", () => {
+test("cells that are no sheet are refused with the one that is wrong", () => {
     const sim = singe.create();
-    assert.throws(() => sim.addSheet({ positions: [0, 0, 0, 1, 0, 0, 0, 1, 0], corners: [0, 1, 7] }), SingeError);
+    assert.throws(() => sim.addSheet({ positions: [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0], cells: [0, 1, 2, 7] }), SingeError);
     sim.destroy();
 });
 
@@ -118,6 +118,14 @@ test("files are read and written as the command does", async () => {
     const square = files.readMesh("square.obj", text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/2 3/2 4/1\n"));
     assert.deepEqual([...square.corners, ...square.sizes], [0, 1, 2, 3, 4]);
     assert.deepEqual([...square.corner_uv], [0, 0, 1, 1, 1, 1, 0, 0]);
+    const quads = files.quads(square);
+    assert.deepEqual([[...quads.positions], [...quads.cells]], [[0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0], [0, 1, 2, 3]]);
+    assert.equal(files.quads({ positions: square.positions, corners: [0, 1, 2, 0, 2, 3] }).cells.length, 4); // two triangles are a cell
+    const wide = 60, many = { positions: [], corners: [] }; // more than the module's first pages
+    for (let i = 0; i < (wide + 1) ** 2; i++) many.positions.push(i % (wide + 1), Math.floor(i / (wide + 1)), 0);
+    for (let i = 0; i < wide ** 2; i++) { const v = (i % wide) + (wide + 1) * Math.floor(i / wide); many.corners.push(v, v + 1, v + wide + 2, v, v + wide + 2, v + wide + 1); }
+    assert.equal(files.quads(many).cells.length, 4 * wide ** 2);
+    assert.throws(() => files.quads({ positions: [0, 0, 0, 1, 0, 0, 0, 1, 0], corners: [0, 1, 7] }), /vertex 7 of 3/);
     for (const [name, words, message] of [
         ["a.obj", "v 0 0 0\nf 1 1 7\n", "a.obj:2: corner 3 is out of range"], ["a.ply", "plx", "a.ply:1: not a PLY file"], ["a.glb", "glTF", "a.glb: not glTF"],
         ["a.stl", "solid\n", 'a.stl:2: "endsolid" is missing'], ["a.fbx", "", "a.fbx: the page reads OBJ"], ["a.txt", "", "a.txt: unknown mesh format"],
