@@ -33,18 +33,20 @@ SingeResult render_file_make(const char *name, const Polygons *polygons, RenderF
     const size_t corners = polygons->corner_count, faces = polygons->face_count;
     uint32_t *first = malloc((polygons->vertex_count + (size_t)1) * sizeof *first);
     uint32_t *next = malloc((corners + 1) * sizeof *next), *left = malloc((corners + 1) * sizeof *left);
+    SolidEar *ears = malloc((corners + 1) * sizeof *ears);
     *file = (RenderFile){.def = singe_default_render_mesh()};
     file->positions = malloc(3 * (corners + 1) * sizeof *file->positions);
     file->triangles = malloc(3 * (corners + 1) * sizeof *file->triangles);
     if (polygons->uv) file->uv = malloc(2 * (corners + 1) * sizeof *file->uv);
-    const bool good = first && next && left && file->positions && file->triangles && (!polygons->uv || file->uv);
+    const bool good =
+        first && next && left && ears && file->positions && file->triangles && (!polygons->uv || file->uv);
 
     if (good) {
         memset(first, 0xff, polygons->vertex_count * sizeof *first);
         for (size_t f = 0; f < faces; f++) {
             const uint32_t begin = polygons->first[f], count = polygons->first[f + 1] - begin;
             for (uint32_t k = 0; k < count; k++) left[k] = vertex_of(polygons, begin + k, file, first, next);
-            solid_cut_face(file->positions, left, count, file->triangles + 3 * (size_t)file->def.triangle_count);
+            solid_cut_face(file->positions, left, ears, count, file->triangles + 3 * (size_t)file->def.triangle_count);
             file->def.triangle_count += count - 2;
         }
         file->def.positions = file->positions;
@@ -57,6 +59,7 @@ SingeResult render_file_make(const char *name, const Polygons *polygons, RenderF
     free(first);
     free(next);
     free(left);
+    free(ears);
     return good ? SINGE_OK : refuse_memory(error, "scene", name);
 }
 

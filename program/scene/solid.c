@@ -43,27 +43,46 @@ static double solid_turn(const float *vertices, uint32_t a, uint32_t b, uint32_t
     return sum;
 }
 
-/// Square of the new edge when corner i of the remaining ones is clipped; infinite if the corner is no ear.
-static double ear(const float *vertices, const uint32_t *left, uint32_t count, uint32_t i, const double normal[3]) {
-    uint32_t a = left[(i + count - 1) % count], b = left[i], c = left[(i + 1) % count];
-    if (!(solid_turn(vertices, a, b, c, normal) > 0)) return INFINITY;
-    for (uint32_t k = 0; k < count; k++) {
-        uint32_t p = left[k];
+/// Corner i of the remaining ones: whether it is an ear, or which of them lies in its triangle. Those before `from` do not.
+static void look_at_ear(const float *vertices, const uint32_t *left, uint32_t count, uint32_t i, uint32_t from,
+                        const double normal[3], SolidEar *ear) {
+    const uint32_t a = left[(i + count - 1) % count], b = left[i], c = left[(i + 1) % count];
+    *ear = (SolidEar){INFINITY, UINT32_MAX};
+    if (!(solid_turn(vertices, a, b, c, normal) > 0)) return;
+    for (uint32_t k = from; k < count; k++) {
+        const uint32_t p = left[k];
         if (p == a || p == b || p == c) continue;
         if (solid_turn(vertices, a, b, p, normal) >= 0 && solid_turn(vertices, b, c, p, normal) >= 0 &&
-            solid_turn(vertices, c, a, p, normal) >= 0)
-            return INFINITY;
+            solid_turn(vertices, c, a, p, normal) >= 0) {
+            ear->blocker = k;
+            return;
+        }
     }
 
-    double square = 0;
+    ear->square = 0;
     for (size_t k = 0; k < 3; k++) {
-        double d = (double)vertices[3 * (size_t)a + k] - (double)vertices[3 * (size_t)c + k];
-        square += d * d;
+        const double d = (double)vertices[3 * (size_t)a + k] - (double)vertices[3 * (size_t)c + k];
+        ear->square += d * d;
     }
-    return square;
 }
 
-void solid_cut_face(const float *vertices, uint32_t *left, uint32_t count, uint32_t *triangles) {
+/// Takes a corner away. What lay in no triangle lies in none now, so only its neighbours, and the corners in whose
+/// triangles it lay, are looked at again, the latter from there on: the work is that of looking at each corner a few
+/// times.
+static void clip_ear(const float *vertices, uint32_t *left, SolidEar *ears, uint32_t count, uint32_t clipped,
+                     const double normal[3]) {
+    memmove(left + clipped, left + clipped + 1, (count - clipped - 1) * sizeof *left);
+    memmove(ears + clipped, ears + clipped + 1, (count - clipped - 1) * sizeof *ears);
+    count--;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t blocker = ears[i].blocker;
+        const bool beside = i == clipped % count || i == (clipped + count - 1) % count;
+        if (beside || blocker == clipped) look_at_ear(vertices, left, count, i, beside ? 0 : clipped, normal, &ears[i]);
+        else if (blocker != UINT32_MAX && blocker > clipped) ears[i].blocker--;
+    }
+}
+
+void solid_cut_face(const float *vertices, uint32_t *left, SolidEar *ears, uint32_t count, uint32_t *triangles) {
     double normal[3] = {0, 0, 0}; // twice the area by components
     for (uint32_t i = 0; i < count; i++) {
         const float *a = vertices + 3 * (size_t)left[i], *b = vertices + 3 * (size_t)left[(i + 1) % count];
@@ -73,21 +92,20 @@ void solid_cut_face(const float *vertices, uint32_t *left, uint32_t count, uint3
         }
     }
 
+    for (uint32_t i = 0; i < count; i++) look_at_ear(vertices, left, count, i, 0, normal, &ears[i]);
     for (; count >= 3; count--, triangles += 3) {
         uint32_t best = 1; // if the face crosses itself: any
         double min = INFINITY;
-        for (uint32_t i = 0; i < count && count > 3; i++) {
-            double square = ear(vertices, left, count, i, normal);
-            if (square < min) {
-                min = square;
+        for (uint32_t i = 0; i < count && count > 3; i++)
+            if (ears[i].square < min) {
+                min = ears[i].square;
                 best = i;
             }
-        }
 
         triangles[0] = left[(best + count - 1) % count];
         triangles[1] = left[best];
         triangles[2] = left[(best + 1) % count];
-        memmove(left + best, left + best + 1, (count - best - 1) * sizeof *left);
+        clip_ear(vertices, left, ears, count, best, normal);
     }
 }
 
@@ -109,8 +127,9 @@ SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size,
     surface->triangles = malloc(3 * count * sizeof *surface->triangles);
     surface->vertex_count = polygons.vertex_count;
     uint32_t *left = malloc((max + 1) * sizeof *left); // corners of a face
+    SolidEar *ears = malloc((max + 1) * sizeof *ears);
     if (count > INT32_MAX / 4) result = solid_fail(error, SINGE_ERROR_LIMIT, -1, "the collider's mesh is too large");
-    else if (!surface->vertices || !surface->triangles || !left) result = solid_no_memory(error);
+    else if (!surface->vertices || !surface->triangles || !left || !ears) result = solid_no_memory(error);
 
     for (size_t k = 0; !result && k < 3 * (size_t)polygons.vertex_count; k++)
         surface->vertices[k] = (float)((double)polygons.positions[k] * scale);
@@ -119,11 +138,13 @@ SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size,
     for (uint32_t f = 0; !result && f < polygons.face_count; f++) {
         uint32_t first = polygons.first[f], corners = polygons.first[f + 1] - first;
         memcpy(left, polygons.corners + first, corners * sizeof *left);
-        solid_cut_face(surface->vertices, left, corners, surface->triangles + 3 * (size_t)surface->triangle_count);
+        solid_cut_face(surface->vertices, left, ears, corners,
+                       surface->triangles + 3 * (size_t)surface->triangle_count);
         surface->triangle_count += corners - 2;
     }
 
     free(left);
+    free(ears);
     polygons_free(&polygons);
     return result;
 }

@@ -4,9 +4,11 @@
 #include <dirent.h>
 #include <math.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "scene/rotation.h"
+#include "scene/solid.h"
 #include "scene/warnings.h"
 
 /// A scene and what it refers to.
@@ -465,6 +467,39 @@ static void burn_frames(const char *text, const char *folder, int frames, double
 }
 
 // A sheet that begins hot burns where and while its material does.
+/// A comb and a disc of 4096 corners are cut into triangles that turn their way and have their area, in the time of
+/// looking at each pair of corners a few times: clipping that looks at every triple takes a minute.
+TEST(faces_of_many_corners_are_cut) {
+    enum { CORNERS = 4096 };
+    static float vertices[CORNERS][3];
+    static uint32_t left[CORNERS], triangles[CORNERS][3];
+    static SolidEar ears[CORNERS];
+    for (int comb = 0; comb < 2; comb++) {
+        for (uint32_t i = 0; i < CORNERS; i++) {
+            const float turn = 6.2831853f * (float)i / CORNERS, radius = comb && i % 2 ? 0.5f : 1;
+            vertices[i][0] = radius * cosf(turn), vertices[i][1] = radius * sinf(turn);
+            left[i] = i;
+        }
+        double area = 0, covered = 0;
+        for (uint32_t i = 0; i < CORNERS; i++) {
+            const float *a = vertices[i], *b = vertices[(i + 1) % CORNERS];
+            area += ((double)a[0] * (double)b[1] - (double)a[1] * (double)b[0]) / 2;
+        }
+        const clock_t begun = clock();
+        solid_cut_face(vertices[0], left, ears, CORNERS, triangles[0]);
+        const double seconds = (double)(clock() - begun) / CLOCKS_PER_SEC;
+        for (uint32_t t = 0; t < CORNERS - 2; t++) {
+            const float *a = vertices[triangles[t][0]], *b = vertices[triangles[t][1]], *c = vertices[triangles[t][2]];
+            const double turn = ((double)b[0] - (double)a[0]) * ((double)c[1] - (double)a[1]) -
+                                ((double)b[1] - (double)a[1]) * ((double)c[0] - (double)a[0]);
+            assert_true(turn > 0);
+            covered += turn / 2;
+        }
+        print_message("%d corners: %.2f s\n", CORNERS, seconds);
+        assert_true(fabs(covered - area) < 1e-9 * area && seconds < 10);
+    }
+}
+
 TEST(materials_follow_keys_and_numbered_pictures) {
 #define HOT                                                                                                                                                 \
     "fps: 10\nsteps: 4\npace: 5\nsheets:\n  - grid: {size: [0.1, 0.1], cells: [6, 6]}\n    material: {temperature: 300 C, convection: 0, emissivity: 0, \n" \
