@@ -71,17 +71,6 @@ static SingeResult strip_network(const SingeView *view, bool by_triangles, Singe
     return singe_network_create(&def, network, error);
 }
 
-/// The longest side of the burnt cell over its length at rest, removed or not.
-static double longest_side(const SingeView *view, const double *x) {
-    const uint32_t *corner = view->cells[burnt_cell];
-    double longest = 0;
-    for (int i = 0; i < 4; i++) {
-        const double *a = x + 3 * corner[i], *b = x + 3 * corner[(i + 1) & 3];
-        longest = fmax(longest, sqrt(pow(a[0] - b[0], 2) + pow(a[1] - b[1], 2) + pow(a[2] - b[2], 2)));
-    }
-    return longest / strip_cell;
-}
-
 SingeResult paper_longest_side(Lab *lab, bool by_triangles, double *longest, SingeError *error) {
     LabGrid grid = lab_grid(STRIP_CELLS, 1, (float)strip_cell);
     SingeSim *sim;
@@ -105,7 +94,14 @@ SingeResult paper_longest_side(Lab *lab, bool by_triangles, double *longest, Sin
         for (int k = 0; k < SINGE_COLOUR_COUNT * STRIP_PROJECTIONS && !result; k++)
             result = singe_network_project(network, (uint32_t)k % SINGE_COLOUR_COUNT, NULL);
         for (uint32_t i = 0; i < 3 * PARTICLES; i++) velocity[i] = (x[i] - before[i]) / h;
-        *longest = fmax(*longest, longest_side(&view, x));
+
+        // sides of the burnt cell, removed or not, over their length at rest
+        const uint32_t *corner = view.cells[burnt_cell];
+        for (int i = 0; i < 4; i++) {
+            const double *a = x + 3 * corner[i], *b = x + 3 * corner[(i + 1) & 3];
+            const double square = pow(a[0] - b[0], 2) + pow(a[1] - b[1], 2) + pow(a[2] - b[2], 2);
+            *longest = fmax(*longest, sqrt(square) / strip_cell);
+        }
     }
 
     singe_network_destroy(network);

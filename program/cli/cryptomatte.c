@@ -57,26 +57,19 @@ static int compare_mattes(const void *a, const void *b) {
     return (p->piece > q->piece) - (p->piece < q->piece);
 }
 
-/// Sorts the mattes and keeps one of each name. Returns how many.
-static size_t keep_names(PreviewMatte *seen, size_t count) {
-    qsort(seen, count, sizeof *seen, compare_mattes);
-    size_t kept = 0;
-    for (size_t i = 0; i < count; i++)
-        if (!kept || compare_mattes(&seen[kept - 1], &seen[i]) != 0) seen[kept++] = seen[i];
-    return kept;
-}
-
-/// The names that occur and their numbers. NULL if there is no memory.
-static char *manifest_write(const PreviewMatte *seen, size_t count, bool pieces, const char *const *sheets) {
+/// The names that occur, each once, and their numbers. NULL if there is no memory.
+static char *manifest_write(PreviewMatte *seen, size_t count, bool pieces, const char *const *sheets) {
     char *text = NULL, name[300];
-    size_t size = 0;
+    size_t size = 0, names = 0;
+    qsort(seen, count, sizeof *seen, compare_mattes);
     FILE *out = open_memstream(&text, &size);
     if (!out) return NULL;
 
     fputc('{', out);
     for (size_t i = 0; i < count; i++) {
+        if (i && compare_mattes(&seen[i - 1], &seen[i]) == 0) continue;
         name_of(name, pieces, sheets[seen[i].sheet], seen[i].piece);
-        if (i) fputc(',', out);
+        if (names++) fputc(',', out);
         text_json_string(out, name);
         fprintf(out, ":\"%08x\"", cryptomatte_id(name));
     }
@@ -84,23 +77,6 @@ static char *manifest_write(const PreviewMatte *seen, size_t count, bool pieces,
     if (fclose(out) == 0) return text;
     free(text);
     return NULL;
-}
-
-/// Names of the channels "NAME00.R", ..., and of the attributes, whose key is from the layer's own number.
-static void describe(Cryptomatte *layer, const char *name) {
-    for (int i = 0; i < CRYPTOMATTE_CHANNELS; i++) {
-        snprintf(layer->channel_names[i], sizeof layer->channel_names[i], "%s%02d.%c", name, i / 4, "RGBA"[i % 4]);
-        layer->channels[i] =
-            (ExrChannel){layer->channel_names[i], EXR_KIND_FLOAT, layer->values + i, CRYPTOMATTE_CHANNELS};
-    }
-
-    const char *const rows[CRYPTOMATTE_TEXTS][2] = {
-        {"name", name}, {"hash", "MurmurHash3_32"}, {"conversion", "uint32_to_float32"}, {"manifest", layer->manifest}};
-    for (int i = 0; i < CRYPTOMATTE_TEXTS; i++) {
-        snprintf(layer->text_names[i], sizeof layer->text_names[i], "cryptomatte/%07x/%s", cryptomatte_id(name) >> 4,
-                 rows[i][0]);
-        layer->texts[i] = (ExrText){layer->text_names[i], rows[i][1]};
-    }
 }
 
 bool cryptomatte_make(Cryptomatte *layer, const char *name, bool pieces, const char *const *sheets,
@@ -124,10 +100,24 @@ bool cryptomatte_make(Cryptomatte *layer, const char *name, bool pieces, const c
         }
     }
 
-    if (seen) layer->manifest = manifest_write(seen, keep_names(seen, count), pieces, sheets);
+    if (seen) layer->manifest = manifest_write(seen, count, pieces, sheets);
     free(seen);
     if (!layer->values || !layer->manifest) return false;
-    describe(layer, name);
+
+    // names of the channels "NAME00.R", ..., and of the attributes, whose key is from the layer's own number
+    for (int i = 0; i < CRYPTOMATTE_CHANNELS; i++) {
+        snprintf(layer->channel_names[i], sizeof layer->channel_names[i], "%s%02d.%c", name, i / 4, "RGBA"[i % 4]);
+        layer->channels[i] =
+            (ExrChannel){layer->channel_names[i], EXR_KIND_FLOAT, layer->values + i, CRYPTOMATTE_CHANNELS};
+    }
+
+    const char *const rows[CRYPTOMATTE_TEXTS][2] = {
+        {"name", name}, {"hash", "MurmurHash3_32"}, {"conversion", "uint32_to_float32"}, {"manifest", layer->manifest}};
+    for (int i = 0; i < CRYPTOMATTE_TEXTS; i++) {
+        snprintf(layer->text_names[i], sizeof layer->text_names[i], "cryptomatte/%07x/%s", cryptomatte_id(name) >> 4,
+                 rows[i][0]);
+        layer->texts[i] = (ExrText){layer->text_names[i], rows[i][1]};
+    }
     return true;
 }
 

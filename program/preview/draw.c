@@ -48,16 +48,6 @@ static void layers_write(const Preview *preview, size_t pixel, const LayerSum *s
     }
 }
 
-/// Counts a sample of the piece, if it is among the first that the pixel has met.
-static void matte_count(LayerSum *sum, int32_t sheet, int32_t piece) {
-    for (int k = 0; k < PREVIEW_MATTES; k++) {
-        PreviewMatte *matte = &sum->mattes[k];
-        if (matte->share > 0 && (matte->sheet != sheet || matte->piece != piece)) continue;
-        *matte = (PreviewMatte){sheet, piece, matte->share + 1};
-        return;
-    }
-}
-
 typedef struct Job {
     Preview *preview;
     void (*draw)(Preview *preview, Block *block); ///< one block
@@ -272,7 +262,15 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
         sum->fire_hides += 1 - clear;
         if (!point->hit) continue;
         sum->hits++;
-        if (preview->layers.mattes && point->sheet >= 0) matte_count(sum, point->sheet, point->piece);
+
+        // a sample of the piece counts if that is among the first that the pixel has met
+        for (int k = 0; k < PREVIEW_MATTES && preview->layers.mattes && point->sheet >= 0; k++) {
+            PreviewMatte *matte = &sum->mattes[k];
+            if (matte->share > 0 && (matte->sheet != point->sheet || matte->piece != point->piece)) continue;
+            *matte = (PreviewMatte){point->sheet, point->piece, matte->share + 1};
+            break;
+        }
+
         sum->glow = float3_mad(sum->glow, point->glow, clear);
         sum->normal = float3_add(sum->normal, point->normal);
         sum->temperature += point->temperature;

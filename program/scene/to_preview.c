@@ -63,12 +63,6 @@ static float camera_between(const double t[4], const float p[4], double time) {
     return (float)((1 - u) * (double)p[1] + u * (double)p[2] + span * rise);
 }
 
-/// The distance of a key's target.
-static float camera_focus(const SceneCameraKey *key) {
-    Float3 view = float3_sub(float3_load(key->target), float3_load(key->eye));
-    return float3_length(view);
-}
-
 void scene_camera(const Scene *scene, double time, PreviewCamera *camera) {
     const ScenePreview *preview = &scene->preview;
     const SceneCameraKey *keys = preview->camera_keys;
@@ -94,7 +88,8 @@ void scene_camera(const Scene *scene, double time, PreviewCamera *camera) {
             for (int k = 0; k < 4; k++) {
                 memcpy(&p[k], (const char *)&keys[at[k]] + members[m] + (size_t)c * sizeof(float), sizeof(float));
                 if (m == 2 && !(p[k] > 0)) p[k] = preview->camera.fov;
-                if (m == 3 && !(p[k] > 0)) p[k] = camera_focus(&keys[at[k]]);
+                if (m == 3 && !(p[k] > 0)) // the target's distance
+                    p[k] = float3_length(float3_sub(float3_load(keys[at[k]].target), float3_load(keys[at[k]].eye)));
             }
             into[m][c] = at[2] > at[1] ? camera_between(t, p, time) : p[1];
         }

@@ -118,13 +118,6 @@ void remove_spring(Removal *removal, SingeColour colour, uint32_t spring) {
     }
 }
 
-/// Whether any of a cell's triangles is left: all have the centre, and each corner has two.
-static bool any_triangle_left(const AblatePlan *plan, const Shell *shell, uint32_t cell) {
-    bool left = plan->level[shell_centre(shell, cell)] >= 0;
-    for (int i = 0; i < 4; i++) left |= plan->level[shell->cells[cell][i]] >= 0;
-    return left;
-}
-
 /// Removes the sides of a cell that is gone where no other cell has them.
 static void remove_sides(Removal *removal, uint32_t cell) {
     for (int i = 0; i < 4; i++) {
@@ -167,7 +160,10 @@ void ablate_step(AblatePlan *plan, const StepContext *context, AblateState *abla
         last = cells - first < ABLATE_RUN ? cells : first + ABLATE_RUN;
         for (uint32_t c = first; c < last; c++) some |= level[c] < 0;
         for (uint32_t c = first; c < last && some; c++) {
-            if (!(ablate->cell_flags[c] & SINGE_ALIVE) || any_triangle_left(plan, context->shell, c)) continue;
+            // whether any of its triangles is left: all have the centre, and each corner has two
+            bool left = level[c] >= 0;
+            for (int i = 0; i < 4; i++) left |= plan->level[context->shell->cells[c][i]] >= 0;
+            if (!(ablate->cell_flags[c] & SINGE_ALIVE) || left) continue;
 
             const CellSprings *springs = &context->shell->cell_springs[c];
             ablate->cell_flags[c] &= (uint8_t)~SINGE_ALIVE;

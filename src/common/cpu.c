@@ -62,18 +62,15 @@ static bool cpu_v3(const CpuFlags *f) {
            cpu_all(f->kept, CPU_KEEPS_AVX);
 }
 
-static bool cpu_v4(const CpuFlags *f) {
-    return cpu_v3(f) && cpu_all(f->kept, CPU_KEEPS_AVX512) &&
-           cpu_all(f->extended, CPU_AVX512F | CPU_AVX512DQ | CPU_AVX512CD | CPU_AVX512BW | CPU_AVX512VL);
-}
-
 bool cpu_has(SingeInstructions set) {
     CpuFlags flags = cpu_read();
     switch (set) {
     case SINGE_INSTRUCTIONS_PLAIN: return true;
     case SINGE_INSTRUCTIONS_X86_V2: return cpu_v2(&flags);
     case SINGE_INSTRUCTIONS_X86_V3: return cpu_v3(&flags);
-    case SINGE_INSTRUCTIONS_X86_V4: return cpu_v4(&flags);
+    case SINGE_INSTRUCTIONS_X86_V4:
+        return cpu_v3(&flags) && cpu_all(flags.kept, CPU_KEEPS_AVX512) &&
+               cpu_all(flags.extended, CPU_AVX512F | CPU_AVX512DQ | CPU_AVX512CD | CPU_AVX512BW | CPU_AVX512VL);
     default: return false;
     }
 }

@@ -156,15 +156,6 @@ static SingeResult check_masses(const SheetSource *source, SingeError *error) {
     return SINGE_OK;
 }
 
-static bool source_alloc(Memory *memory, const SingeSheetDef *def, SheetSource *source) {
-    return NEW(memory, source->position, source->sheet.vertex_count) &&
-           NEW(memory, source->cells, source->sheet.cell_count) &&
-           NEW(memory, source->uv, source->sheet.vertex_count) &&
-           (!def->corner_uv || NEW(memory, source->corner_uv, source->sheet.cell_count)) &&
-           (!def->source_vertex || NEW(memory, source->source_vertex, source->sheet.vertex_count)) &&
-           (!def->corner_source_vertex || NEW(memory, source->corner_source, source->sheet.cell_count));
-}
-
 SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, SheetSource *source, SingeError *error) {
     SingeSheetDef def;
     memset(source, 0, sizeof *source);
@@ -184,7 +175,12 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
     source->user_data = def.user_data;
 #define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) sheet->material.name = def.material.name;
 #include "singe/material.def"
-    if (!source_alloc(memory, &def, source)) {
+    const bool room = NEW(memory, source->position, def.vertex_count) && NEW(memory, source->cells, def.cell_count) &&
+                      NEW(memory, source->uv, def.vertex_count) &&
+                      (!def.corner_uv || NEW(memory, source->corner_uv, def.cell_count)) &&
+                      (!def.source_vertex || NEW(memory, source->source_vertex, def.vertex_count)) &&
+                      (!def.corner_source_vertex || NEW(memory, source->corner_source, def.cell_count));
+    if (!room) {
         SingeResult result =
             error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory for sheet '%s'", sheet->name);
         sheet_source_free(memory, source);

@@ -6,13 +6,6 @@
 /// Positions (m) up to this size leave room for their differences and squares in float.
 static const float path_position_max = 1e9f;
 
-static bool path_key_finite(const SingePoseKey *key) {
-    bool finite = isfinite(key->time);
-    for (int i = 0; i < 3; i++) finite = finite && fabsf(key->position[i]) <= path_position_max;
-    for (int i = 0; i < 4; i++) finite = finite && isfinite(key->rotation[i]);
-    return finite;
-}
-
 /// In double, where the square of a float neither overflows nor underflows.
 static double path_rotation_length(const float q[4]) {
     double square = 0;
@@ -24,7 +17,10 @@ SingeResult path_check(uint32_t count, const SingePoseKey *keys, const char *own
     if (count > 0 && !keys)
         return error_set(error, SINGE_ERROR_ARGUMENT, owner, -1, "the path has %u keys but no array", count);
     for (uint32_t i = 0; i < count; i++) {
-        if (!path_key_finite(&keys[i]))
+        bool finite = isfinite(keys[i].time);
+        for (int k = 0; k < 3; k++) finite = finite && fabsf(keys[i].position[k]) <= path_position_max;
+        for (int k = 0; k < 4; k++) finite = finite && isfinite(keys[i].rotation[k]);
+        if (!finite)
             return error_set(error, SINGE_ERROR_ARGUMENT, owner, i, "path key %u is not finite or beyond 1e9 m", i);
         if (i > 0 && !(keys[i].time > keys[i - 1].time))
             return error_set(error, SINGE_ERROR_ARGUMENT, owner, i, "path key %u is not later than the one before", i);
