@@ -153,8 +153,9 @@ static SingeResult check_def(const PreviewDef *def, SingeError *error) {
     }
 
     for (uint32_t s = 0; !result && def->looks && s < def->sheet_count; s++)
-        if (!all_between(&def->looks[s].weave, 1, 0, 0.1f))
-            result = preview_refuse(error, s, "a sheet's weave must lie between 0 and 0.1 m");
+        if (!all_between(&def->looks[s].weave, 1, 0, 0.1f) || !all_between(&def->looks[s].coating, 1, 0, 1))
+            result =
+                preview_refuse(error, s, "a sheet's weave must lie between 0 and 0.1 m, its coating between 0 and 1");
     for (uint32_t s = 0; !result && def->transmittances && s < def->sheet_count; s++)
         if (!all_between(&def->transmittances[s], 1, 0, 1))
             result = preview_refuse(error, s, "a sheet's transmittance must lie between 0 and 1");

@@ -61,6 +61,8 @@ typedef struct PreviewStart {
 /// What a material looks like before it burns.
 typedef struct PreviewLook {
     float weave; ///< m from one thread of the cloth to the next, along u and along v; 0: paper
+    float
+        coating; ///< 0 bare paper to 1 the plastic of a photo print, which mirrors, and blisters before the paper chars
 } PreviewLook;
 
 typedef struct PreviewDef {

@@ -311,6 +311,22 @@ static void fresh(const Preview *preview, const PaperState *state, Point *point)
     point->mirror = 0.5f * film;
 }
 
+/// A coating mirrors. It softens in the heat and blisters, in domes of some millimetres with creases between them, before
+/// the paper chars, and what is left of it shines on the char.
+static void coat(float coating, const Bent *bent, Point *point) {
+    const float charred = bent ? stepf(0.3f, 0.7f, bent->burn) : 0;
+    const float left = coating * (1 - 0.7f * charred) * (bent ? 1 - stepf(0.7f, 0.9f, bent->burn) : 1);
+    point->gloss = maxf(point->gloss, 0.16f * left);
+    point->shininess = mixf(point->shininess, 70, left);
+    point->mirror = maxf(point->mirror, 0.9f * left);
+    if (!bent) return;
+
+    const float soft = coating * stepf(350, 410, bent->peak) * (1 - 0.6f * charred);
+    Float3 p = float3_mad(bent->position, float3(bent->medium, bent->fine, bent->coarse), 0.3e-3f);
+    tilt(p, 2.6f, 1.2f * soft, true, 41, point);
+    tilt(p, 1.2f, 0.7f * soft * stepf(-0.2f, 0.5f, bent->coarse), true, 42, point);
+}
+
 /// Char: browner where it is thin, bluer where complete; print (1) remains readable on it, as a dull grey.
 static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) {
     float black = stepf(0.12f, 0.46f, bent->burn);
@@ -337,6 +353,10 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     fresh(preview, state, point);
     bool touched = state->burn > 0 || maxf(state->peak, state->temperature) > 325;
     const Weave *weave = cloth_weave(preview, state->sheet);
+    const float coating = preview->def.looks && state->sheet >= 0 && (uint32_t)state->sheet < preview->def.sheet_count
+                              ? preview->def.looks[state->sheet].coating
+                              : 0;
+    if (!touched && coating > 0) coat(coating, NULL, point);
     if (!touched && !weave) return true;
 
     Bent bent = {.burn = 0};
@@ -360,6 +380,7 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
                               float3_mix(point->albedo, float3(0.80f, 0.80f, 0.80f), stepf(0.6f, 1.0f, scorch)));
     point->transmission *= 1 - stepf(0.1f, 0.7f, scorch);
     char_shade(&bent, burnt, print, point);
+    if (coating > 0) coat(coating, &bent, point);
     ash_shade(state, &bent, print, point);
     ember_shade(preview, state, &bent, point);
     if (weave) {

@@ -71,6 +71,8 @@ static const Schema schema_measured = {
 static const SchemaRow look_rows[] = {
     {"weave", ROW_FLOAT, DIM_LENGTH, AT(SceneMaterial, look.weave), WITHIN(0, 0.1),
      .doc = "distance between the threads of cloth, along u and along v; 0: paper"},
+    {"coating", ROW_FLOAT, DIM_NONE, AT(SceneMaterial, look.coating), WITHIN(0, 1),
+     .doc = "gloss of a coating, which blisters before the paper chars; 0: bare paper; 0.3: card; 1: a photo print"},
 };
 static const Schema schema_look = {.title = "a look",
                                    .size = sizeof(SceneMaterial),

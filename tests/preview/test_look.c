@@ -299,3 +299,44 @@ TEST(wood_has_a_grain) {
     assert_true(near[1] > 0.045f); // 0.035 by year rings alone
     assert_true(far[0] < 0.011f && far[1] < 0.05f);
 }
+
+/// How much pixels of the sheet's middle differ from their mean, over it.
+static float unevenness(const uint8_t *rgb) {
+    enum { HALF = 10 };
+    const float whole = middle(rgb, 1);
+    float sum = 0;
+    for (int y = H / 2 - HALF; y < H / 2 + HALF; y++)
+        for (int x = W / 2 - HALF; x < W / 2 + HALF; x++) {
+            const float off = (float)pixel(rgb, x, y)[1] - whole;
+            sum += off * off;
+        }
+    return sqrtf(sum) / (2 * HALF) / whole;
+}
+
+/// A coated print mirrors the light; in heat that only browns paper its coating blisters.
+TEST(coatings_mirror_and_blister) {
+    static uint8_t rgb[BYTES];
+    float bright[2], uneven[2];
+    for (int coated = 0; coated < 2; coated++) {
+        const PreviewLook look = {.coating = (float)coated};
+        Float4 q;
+        quad_make(&q, 0.008f, 0.45f);
+        PreviewDef def = above();
+        def.looks = &look, def.sheet_count = 1;
+        def.camera.fov = 0.3f;
+        for (int c = 0; c < 3; c++) def.sun_direction[c] = c == 2, def.sun_colour[c] = 1;
+        uint8_t texels[3] = {60, 60, 60};
+        Image image = {.width = 1, .height = 1, .rgb = texels};
+        const Image *pictures[1] = {&image};
+        def.pictures = pictures;
+        draw(&def, &q.surface, 0, rgb);
+        bright[coated] = middle(rgb, 1);
+        for (int i = 0; i < 4; i++) q.peak[i] = 430;
+        draw(&def, &q.surface, 0, rgb);
+        uneven[coated] = unevenness(rgb);
+    }
+    print_message("facing the sun %.0f bare, %.0f coated; heated, uneven by %.1f and %.1f %%\n", (double)bright[0],
+                  (double)bright[1], (double)(100 * uneven[0]), (double)(100 * uneven[1]));
+    assert_true(bright[1] > bright[0] + 15);
+    assert_true(uneven[1] > 2 * uneven[0]);
+}
