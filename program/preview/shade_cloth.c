@@ -122,8 +122,8 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
         at[1] += aside * noise2(0.08f * x, 0.13f * y, 62);
     }
 
-    const float damage = burnt > 0 ? cloth_damage(at[0], at[1], wide) : 0, worn = 1.2f - 0.6f * stepf(0.45f, 1, burn);
-    const float reach = FRAY * (0.45f + FATE_MOST + 1.6f * maxf(damage, 0)) + 3;
+    const float damage = burnt > 0 ? cloth_damage(at[0], at[1], wide) : 0, worn = 1.1f - 0.5f * stepf(0.45f, 1, burn);
+    const float reach = FRAY * (0.45f + FATE_MOST + 2.1f * maxf(damage, 0)) + 3;
     int thread[2];
     for (int k = 0; k < 2; k++) {
         float within, along = at[1 - k];
@@ -144,7 +144,7 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
         const float doubt = 0.5f * FATE_MOST + 0.5f * cloth->tone[k];
         if (edge > reach && damage + doubt < worn) continue;
         const float fate = thread_fate(thread[k], along, wide, seed);
-        const float bite = burnt * FRAY * (1 - 0.75f * hot) * maxf(0.45f + fate + 1.6f * maxf(damage, -0.1f), 0);
+        const float bite = burnt * FRAY * (1 - 0.75f * hot) * maxf(0.45f + fate + 2.1f * maxf(damage, -0.1f), 0);
         cloth->gone[k] = cloth->gone[k] || edge < bite || damage + 0.5f * fate + 0.5f * cloth->tone[k] > worn;
         cloth->end[k] = 1 - stepf(0, 3, edge - bite);
     }
