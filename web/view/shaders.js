@@ -119,8 +119,10 @@ void main() {
     float size = max(length(dFdx(vPosition)), length(dFdy(vPosition)));
     vec3 r = vRest, p = vec3(0.7654 * r.x - 0.5321 * r.y + 0.3622 * r.z, 0.6133 * r.x + 0.7718 * r.y - 0.1673 * r.z,
         -0.1905 * r.x + 0.3481 * r.y + 0.9179 * r.z);
-    float temperature = vHeat.x, peakSoFar = vHeat.y, rate = vHeat.z, glowing = vHeat.w;
-    float burnt = vLook.x, gradient = min(vLook.y, 400.0), rim = vLook.z, age = vLook.w;
+    // at a border, a pixel's middle may lie outside the triangle, where fields go on beyond what they can be
+    vec4 heat = max(vHeat, 0.0), look = max(vLook, 0.0);
+    float temperature = heat.x, peakSoFar = heat.y, rate = heat.z, glowing = heat.w;
+    float burnt = min(look.x, 1.0), gradient = min(look.y, 400.0), rim = min(look.z, 1.0), age = look.w;
 
     // the fields at the picture's scale: ragged isolines
     float coarse = noise4(p * 250.0).r;
@@ -197,6 +199,7 @@ void main() {
         float warm = stepf(420.0, 640.0, temperature) * stepf(0.76, 0.86, burn) * stepf(0.10, 0.55, noise4(p * 85.0).r + 0.3 * medium);
         float late = (age - 3.2) * 0.28 - (noise4(p * 240.0).a + 0.5 * medium + 0.25 * fine);
         glow += emberColour(1035.0 + 50.0 * fine) * 1.5 * warm * air * exp(-70.0 * late * late);
+        glow *= min(1.0, 3.0 / max(glow.r, 1e-3)); // the film would cut the brightest channel by channel: they would be white
     }
 
     float seen = lampSeen(vPosition + 0.0008 * n);
