@@ -368,7 +368,7 @@ async function soak(minutes) {
     }
 }
 
-/** Steps a second of the page's sheet, 24,780 springs, without and with gas, as this machine is now. */
+/** Steps a second of the page's sheet, 24,780 springs, without and with gas, and frames a second, as this machine is now. */
 async function speed() {
     for (const [title, hash] of [["sheet alone", "gas=false"], ["with gas", ""]]) {
         await open(hash);
@@ -378,7 +378,9 @@ async function speed() {
             ms += state.ms;
             steps += state.steps;
         }
-        console.log(`${title}: ${((1000 * steps) / ms).toFixed(0)} steps/s by the clock`);
+        await page.evaluate(() => globalThis.page.quality(1));
+        const [drawn, card] = await page.evaluate(() => [globalThis.page.drawn(2), globalThis.page.card]);
+        console.log(`${title}: ${((1000 * steps) / ms).toFixed(0)} steps/s by the clock; 960 x 600 pixels at ${(1000 / drawn).toFixed(1)} frames/s by ${card}`);
     }
 }
 
