@@ -54,7 +54,7 @@ MUTATIONS = [
     ("ablate/ablate_step.c", "if (other == SHELL_NONE || !(removal->ablate->cell_flags[other] & SINGE_ALIVE))",
      "if (true)", "ablate", "blue_goes_with_the_last_of_its_cells"),
     ("ablate/ablate_step.c", "            for (int i = 0; i < 4; i++) left |= plan->level[context->shell->cells[c][i]] >= 0;",
-     "    for (int i = 1; i < 4; i++) left |= plan->level[shell->cells[cell][i]] >= 0;",
+     "            for (int i = 1; i < 4; i++) left |= plan->level[context->shell->cells[c][i]] >= 0;",
      "ablate", "a_cell_keeps_its_springs_till_it_goes"),
     ("ablate/ablate_step.c", "for (int i = 0; i < 2; i++) remove_spring(&removal, SINGE_YELLOW, springs->yellow[i]);",
      "for (int i = 0; i < 1; i++) remove_spring(&removal, SINGE_YELLOW, springs->yellow[i]);",
