@@ -70,6 +70,10 @@ static const struct {
      BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) | BENCH_BIT(QUICK) | SOLVER |
          OUTPUT,
      "Whether swinging and strongly shrinking sheets are stable at any thickness, resolution and time step."},
+    {"look", "bench look", bench_look,
+     BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) |
+         BENCH_BIT(QUICK) | SOLVER | OUTPUT,
+     "Rest shape, sag and wrinkles at several time steps, substeps and resolutions."},
     {"fold", "bench fold", bench_fold,
      BENCH_BIT(SUBSTEPS) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) | OUTPUT,
      "A strip is folded by 180 degrees and released: the angle that remains, by resolution and time step."},

@@ -97,6 +97,7 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
         sheet.material.shrink_front = sheet.material.shrink_back = sheet.material.fibre_shrink = singe_param(1);
     }
 
+    sheet.material.damping = singe_param(setup->damping);
     for (int c = 0; setup->rigid && c < SINGE_COLOUR_COUNT; c++) sheet.material.compliance[c] = singe_param(0);
     SingeResult result;
     if (setup->shape) {
