@@ -7,6 +7,7 @@
 #include "sim/objects.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 
 /// A handle that the replay has made, where it differs from the recorded one: in a recording from which calls were
@@ -35,6 +36,8 @@ typedef struct Player {
     SingeSurface surface;
     SingeReplay report;
     uint64_t given_up; ///< the step from which on the recorded call was given up; UINT64_MAX: it was not
+    SingeCancel cancel;
+    atomic_bool cancelled; ///< the host gives up the replay
 } Player;
 
 // ---- records
@@ -242,10 +245,11 @@ static uint32_t recorded_steps(Player *player, bool *given_up) {
     return recorded;
 }
 
-/// The hook of the replay: gives up what was given up.
+/// The hook of the replay: gives up what was given up, and all if the host asks for that.
 static bool player_gives_up(void *context) {
-    const Player *player = context;
-    return player->sim && player->sim->state.step >= player->given_up;
+    Player *player = context;
+    if (player->cancel.asked && player->cancel.asked(player->cancel.context)) atomic_store(&player->cancelled, true);
+    return atomic_load(&player->cancelled) || (player->sim && player->sim->state.step >= player->given_up);
 }
 
 /// Bounds the steps of an advance that would make more than were recorded, and one more: a hostile recording may ask for
@@ -478,6 +482,7 @@ static SingeResult player_begin(Player *player, const SingeSimDef *hooks, SingeE
     def.instructions = given.instructions;
     def.record = (SingeRecord){player_compare, player};
     def.cancel = (SingeCancel){player_gives_up, player};
+    player->cancel = given.cancel;
 
     const size_t saved = (size_t)(player->end - tape->offset);
     SingeResult result = kind == RECORD_CREATE
@@ -506,7 +511,10 @@ SingeResult singe_replay_read(const SingeSimDef *hooks, const uint8_t *bytes, si
         const uint64_t begin = player.begin;
         if (kind >= RECORD_CALL) player_call(&player, kind);
         player.report.complete = kind == RECORD_END;
-        if (kind == RECORD_CREATE || kind == RECORD_LOAD || tape->failed)
+        if (atomic_load(&player.cancelled))
+            result =
+                error_set(error, SINGE_ERROR_CANCELLED, "replay", -1, "the replay was given up, as the host has asked");
+        else if (kind == RECORD_CREATE || kind == RECORD_LOAD || tape->failed)
             result = player_fail(&player, kind, begin, error);
         tape->offset = player.end;
     }

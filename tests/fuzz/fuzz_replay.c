@@ -37,11 +37,20 @@ static Tape make_recording(int which) {
     return tape;
 }
 
+/// Gives up a replay that asks for far more than the recordings here: a million projections a step are legal.
+static bool is_too_much(void *context) {
+    enum { ASKS_MAX = 20000 };
+    int *asks = context;
+    return ++*asks > ASKS_MAX;
+}
+
 /// A replay; the bytes end where their memory does.
 static SingeReplay try_recording(const uint8_t *bytes, size_t size) {
     Limited memory = {.max = (size_t)1 << 26};
     SingeSimDef hooks = singe_default_sim();
+    int asks = 0;
     hooks.allocator = (SingeAllocator){limited_resize, &memory};
+    hooks.cancel = (SingeCancel){is_too_much, &asks};
     uint8_t *copy = malloc(size + !size);
     demand(copy);
     memcpy(copy, bytes, size);

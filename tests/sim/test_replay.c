@@ -131,6 +131,14 @@ TEST(what_was_given_up_is_given_up_again) {
     assert_string_equal(replay.what, "");
     assert_true(replay.same && replay.complete);
     assert_int_equal(replay.steps, 6);
+
+    // and so is the replay itself
+    SingeSimDef hooks = singe_default_sim();
+    SingeError error = {0};
+    gives_up = true;
+    hooks.cancel = (SingeCancel){yes_if, &gives_up};
+    assert_int_equal(singe_replay(&hooks, tape.bytes, tape.size, &replay, &error), SINGE_ERROR_CANCELLED);
+    assert_string_equal(error.stage, "replay");
     free(tape.bytes);
 }
 
