@@ -86,6 +86,11 @@ enum { COLUMNS = 4, ROWS = 4 };
 
 enum { FIG4_MEAN = COLUMNS }; ///< a fifth run, not drawn: the mean of (d)'s texture everywhere
 
+/// What fire adds to the border of a whole sheet, over the share of cells that it takes.
+static double fire_border(const Look *look, const Look *whole) {
+    return (look->border - whole->border) / (1 - look->left);
+}
+
 static void fig4_report(Report *report, const Look *look) {
     static const char *const same = "(a) over itself", *const whole = "(b), which stays whole";
     static const char *const short_names[COLUMNS] = {"(a)", "(b)", "(c)", "(d)"};
@@ -110,8 +115,9 @@ static void fig4_report(Report *report, const Look *look) {
                                     look_slope(b, 0.5) / look_slope(a, 0.5), 1.5, INFINITY, 1, same});
     report_bar(report, &(ReportBar){"c_slope", "the same, (c) over (a)", look_slope(c, 0.5) / look_slope(a, 0.5), 1.5,
                                     INFINITY, 1, same});
-    report_bar(report, &(ReportBar){"d_border", "length of borders, (d) over (c): the texture makes it ragged",
-                                    d->border / c->border, 1.2, INFINITY, mean->border / c->border,
+    const double ragged = fire_border(c, b);
+    report_bar(report, &(ReportBar){"d_border", "borders that fire makes by what it takes, (d) over (c): it is ragged",
+                                    fire_border(d, b) / ragged, 1.5, INFINITY, fire_border(mean, b) / ragged,
                                     "the texture's mean all over, over (c)"});
 }
 
