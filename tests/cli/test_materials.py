@@ -35,7 +35,7 @@ class Materials(Case):
             with self.subTest(material):
                 out, _ = self.singe("check", self.write_scene_of(material))
                 self.assertIn("material      " + line, out)
-                self.assertEqual("at this pace" in out, "front" in line)
+                self.assertEqual("on film" in out, "front" in line)
 
     def test_check_looks_for_a_front_for_so_long(self):
         """Where heat hardly spreads, the front creeps: for 60,000 steps and iterations at most."""
@@ -48,7 +48,7 @@ class Materials(Case):
     def test_check_tells_of_long_steps(self):
         scene = self.write_scene_of("{base: tissue, thickening: 1}")
         out, _ = self.singe("check", scene, "--set", "pace=16")
-        self.assertIn("slower: raise `steps`", out)
+        self.assertIn("slower in steps this long: raise `steps`", out)
         self.assertNotIn("slower", self.singe("check", scene, "--set", "pace=1", "--set", "steps=20")[0])
 
     def test_set_material(self):
