@@ -34,12 +34,13 @@ static inline float ridge(float n, float width) { return 1 - stepf(0, width, fab
 
 /// Linear colours that multiply the paper's, by its scorching in [0, 1].
 static Float3 scorch_colour(float s) {
-    static const float stop[7][4] = {{0.00f, 1.00f, 1.00f, 1.00f},    {0.14f, 0.965f, 0.90f, 0.74f},
-                                     {0.32f, 0.85f, 0.655f, 0.36f},   {0.50f, 0.55f, 0.315f, 0.105f},
-                                     {0.69f, 0.225f, 0.098f, 0.032f}, {0.86f, 0.062f, 0.031f, 0.018f},
-                                     {1.00f, 0.020f, 0.016f, 0.014f}};
+    enum { STOPS = 8 };
+    static const float stop[STOPS][4] = {{0.00f, 1.00f, 1.00f, 1.00f},    {0.09f, 0.975f, 0.93f, 0.81f},
+                                         {0.21f, 0.84f, 0.68f, 0.44f},    {0.57f, 0.53f, 0.34f, 0.165f},
+                                         {0.68f, 0.32f, 0.165f, 0.068f},  {0.77f, 0.14f, 0.062f, 0.026f},
+                                         {0.86f, 0.056f, 0.030f, 0.018f}, {1.00f, 0.020f, 0.016f, 0.014f}};
     int i = 1;
-    while (i < 6 && s > stop[i][0]) i++;
+    while (i < STOPS - 1 && s > stop[i][0]) i++;
     float f = clampf((s - stop[i - 1][0]) / (stop[i][0] - stop[i - 1][0]), 0, 1);
     return float3_mix(float3_load(stop[i - 1] + 1), float3_load(stop[i] + 1), f);
 }
@@ -126,11 +127,28 @@ static void tilt(Float3 position, float millimetres, float height, bool folded, 
 
 // Ash: the remaining leaf of mineral fibres, thin enough to transmit light. It is sooty at first and pales within about
 // ten seconds, in patches; veins and the rims of holes are palest. It crackles into scales some millimetres wide, with
-// dark lines between them. Print remains on it, darker and duller than the filler of the paper around it.
+// dark lines between them. Print remains on it as on the char, lighter than what is around it and silvery: what colours
+// ink leaves more ash than fibres. Char turns to ash at its borders first, unevenly, where it is thinnest.
 
 /// The share of ash, 0 to 1.
 static float ash_amount(const Bent *bent) {
     return stepf(0.78f, 0.94f, bent->burn + 0.06f * bent->coarse) * (1 - 0.75f * stepf(760, 1000, bent->temperature));
+}
+
+/// How near a border of a piece is: 1 on it, 0 `width` m away and in triangles that do not reach it, uneven.
+static float near_border(const PaperState *state, const Bent *bent, float width) {
+    const float distance = (1 - state->rim) * state->spacing;
+    const float uneven = 1 + 0.5f * bent->coarse + 0.6f * bent->medium + 0.4f * bent->fine;
+    return minf(1, 5 * state->rim) * (1 - stepf(0.1f * width, width * maxf(uneven, 0.2f), distance));
+}
+
+/// The share of ash on cold char, `cloud` its patches: plates have pale, ragged borders, and in time a film of ash.
+static float ash_on_char(const PaperState *state, const Bent *bent, float cloud) {
+    const float cold = stepf(PAPER_WHOLE, 0.5f, bent->burn) * (1 - stepf(520, 760, bent->temperature));
+    if (cold <= 0) return 0;
+    const float border = 0.85f * stepf(0, 5, state->age + 2 * bent->coarse) * near_border(state, bent, 1.1e-3f);
+    const float film = 0.36f * stepf(0.53f, 0.62f, bent->burn) * stepf(0.15f, 0.9f, cloud) * stepf(2, 9, state->age);
+    return cold * maxf(border, film);
 }
 
 /// Noise that wears ash to lace: holes above 0.7.
@@ -139,7 +157,13 @@ static float ash_lace(const Bent *bent, float footprint) {
 }
 
 static void ash_shade(const PaperState *state, const Bent *bent, float ink, Point *point) {
-    float amount = ash_amount(bent), size = point->footprint;
+    const float size = point->footprint;
+    if (bent->burn < PAPER_WHOLE) return;
+    const float cloud = paper_noise(bent->position, 14, size, 19) + 0.5f * bent->coarse + 0.2f * bent->medium;
+    const float plate = ash_on_char(state, bent, cloud), amount = maxf(ash_amount(bent), plate);
+    const float dry = 1 - 0.4f * stepf(2, 9, state->age); // tar dries
+    point->gloss *= dry;
+    point->mirror *= dry;
     if (amount <= 0.01f) return;
 
     // veins: creases of the shrinking leaf, long, fine and forking
@@ -154,21 +178,23 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
     Float3 along = float3(0.16f * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
     float fibre = clampf(1.6f - size * 1400, 0, 1) * ridge(noise3(float3_scale(along, 2100), 12), 0.5f);
 
-    float cloud = paper_noise(p, 14, size, 19) + 0.5f * bent->coarse + 0.2f * bent->medium;
-    float pale = stepf(1, 16, state->age + 5 * cloud), rim = stepf(0.25f, 0.6f, ash_lace(bent, size));
-    float value = mixf(0.036f, 0.30f, pale) + (0.010f + 0.07f * pale) * cloud + (0.02f + 0.06f * pale) * vein;
+    float pale = maxf(stepf(1, 13, state->age + 4 * cloud), 0.6f * plate),
+          rim = stepf(0.25f, 0.6f, ash_lace(bent, size));
+    const float thin = maxf(rim, stepf(0.35f, 0.95f, state->rim + 0.25f * bent->fine));
+    float value = mixf(0.040f, 0.34f, pale) + (0.010f + 0.07f * pale) * cloud + (0.02f + 0.06f * pale) * vein;
     value += (0.006f + 0.022f * pale) * fibre + 0.006f * bent->fine;
-    value += (0.03f + 0.07f * pale) * maxf(rim, stepf(0.35f, 0.95f, state->rim + 0.25f * bent->fine));
+    value += (0.03f + 0.07f * pale) * thin;
 
     const float crackle = paper_cracks(bent, 3.2f, 0.035f, size), fine = paper_cracks(bent, 1.1f, 0.05f, size);
     value *= 1 - 0.45f * crackle - 0.25f * fine * (1 - crackle);
+    value += (0.05f + 0.19f * pale) * ink * (1 - 0.3f * crackle);
 
     Float3 tone = float3_mix(float3(0.98f, 0.99f, 1.03f), float3(1.02f, 1.0f, 0.965f), pale);
-    Float3 grey = float3_scale(tone, clampf(value * (1 - (0.35f + 0.3f * pale) * ink), 0.02f, 0.55f));
+    Float3 grey = float3_scale(tone, clampf(value, 0.02f, 0.64f));
     point->albedo = float3_mix(point->albedo, grey, amount);
     point->gloss *= 1 - 0.8f * amount;
-    point->mirror = mixf(point->mirror, 0.55f - 0.25f * pale, amount);
-    point->transmission = mixf(point->transmission, 0.28f, amount);
+    point->mirror = mixf(point->mirror, 0.55f - 0.25f * pale + 0.2f * ink, amount);
+    point->transmission = mixf(point->transmission, 0.28f + 0.27f * thin, amount);
     Float3 folded = float3_mad(p, float3(bent->coarse, bent->medium, -bent->coarse), 0.8e-3f);
     tilt(folded, 8.5f, 0.55f * amount, true, 16, point);
     tilt(folded, 3.4f, 0.26f * amount, true, 17, point);
@@ -232,11 +258,22 @@ static Float3 sparks(const Preview *preview, const PaperState *state, const Bent
     return float3_scale(blackbody_glow(preview->blackbody, 1035 + 50 * bent->fine), 1.5f * glow);
 }
 
+/// Borders of plates that have left the fire glow on, while they are warm, in threads that fade within some seconds.
+static Float3 border_glow(const Preview *preview, const PaperState *state, const Bent *bent, float air) {
+    if (state->burn < PAPER_WHOLE || state->age <= 0 || state->age > 12) return float3(0, 0, 0);
+    const float warm = stepf(420, 560, state->temperature) * (1 - ember_activity(state->burn_rate));
+    const float near = warm > 0 ? near_border(state, bent, 0.6e-3f) : 0;
+    if (near <= 0) return float3(0, 0, 0);
+    const float strength = near * warm * air * line_life(preview, bent) * expf(-0.35f * state->age);
+    return float3_scale(blackbody_glow(preview->blackbody, 1090 - 22 * state->age + 50 * bent->fine), 2.5f * strength);
+}
+
 static void ember_shade(const Preview *preview, const PaperState *state, const Bent *bent, Point *point) {
     if (state->burn < 0.2f || state->temperature < 420) return;
     float air = ember_air(preview, point->position);
     point->glow = float3_add(ember_line(preview, state, bent, air, point->footprint),
                              sparks(preview, state, bent, air, point->footprint));
+    point->glow = float3_add(point->glow, border_glow(preview, state, bent, air));
 
     // a leaf of char that glows away, at its own temperature where it burns. Its heat spreads over a cell or two, but
     // real ember lines are thinner: they follow threads of noise, and break
@@ -338,7 +375,7 @@ static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) 
         float3_mix(float3(0.034f, 0.020f, 0.012f), float3(0.0125f, 0.0125f, 0.0132f), stepf(0.22f, 0.62f, bent->burn));
     float craze = paper_cracks(bent, 2.1f, 0.05f, point->footprint);
     Float3 colour = float3_scale(soot, value * (1 - 0.6f * craze));
-    point->albedo = float3_mix(burnt, float3_mad(colour, float3(0.024f, 0.024f, 0.026f), ink), black);
+    point->albedo = float3_mix(burnt, float3_mad(colour, float3(0.052f, 0.052f, 0.055f), ink), black);
 
     // tar makes it shine
     float tar = clampf(0.75f + 0.5f * bent->coarse - 0.5f * ink, 0.2f, 1.2f);
@@ -371,11 +408,15 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
         if (!touched) return true;
     } else if (is_hole(state, &bent, point->footprint)) return false;
 
-    // browned by heat, up to 0.76, and by what has burnt
-    const float first = 55, last = 360, above = bent.peak - 293; // K above a room's
-    float by_heat = above > first ? 0.76f * minf(logf(above / first) / logf(last / first), 1) : 0;
-    float by_burn = 1 - expf(-7.5f * maxf(bent.burn, 0)), scorch = 1 - (1 - by_heat) * (1 - by_burn);
-    float ink = 1 - clampf(float3_luminance(point->albedo), 0, 1), print = stepf(0.45f, 0.8f, ink);
+    // browned by heat, up to 0.76, and by what has burnt. Paper is denser here than there, over centimetres: the border of
+    // the browned band runs in tongues
+    const float by_burn = 1 - expf(-7.5f * maxf(bent.burn, 0)), first = 55, last = 360; // K above a room's
+    float above = bent.peak - 293, by_heat = 0;
+    if (above > 0.5f * first && by_burn < 0.9f)
+        above *= maxf(1 + 0.8f * paper_noise(bent.position, 9, point->footprint, 7) + 0.35f * bent.coarse, 0.3f);
+    if (above > first) by_heat = 0.76f * minf(logf(above / first) / logf(last / first), 1);
+    const float scorch = 1 - (1 - by_heat) * (1 - by_burn);
+    float ink = 1 - clampf(float3_luminance(point->albedo), 0, 1), print = stepf(0.3f, 0.75f, ink);
     Float3 burnt = float3_mul(scorch_colour(scorch),
                               float3_mix(point->albedo, float3(0.80f, 0.80f, 0.80f), stepf(0.6f, 1.0f, scorch)));
     point->transmission *= 1 - stepf(0.1f, 0.7f, scorch);

@@ -340,3 +340,159 @@ TEST(coatings_mirror_and_blister) {
     assert_true(bright[1] > bright[0] + 15);
     assert_true(uneven[1] > 2 * uneven[0]);
 }
+
+/// How much lighter print is than what is around it, of 255, on a cold sheet that is burnt so far and was ignited so long
+/// ago.
+static float print_on(float burnt, float age) {
+    static uint8_t rgb[BYTES];
+    uint8_t texels[2 * 1 * 3] = {255, 255, 255, 20, 20, 20};
+    Image image = {.width = 2, .height = 1, .rgb = texels};
+    const Image *pictures[1] = {&image};
+    float ignited[4] = {0, 0, 0, 0};
+    Float4 q;
+    quad_make(&q, 0.1f, 0.01f);
+    for (int i = 0; i < 4; i++) q.burn[i] = burnt, q.peak[i] = 900;
+    q.surface.time_ignited = ignited;
+
+    PreviewDef def = above();
+    def.pictures = pictures, def.sheet_count = 1;
+    draw(&def, &q.surface, (double)age, rgb);
+    float sum[2] = {0, 0};
+    for (int y = 4; y < H - 4; y++)
+        for (int x = 4; x < 12; x++)
+            for (int side = 0; side < 2; side++) sum[side] += pixel(rgb, side ? W / 2 + x : W / 2 - x, y)[1];
+    return (sum[1] - sum[0]) / (8 * (H - 8));
+}
+
+/// Print is lighter than char, and than the ash that char turns to: it never fades away between.
+TEST(print_stays_on_ash) {
+    const float stages[6][2] = {{0.6f, 2}, {0.82f, 3}, {0.9f, 4}, {1, 4}, {1, 10}, {1, 40}};
+    for (int k = 0; k < 6; k++) {
+        const float lighter = print_on(stages[k][0], stages[k][1]);
+        print_message("burnt %.2f, %2.0f s: print is lighter by %.1f\n", (double)stages[k][0], (double)stages[k][1],
+                      (double)lighter);
+        assert_true(lighter > 12);
+    }
+}
+
+/// A sheet of SIDE x SIDE vertices in the plane, which share their triangles.
+enum { SIDE = 17, NODES = SIDE * SIDE };
+
+typedef struct Plate {
+    float position[NODES][3], normal[NODES][3], uv[NODES][2], temperature[NODES], peak[NODES], burn[NODES], rate[NODES];
+    float ignited[NODES];
+    int32_t sheet[NODES];
+    uint32_t triangles[2 * (SIDE - 1) * (SIDE - 1)][3];
+    SingeSurface surface;
+} Plate;
+
+static void plate_make(Plate *plate, float width) {
+    memset(plate, 0, sizeof *plate);
+    for (int i = 0; i < NODES; i++) {
+        plate->position[i][0] = width * ((float)(i % SIDE) / (SIDE - 1) - 0.5f);
+        plate->position[i][1] = width * ((float)(i / SIDE) / (SIDE - 1) - 0.5f);
+        plate->normal[i][2] = 1;
+        plate->temperature[i] = plate->peak[i] = 293;
+    }
+
+    uint32_t count = 0;
+    for (uint32_t i = 0; i + SIDE < NODES; i++) {
+        if (i % SIDE == SIDE - 1) continue;
+        const uint32_t pair[2][3] = {{i, i + 1, i + SIDE + 1}, {i, i + SIDE + 1, i + SIDE}};
+        memcpy(plate->triangles[count], pair, sizeof pair);
+        count += 2;
+    }
+    plate->surface = (SingeSurface){.vertex_count = NODES,
+                                    .triangle_count = count,
+                                    .position = plate->position,
+                                    .normal = plate->normal,
+                                    .uv = plate->uv,
+                                    .rest_position = plate->position,
+                                    .temperature = plate->temperature,
+                                    .temperature_peak = plate->peak,
+                                    .burn = plate->burn,
+                                    .burn_rate = plate->rate,
+                                    .time_ignited = plate->ignited,
+                                    .sheet = plate->sheet,
+                                    .triangles = plate->triangles};
+}
+
+/// A camera from above whose picture is `high` m high.
+static PreviewDef close_above(float high) {
+    PreviewDef def = above();
+    def.camera.fov = 2 * atanf(0.5f * high / def.camera.eye[2]);
+    def.ground_height = -INFINITY;
+    for (int c = 0; c < 3; c++) def.background[c] = 0;
+    return def;
+}
+
+/// Mean of a channel over what is within 0.6 mm of the borders of a plate 12 mm wide, and over its middle.
+static void border_and_middle(const uint8_t *rgb, int channel, float mean[2]) {
+    const float millimetres = 16.0f / H;
+    float sum[2] = {0, 0}, count[2] = {0, 0};
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const float across = fabsf((float)x + 0.5f - W / 2) * millimetres;
+            const float along = fabsf((float)y + 0.5f - H / 2) * millimetres, from = 6 - fmaxf(across, along);
+            const int part = from > 0 && from < 0.6f ? 0 : from > 2 ? 1 : 2;
+            if (part == 2 || pixel(rgb, x, y)[0] == 0) continue; // beyond the plate, or bitten off
+            sum[part] += pixel(rgb, x, y)[channel];
+            count[part]++;
+        }
+    for (int k = 0; k < 2; k++) mean[k] = sum[k] / fmaxf(count[k], 1);
+}
+
+/// A loose plate of char is pale at its borders, which glow on while it is warm, for some seconds.
+TEST(plates_have_pale_borders_that_glow_for_a_while) {
+    static uint8_t rgb[BYTES];
+    static Plate plate;
+    float pale[2], young[2], old[2];
+    plate_make(&plate, 0.012f);
+    for (int i = 0; i < NODES; i++) plate.burn[i] = 0.6f, plate.peak[i] = 900;
+    PreviewDef def = close_above(0.016f);
+    draw(&def, &plate.surface, 4, rgb);
+    border_and_middle(rgb, 1, pale);
+
+    for (int c = 0; c < 3; c++) def.sun_colour[c] = 0;
+    for (int i = 0; i < NODES; i++) plate.temperature[i] = 600;
+    draw(&def, &plate.surface, 1, rgb);
+    border_and_middle(rgb, 0, young);
+    draw(&def, &plate.surface, 9, rgb);
+    border_and_middle(rgb, 0, old);
+    print_message("border, middle: cold %.0f, %.0f; warm, red, after 1 s %.0f, %.0f, after 9 s %.0f, %.0f\n",
+                  (double)pale[0], (double)pale[1], (double)young[0], (double)young[1], (double)old[0], (double)old[1]);
+    assert_true(pale[0] > pale[1] + 10);
+    assert_true(young[0] > young[1] + 20);
+    assert_true(young[0] - young[1] > 3 * fmaxf(old[0] - old[1], 1));
+}
+
+/// Between cream and brown, scorched paper has a band of tan, whose border is uneven.
+TEST(scorch_has_a_tan_band_with_an_uneven_border) {
+    static uint8_t rgb[BYTES];
+    static Plate plate;
+    const float pixel_size = 24.0f / W; // mm
+    plate_make(&plate, 0.024f);
+    for (int i = 0; i < NODES; i++)
+        plate.peak[i] = 293 + 450 * expf(-(plate.position[i][0] + 0.012f) / 0.006f); // as ahead of a fire
+    PreviewDef def = close_above(0.016f);
+    draw(&def, &plate.surface, 0, rgb);
+
+    float tan = 0, brown = 0, place = 0, squares = 0;
+    for (int y = 0; y < H; y++) {
+        int border = 0;
+        for (int x = 0; x < W; x++) {
+            const uint8_t *p = pixel(rgb, x, y);
+            const bool is_tan = p[0] >= 150 && p[0] < 225 && p[0] > p[1] + 12 && p[0] - p[2] > 45 && p[0] - p[2] < 105;
+            tan += is_tan;
+            brown += p[0] > 30 && p[0] < 150;
+            if (p[0] - p[2] > 45) border = x;
+        }
+        place += (float)border;
+        squares += (float)border * (float)border;
+    }
+    const float uneven = sqrtf(fmaxf(squares / H - place * place / (H * H), 0)) * pixel_size;
+    print_message("tan %.2f mm wide, brown %.2f mm, border uneven by %.2f mm\n", (double)(tan / H * pixel_size),
+                  (double)(brown / H * pixel_size), (double)uneven);
+    assert_true(tan > 1.4f * brown);
+    assert_true(uneven > 0.8f);
+}
