@@ -19,7 +19,7 @@ fuzz() {
     mkdir -p "$work/corpus" "$work/findings"
     start="$work/corpus"
     limit=10 # s for one input, of a reader; whole simulations have more
-    case $name in step | snapshot | replay) limit=120 ;; esac
+    case $name in step | snapshot | calls | replay) limit=120 ;; esac
     if [ -d "$seeds/$name" ]; then start="$start $seeds/$name"; fi
     # shellcheck disable=SC2086
     if "$1" -max_total_time="$seconds" -timeout="$limit" -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
