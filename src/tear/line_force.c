@@ -27,7 +27,6 @@
 static const float LINE_FILTER = 5e-3f; ///< tau, s
 static const float LINE_ZONE = 1.5e-3f; ///< m, standard deviation of the average
 static const float LINE_ASH = 0.05f;    ///< strength of ash over that of char
-static const float LINE_CHAR = 0.25f;   ///< max strength of char over that of fresh paper which is weakened
 static const float EDGE_STRETCH = 1.4f;
 static const float WET_FROM = 0.1f, WET_TO = 0.6f; ///< water over the dry mass: air-dry, and soaked
 enum { LINE_PASSES = 12 };
@@ -46,7 +45,7 @@ float tear_strength(const TearPlan *plan, const Shell *shell, const State *state
     if (fuel >= 1 || isinf(fresh)) return fresh * weakened;
     float burnt = real_powf(field_at(matter->char_strength, vertex) / fresh, 1 - fuel);
     if (yield > min) burnt *= 1 + (LINE_ASH - 1) * ash;
-    if (weakened < 1) weakened *= real_powf(LINE_CHAR, 1 - fuel);
+    if (weakened < 1) weakened *= real_powf(TEAR_CHAR, 1 - fuel);
     return fresh * float_min(burnt, weakened);
 }
 

@@ -54,6 +54,9 @@ struct TearPlan {
 /// Strength of soaked sheet over that of dry sheet.
 #define TEAR_WET 0.1f
 
+/// Max strength of char over that of fresh sheet, in a sheet that must tear.
+#define TEAR_CHAR 0.25f
+
 /// N/m, the line force at which a vertex tears.
 float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex);
 

@@ -74,7 +74,8 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
         const float strength = plan->fresh[s] = weakest(&shell->sheets[s], shell->matter.strength);
         plan->safe = float_min(plan->safe, weakest(&shell->sheets[s], shell->matter.char_strength));
         plan->min[s] = isinf(strength) ? 1 : float_min(1, 0.5f * shell_carried(shell, s, h) / strength);
-        plan->safe = float_min(plan->safe, strength * plan->min[s] * (shell_holds_water(shell) ? TEAR_WET : 1));
+        plan->safe =
+            float_min(plan->safe, strength * plan->min[s] * TEAR_CHAR * (shell_holds_water(shell) ? TEAR_WET : 1));
         plan->weakened[s] = 1;
     }
 
