@@ -278,8 +278,8 @@ typedef struct SingeSolverDef {
     /// which may fail; all colours in one system; Hooke's law. The defaults below are those of strand
     SingeSolverMethod method;
     /// 0 to 1000; substeps of a step; stiff, thick sheets of small cells need more; 0: as many as the red compliance
-    /// needs, and the weight of hanging sheets and the plume about them. Where sheets may tear in gas, that load needs
-    /// a number too, which is taken if it is over twice this one
+    /// needs, and the weight of hanging sheets and the plume about them. If sheets may tear in gas and this is less
+    /// than half of what that load needs, what it needs is taken
     int substeps;
     int projections;                       ///< 1 to 1000; projections of all colours per substep
     SingeColour order[SINGE_COLOUR_COUNT]; ///< order of the springs' colours, each once; the last is satisfied best

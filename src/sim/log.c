@@ -28,7 +28,7 @@ static void sim_log_solver(const SingeSim *sim) {
                     dynamics_plan_substeps(sim->dynamics));
         else if (dynamics_plan_substeps(sim->dynamics) != solver->substeps)
             sim_log(sim, SINGE_LOG_WARNING,
-                    "solver: %d substeps for %d: sheets hang in their plume, would stretch, and may tear with fewer",
+                    "solver: %d substeps instead of %d: with fewer, light sheets stretch in their plume and may tear",
                     dynamics_plan_substeps(sim->dynamics), solver->substeps);
         return;
     }

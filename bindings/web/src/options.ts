@@ -116,8 +116,8 @@ export interface SolverOptions {
      *  printed, which may fail; all colours in one system; Hooke's law. The defaults below are those of strand */
     method?: "strand" | "paper" | "paper-literal" | "all-at-once" | "mass-spring";
     /** 0 to 1000; substeps of a step; stiff, thick sheets of small cells need more; 0: as many as the red
-     *  compliance needs, and the weight of hanging sheets and the plume about them. Where sheets may tear in gas,
-     *  that load needs a number too, which is taken if it is over twice this one */
+     *  compliance needs, and the weight of hanging sheets and the plume about them. If sheets may tear in gas and
+     *  this is less than half of what that load needs, what it needs is taken */
     substeps?: number;
     /** 1 to 1000; projections of all colours per substep */
     projections?: number;
