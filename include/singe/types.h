@@ -269,7 +269,7 @@ typedef enum SingeSolverMethod {
 
 /// The solver of the shell's motion (docs/equations/dynamics.md).
 ///
-/// Defaults: method SINGE_SOLVER_STRAND, substeps 3, projections 1, order {SINGE_GREEN, SINGE_RED, SINGE_YELLOW,
+/// Defaults: method SINGE_SOLVER_STRAND, substeps 8, projections 1, order {SINGE_GREEN, SINGE_RED, SINGE_YELLOW,
 /// SINGE_BLUE}, regularisation {2, 0.1, 1e-3, 0.01}, attachments true, early_exit true, tolerance 1e-7, stiffness 1000,
 /// smoothing 170, smoothing_length 0.02, height_min 0.3, height_gain 0.5; all else 0 or NULL.
 typedef struct SingeSolverDef {

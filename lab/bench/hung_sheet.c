@@ -18,7 +18,7 @@ BenchSetup sheet_setup(const BenchOptions *options, BenchState state, int steps)
     };
     singe_init_solver_method(&setup.solver, sizeof setup.solver, options->solver);
     setup.rigid = options->solver != SINGE_SOLVER_STRAND;
-    if (options->substeps) setup.solver.substeps = options->substeps;
+    if (options->substeps || options->solver == SINGE_SOLVER_STRAND) setup.solver.substeps = options_substeps(options);
     if (options->projections) setup.solver.projections = options->projections;
     if (options->smoothing >= 0) setup.solver.smoothing = (float)options->smoothing;
     return setup;

@@ -96,6 +96,7 @@ int main(int argc, char **argv) {
 
     def.record.write = record_nowhere;
     def.instructions = SINGE_INSTRUCTIONS_X86_V3;
+    def.solver.substeps = 3;
     def.solver.isotropic = argc > 1; // any argument
     if (singe_sim_create(&def, &sim, &error)) {
         fprintf(stderr, "singe_bench_instructions: %s\n", error.message);

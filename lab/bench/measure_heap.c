@@ -149,7 +149,7 @@ static SingeResult heap_build(const BenchOptions *options, int cells, bool close
     def.thread_count = options->threads;
     def.contact.enabled = true;
     if (!closed) def.contact.thickness = 1e-3f; // of a cloth
-    if (options->substeps) def.solver.substeps = options->substeps;
+    def.solver.substeps = options_substeps(options);
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
     result = closed ? add_ball(*sim, cells) : add_cloth(*sim, cells);
@@ -213,7 +213,7 @@ static SingeResult heap_measure(const BenchOptions *options, int cells, bool clo
         row[CONTACT_STEP] = bench_number(1e3 * t.contact_seconds / steps * 1e5 / springs);
         row[SEARCHES] = bench_number((double)t.contact_searches / steps);
         row[PAIRS] = bench_number((double)t.contact_pairs / steps);
-        row[PUSHES] = bench_number((double)t.contact_repulsions / steps / (options->substeps ? options->substeps : 3));
+        row[PUSHES] = bench_number((double)t.contact_repulsions / steps / options_substeps(options));
         row[STOPS] = bench_number((double)t.contact_stops / steps);
         row[UNRESOLVED] = bench_number((double)(t.contact_unresolved + t.contact_dropped));
         row[STRAIN] = (BenchValue){.number = {100 * stats.strain_max, 100 * stats.strain_p99, 100 * stats.strain_mean}};

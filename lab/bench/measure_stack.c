@@ -104,7 +104,7 @@ static SingeResult stack_measure(const BenchOptions *options, uint32_t sheets, u
     def.thread_count = options->threads;
     def.time_step = 1.0f / (STEPS_FRAME * FPS);
     def.contact.enabled = true;
-    if (options->substeps) def.solver.substeps = options->substeps;
+    def.solver.substeps = options_substeps(options);
     if (singe_sim_create(&def, &sim, error)) return error->code;
     SingeResult result = stack_fill(sim, sheets, cells, error);
 

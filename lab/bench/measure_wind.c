@@ -59,7 +59,7 @@ static SingeResult wind_measure(const BenchOptions *options, uint32_t cells, flo
     def.thread_count = options->threads;
     def.time_step = 1.0f / STEPS_SECOND;
     def.contact.enabled = true;
-    if (options->substeps) def.solver.substeps = options->substeps;
+    def.solver.substeps = options_substeps(options);
     if (singe_sim_create(&def, &sim, error)) return error->code;
 
     const int steps = options->time > 0 ? (int)fmax(1, options->time * STEPS_SECOND) : STEPS;

@@ -7,6 +7,8 @@ int options_cells(double springs) {
     return cells < 2 ? 2 : (int)cells;
 }
 
+int options_substeps(const BenchOptions *options) { return options->substeps ? options->substeps : 3; }
+
 BenchList bench_list(const BenchList *asked, int count, const double *defaults) {
     if (asked->count) return *asked;
     BenchList list = {.count = count};

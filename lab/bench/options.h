@@ -71,4 +71,7 @@ BenchList bench_list(const BenchList *asked, int count, const double *defaults);
 /// Cells per side of a square sheet with about so many springs, ten per cell.
 int options_cells(double springs);
 
+/// As asked for, or 3: fewer than the default, so that a step's cost compares with that of earlier versions.
+int options_substeps(const BenchOptions *options);
+
 #endif
