@@ -21,8 +21,17 @@ static Point cross(Point a, Point b) {
 /// Six times the volume of a tetrahedron.
 static double volume(Point a, Point b, Point c, Point d) { return dot(cross(minus(b, a), minus(c, a)), minus(d, a)); }
 
-/// Segment p-q strictly through triangle t.
+static double least(double a, double b) { return a < b ? a : b; }
+static double most(double a, double b) { return a > b ? a : b; }
+
+/// Segment p-q strictly through triangle t. In a plane the volumes are rounding errors; the boxes tell what is apart.
 static bool pierces(Point p, Point q, const Point t[3]) {
+    for (int k = 0; k < 3; k++) {
+        const double low = least(least(t[0].x[k], t[1].x[k]), t[2].x[k]);
+        const double high = most(most(t[0].x[k], t[1].x[k]), t[2].x[k]);
+        if (most(p.x[k], q.x[k]) < low || least(p.x[k], q.x[k]) > high) return false;
+    }
+
     if ((volume(t[0], t[1], t[2], p) > 0) == (volume(t[0], t[1], t[2], q) > 0)) return false;
     const bool first = volume(p, q, t[0], t[1]) > 0;
     return first == (volume(p, q, t[1], t[2]) > 0) && first == (volume(p, q, t[2], t[0]) > 0);

@@ -49,6 +49,7 @@ static SingeSim *new_sim(int threads, bool contact) {
     SingeSim *sim;
     def.thread_count = threads;
     def.contact.enabled = contact;
+    def.solver.substeps = 3; // sheets stay soft, and fold
     assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
     return sim;
 }

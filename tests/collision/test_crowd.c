@@ -119,7 +119,7 @@ static SingeSim *crowd(const Crowd *crowd, int threads, const SingeAllocator *al
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
     def.thread_count = threads, def.contact.enabled = true;
-    def.time_step = 1.0f / 96;
+    def.time_step = 1.0f / 96, def.solver.substeps = 3; // coarse: sheets press on each other
     if (allocator) def.allocator = *allocator;
     assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
     for (int s = 0; s < crowd->sheets && !crowd->soup; s++) {

@@ -111,10 +111,11 @@ TEST(damping_decays_exponentially) {
     material.damping = singe_param(2);
     bench_open(&bench, quads_grid(4, 4, 0.01f, 0.01f, false), &material, 1);
     bench.plan->settings.gravity[2] = 0;
+    bench.plan->settings.solver.substeps = 3; // each rounds positions
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         float3_store(bench.state.dynamics.velocity[i], float3(0.3f, -0.2f, 0.1f));
     for (int step = 0; step < 480; step++) bench_step(&bench, 1.0f / 480);
-    double substeps = 480.0 * bench.settings.solver.substeps, left = pow(1 + 2 / substeps, -substeps);
+    double substeps = 480.0 * bench.plan->settings.solver.substeps, left = pow(1 + 2 / substeps, -substeps);
     double momentum = 0, mass = 0;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
         double m = (double)bench.shell.matter.mass[i];
@@ -191,7 +192,7 @@ TEST(spin_decays_as_predicted) {
                 bent ? "bent" : "flat", axis ? "z" : "x", with, without);
             assert_true(fabs(without - expected) < 0.006);
             if (bent && axis == 0) assert_true(with > 0.8 && with < 0.9);
-            else assert_true(fabs(with - without) < 1e-3);
+            else assert_true(fabs(with - without) < 2e-3);
         }
 }
 
