@@ -27,6 +27,8 @@
 static const float LINE_FILTER = 5e-3f; ///< tau, s
 static const float LINE_ZONE = 1.5e-3f; ///< m, standard deviation of the average
 static const float LINE_ASH = 0.05f;    ///< strength of ash over that of char
+static const float LINE_CHAR = 0.25f;   ///< max strength of char over that of fresh sheet, in a sheet that must tear
+static const float LINE_WET = 0.1f;     ///< strength of soaked over that of dry sheet
 static const float EDGE_STRETCH = 1.4f;
 static const float WET_FROM = 0.1f, WET_TO = 0.6f; ///< water over the dry mass: air-dry, and soaked
 enum { LINE_PASSES = 12 };
@@ -40,13 +42,28 @@ float tear_strength(const TearPlan *plan, const Shell *shell, const State *state
     // water opens the bonds between fibres: paper that is soaked keeps some 10 % of its strength (Hubbe, Mini-Encyclopedia
     // of Papermaking Wet-End Chemistry: more than 10 or 15 % is wet-strength paper)
     const float soaked = state->heat.water ? (state->heat.water[vertex] - WET_FROM) / (WET_TO - WET_FROM) : 0;
-    if (soaked > 0) weakened *= real_powf(TEAR_WET, float_min(soaked, 1));
+    if (soaked > 0) weakened *= real_powf(LINE_WET, float_min(soaked, 1));
 
     if (fuel >= 1 || isinf(fresh)) return fresh * weakened;
     float burnt = real_powf(field_at(matter->char_strength, vertex) / fresh, 1 - fuel);
     if (yield > min) burnt *= 1 + (LINE_ASH - 1) * ash;
-    if (weakened < 1) weakened *= real_powf(TEAR_CHAR, 1 - fuel);
+    if (weakened < 1) weakened *= real_powf(LINE_CHAR, 1 - fuel);
     return fresh * float_min(burnt, weakened);
+}
+
+float tear_strength_least(const Shell *shell, uint32_t index, float weakened) {
+    const Matter *matter = &shell->matter;
+    const Sheet *sheet = &shell->sheets[index];
+    float least = INFINITY;
+
+    if (shell_holds_water(shell)) weakened *= LINE_WET;
+    if (weakened < 1) weakened *= LINE_CHAR;
+    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
+        const bool leaves_ash = field_at(matter->char_yield, v) > field_at(matter->mass_min, v);
+        const float burnt = field_at(matter->char_strength, v) * (leaves_ash ? LINE_ASH : 1);
+        least = float_min(least, float_min(burnt, field_at(matter->strength, v) * weakened));
+    }
+    return least;
 }
 
 typedef struct Measure {

@@ -35,14 +35,6 @@ static const float STRETCH_MAX = 1.03f; ///< paper breaks at 2 to 4 %
 /// Min line force across an edge that tears, over N_1. Edges within 10 degrees of N_1's direction carry less.
 static const float EDGE_MIN = 0.03f;
 
-/// A sheet's smallest strength.
-static float weakest(const Sheet *sheet, Field strength) {
-    float min = INFINITY;
-    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
-        min = float_min(min, field_at(strength, v));
-    return min;
-}
-
 SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPlan **out) {
     TearPlan *plan;
     *out = NULL;
@@ -68,14 +60,16 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
         float4_store(plan->centroid[c], (a + (float4_load(x[corner[2]]) + float4_load(x[corner[3]]))) * 0.25f);
     }
 
-    // strengths: no tear begins below `safe`
     plan->safe = INFINITY;
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
-        const float strength = plan->fresh[s] = weakest(&shell->sheets[s], shell->matter.strength);
-        plan->safe = float_min(plan->safe, weakest(&shell->sheets[s], shell->matter.char_strength));
-        plan->min[s] = isinf(strength) ? 1 : float_min(1, 0.5f * shell_carried(shell, s, h) / strength);
-        plan->safe =
-            float_min(plan->safe, strength * plan->min[s] * TEAR_CHAR * (shell_holds_water(shell) ? TEAR_WET : 1));
+        const Sheet *sheet = &shell->sheets[s];
+        float fresh = INFINITY;
+        for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
+            fresh = float_min(fresh, field_at(shell->matter.strength, v));
+
+        plan->fresh[s] = fresh;
+        plan->min[s] = isinf(fresh) ? 1 : float_min(1, 0.5f * shell_carried(shell, s, h) / fresh);
+        plan->safe = float_min(plan->safe, tear_strength_least(shell, s, plan->min[s]));
         plan->weakened[s] = 1;
     }
 

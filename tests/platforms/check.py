@@ -71,8 +71,8 @@ def install(systems, build):
     if packages:
         environment = ["env", "DEBIAN_FRONTEND=noninteractive"]
         subprocess.run([*root, "apt-get", "update", "-q"], check=True)
-        subprocess.run([*root, *environment, "apt-get", "install", "-q", "-y", "--no-install-recommends", *packages],
-                       check=True)
+        subprocess.run([*root, *environment, "apt-get", "-o", "DPkg::Lock::Timeout=300", "install", "-q", "-y",
+                        "--no-install-recommends", *packages], check=True)
     for system, (name, _) in FROM_PYPI.items():
         if system not in systems or python_with(system, build) or (system == "macos" and zig(build)):
             continue

@@ -1,5 +1,8 @@
 // Sheets that tear: where, into what, and that nothing is lost by it.
+#include "common/real.h"
+#include "sim/sim_internal.h"
 #include "support/support.h"
+#include "tear/tear_plan.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -513,6 +516,67 @@ TEST(char_tears_before_paper_that_must_tear) {
     assert_true(charred > 0);
     assert_int_equal(fresh, 0);
     singe_sim_destroy(sim);
+}
+
+/// No vertex is ever weaker than what a step skips unseen: burnt to any mass, soaked, and in a sheet that must tear.
+TEST(nothing_is_weaker_than_what_is_skipped) {
+    for (int wet = 0; wet < 2; wet++)
+        for (int ash = 0; ash < 2; ash++) {
+            SingeSimDef def = pull_def();
+            def.solver.substeps = 2;
+            SingeMaterialDef material = singe_default_material();
+            material.char_strength = singe_param(ash ? 0.2f : 20);
+            if (!ash) material.char_yield = material.mass_min;
+            if (wet) material.moisture = singe_param(0.5f);
+            SingeSim *sim = pulled(&def, 500, 0.1f, &material, 0);
+            State *state = &sim->state;
+            TearPlan *plan = sim->tear;
+            float least = INFINITY;
+
+            for (int must = 0; must < 2; must++) {
+                tear_stretched(plan, 0, must ? 2 : 1);
+                for (uint32_t v = 0; v < (ALONG + 1) * (ACROSS + 1); v++)
+                    for (int step = 0; step < 25; step++) {
+                        state->burn.fuel[v] = 0.25f * (float)(step % 5);
+                        const float min = material.mass_min.value * (1 - state->burn.fuel[v]) + state->burn.fuel[v];
+                        state->burn.mass[v] = min + (1 - min) * 0.25f * (float)(step / 5);
+                        if (wet) state->heat.water[v] = step % 2 ? 1 : 0;
+                        least = float_min(least, tear_strength(plan, &sim->shell, state, v));
+                    }
+            }
+
+            print_message("%s%s: %.4f N/m, skipped below %.4f\n", wet ? "wet, " : "", ash ? "with ash" : "char", least,
+                          plan->safe);
+            assert_true(least >= plan->safe * (1 - 1e-5f));
+            assert_true(least < plan->safe * 1.01f); // and no lower: what is looked at costs time
+            singe_sim_destroy(sim);
+        }
+}
+
+/// A strip whose middle is ash parts there under what hangs from it, though char would carry that four times.
+TEST(ash_parts_under_what_char_carries) {
+    for (int ash = 0; ash < 2; ash++) {
+        SingeSimDef def = pull_def();
+        def.gravity[0] = 9.81f, def.air_density = 0, def.solver.attachments = false;
+        SingeMaterialDef material = singe_default_material();
+        material.char_strength = singe_param(0.4f), material.mass_loss = singe_param(0);
+        material.damping = singe_param(20);
+        TestMesh mesh = test_grid(ALONG, ACROSS, side, side);
+        SingeSim *sim = test_sim(&def, mesh, &material);
+        grip(sim, false, 0);
+        for (uint32_t v = 0; v < (ALONG + 1) * (ACROSS + 1); v++) {
+            if (v % (ALONG + 1) != ALONG / 2) continue;
+            sim->state.burn.fuel[v] = 0;
+            sim->state.burn.mass[v] = ash ? material.mass_min.value : material.char_yield.value;
+        }
+
+        test_steps(sim, STEPS);
+        const SingeStats stats = singe_sim_stats(sim);
+        print_message("%s: %u tears\n", ash ? "ash" : "char", (unsigned)stats.tears);
+        if (ash) assert_true(stats.tears > ACROSS / 2 && stats.pieces == 2);
+        else assert_int_equal(stats.tears, 0);
+        singe_sim_destroy(sim);
+    }
 }
 
 /// A disc: a hub of SPOKES / 2 cells, more than a split knows, in rings of SPOKES vertices.
