@@ -221,7 +221,7 @@ typedef struct SingePinDef {
     uint32_t point_count; ///< a pin needs points or vertices
     const float *points;  ///< [3 * point_count] m, each within 1e9
     /// m, 0 to 1e6; all particles within this distance of a point are held, and at least the vertex nearest to each
-    /// point; singe check warns of a point that misses the sheet by a tenth of its diagonal
+    /// point; a point that misses the sheet by a tenth of its diagonal is warned of
     float radius;
     uint32_t vertex_count;    ///< 0 without a list of vertices
     const uint32_t *vertices; ///< [vertex_count] of the sheet's mesh, from 0

@@ -4,47 +4,6 @@
 
 #include <math.h>
 
-static double diagonal(const Mesh *mesh) {
-    double sum = 0;
-    for (size_t i = 0; i < 3; i++) {
-        double low = INFINITY, high = -INFINITY;
-        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-            low = fmin(low, (double)mesh->positions[3 * (size_t)v + i]);
-            high = fmax(high, (double)mesh->positions[3 * (size_t)v + i]);
-        }
-        sum += (high - low) * (high - low);
-    }
-
-    return sqrt(sum);
-}
-
-/// A point that misses its sheet: farther beyond its radius than a tenth of the sheet's diagonal. A point that is a
-/// cell or two off still holds the intended vertex.
-static void warn_of_pin(const Scene *scene, const SceneAssets *assets, const ScenePin *pin, const SingeLog *log) {
-    const Mesh *mesh = &assets->meshes[pin->sheet_index];
-    const double reach = (double)pin->radius + 0.1 * diagonal(mesh);
-    for (uint32_t k = 0; k < pin->point_count; k++) {
-        const float *p = pin->points[k].position;
-        double min = INFINITY;
-        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-            double sum = 0;
-            for (size_t i = 0; i < 3; i++) {
-                double offset = (double)mesh->positions[3 * (size_t)v + i] - (double)p[i];
-                sum += offset * offset;
-            }
-            min = fmin(min, sum);
-        }
-
-        const double gap = sqrt(min);
-        if (!(gap > reach)) continue;
-        message_warn(
-            log, scene->text, pin->location,
-            "the pin's point [%.6g, %.6g, %.6g] m misses the sheet: it holds only the nearest vertex, which is %.3g m away",
-            (double)p[0], (double)p[1], (double)p[2], gap);
-        return; // one warning is enough
-    }
-}
-
 /// A motion that ends before the scene does.
 static void warn_of_motion(const Scene *scene, const SceneMotion *motion, const SceneSequence *sequence,
                            const SingeLog *log) {
@@ -77,21 +36,31 @@ void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *l
         if (why) message_warn(log, scene->text, scene->sources[i].location, "the source heats nothing: %s", why);
     }
     scene_warn_of_fires(scene, assets, log);
-    for (uint32_t i = 0; i < scene->pin_count; i++) warn_of_pin(scene, assets, &scene->pins[i], log);
     for (uint32_t i = 0; i < scene->collider_count; i++)
         warn_of_motion(scene, &scene->colliders[i].motion, &assets->collider_motions[i], log);
     for (uint32_t i = 0; i < scene->pin_count; i++)
         warn_of_motion(scene, &scene->pins[i].motion, &assets->pin_motions[i], log);
 
-    // probes whose point is not on the sheet: for uv by more than rounding, for points as for pins
+    // probes whose point is not on the sheet: for uv by more than rounding, for points by a tenth of its diagonal, as pins
     for (uint32_t i = 0; i < scene->probe_count; i++) {
         const SceneProbe *probe = &scene->probes[i];
+        const Mesh *mesh = &assets->meshes[probe->sheet_index];
         const double gap = assets->probes[i].distance;
+        double diagonal2 = 0;
+        for (size_t axis = 0; axis < 3; axis++) {
+            double low = INFINITY, high = -INFINITY;
+            for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+                low = fmin(low, (double)mesh->positions[3 * (size_t)v + axis]);
+                high = fmax(high, (double)mesh->positions[3 * (size_t)v + axis]);
+            }
+            diagonal2 += (high - low) * (high - low);
+        }
+
         if (probe->kind == SCENE_PROBE_UV && gap > 1e-4)
             message_warn(log, scene->text, probe->location,
                          "the sheet has no uv [%.6g, %.6g]: the probe takes the nearest, %.3g away",
                          (double)probe->uv[0], (double)probe->uv[1], gap);
-        else if (probe->kind == SCENE_PROBE_POINT && gap > 0.1 * diagonal(&assets->meshes[probe->sheet_index]))
+        else if (probe->kind == SCENE_PROBE_POINT && gap > 0.1 * sqrt(diagonal2))
             message_warn(
                 log, scene->text, probe->location,
                 "the probe's point [%.6g, %.6g, %.6g] m misses the sheet: it takes the nearest point, %.3g m away",

@@ -123,6 +123,14 @@ void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float 
             collider, 100 * share, (double)depth, (double)position.x, (double)position.y, (double)position.z);
 }
 
+void sim_log_missed(const SingeSim *sim, uint32_t pin, uint32_t sheet, const float *point, float distance) {
+    sim_log(
+        sim, SINGE_LOG_WARNING,
+        "pin %u: its point [%.6g, %.6g, %.6g] m misses sheet \"%s\": it holds only the nearest vertex, which is %.3g m "
+        "away",
+        pin, (double)point[0], (double)point[1], (double)point[2], sim->sheets[sheet].sheet.name, (double)distance);
+}
+
 void sim_log_turned(const SingeSim *sim, uint32_t collider) {
     sim_log(sim, SINGE_LOG_INFO, "collider %u: its mesh was inside out and has been flipped", collider);
 }

@@ -40,21 +40,6 @@ static float pin_distance2(const Shell *shell, uint32_t particle, const float *p
     return float3_dot(d, d);
 }
 
-/// Whether a pin holds a particle; `nearest` are the points' nearest vertices.
-static bool pin_takes(const Shell *shell, const SingePinDef *def, const uint32_t *nearest, const uint8_t *listed,
-                      uint32_t particle) {
-    SINGE_ASSERT(particle < shell->particle_count);
-    if (listed[particle]) return true;
-    if (shell_is_corner(shell, particle) && shell_is_spare(shell, particle)) return false;
-    // centres lie a thickness off the mesh, but points are given on the mesh
-    float reach = def->radius + (shell_is_corner(shell, particle) ? 0 : field_at(shell->matter.thickness, particle));
-    for (uint32_t k = 0; k < def->point_count; k++)
-        if (nearest[k] == particle ||
-            (def->radius > 0 && pin_distance2(shell, particle, def->points + 3 * (size_t)k) <= reach * reach))
-            return true;
-    return false;
-}
-
 /// Points (m) up to this size have finite squared distances.
 static const float pin_position_max = 1e9f;
 
@@ -81,34 +66,61 @@ static SingeResult pin_check(SingeSim *sim, const SingePinDef *def) {
     return SINGE_OK;
 }
 
+/// The vertex with cells that is nearest to each point, the first of equals. Warns of the first point that misses the
+/// sheet: farther from it beyond the radius than a tenth of its diagonal, as one a cell or two off is still meant so.
+static void pin_aim(const SingeSim *sim, const SingePinDef *def, const Pin *pin, uint32_t *nearest) {
+    const Shell *shell = &sim->shell;
+    const Sheet *sheet = &shell->sheets[def->sheet.index];
+    const uint32_t end = sheet->vertex_first + sheet->vertex_count;
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    bool warned = false;
+
+    for (uint32_t v = sheet->vertex_first; v < end; v++)
+        for (int i = 0; i < 3 && shell->matter.area[v] > 0; i++) {
+            low[i] = fminf(low[i], shell->rest_position[v][i]);
+            high[i] = fmaxf(high[i], shell->rest_position[v][i]);
+        }
+    const float diagonal = float3_length(float3_sub(float3_load(high), float3_load(low)));
+
+    for (uint32_t k = 0; k < def->point_count; k++) {
+        const float *point = def->points + 3 * (size_t)k;
+        float min = INFINITY;
+        nearest[k] = sheet->vertex_first;
+        for (uint32_t v = sheet->vertex_first; v < end; v++) {
+            const float d = pin_distance2(shell, v, point);
+            if (d >= min || !(shell->matter.area[v] > 0)) continue;
+            min = d;
+            nearest[k] = v;
+        }
+
+        if (warned || !(sqrtf(min) > def->radius + 0.1f * diagonal)) continue;
+        sim_log_missed(sim, (uint32_t)(pin - sim->pins.items), def->sheet.index, point, sqrtf(min));
+        warned = true;
+    }
+}
+
 /// Lists the particles of a checked pin, in order, and their anchors.
 static bool pin_gather(SingeSim *sim, const SingePinDef *def, Pin *pin) {
     const Shell *shell = &sim->shell;
-    const Sheet *sheet = &shell->sheets[def->sheet.index];
+    const uint32_t first = shell->sheets[def->sheet.index].vertex_first;
     Memory *memory = &sim->memory;
     uint32_t *nearest = NULL;
     uint8_t *listed = NULL;
     bool ok = NEW(memory, nearest, def->point_count) && NEW(memory, listed, shell->particle_count);
 
     if (ok) {
-        // the nearest vertex with cells to each point; the first of equals
-        for (uint32_t k = 0; k < def->point_count; k++) {
-            nearest[k] = sheet->vertex_first;
-            float min = INFINITY;
-            for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
-                float d = pin_distance2(shell, v, def->points + 3 * (size_t)k);
-                if (d < min && shell->matter.area[v] > 0) {
-                    min = d;
-                    nearest[k] = v;
-                }
-            }
-        }
+        pin_aim(sim, def, pin, nearest);
 
-        // which particles are held
-        for (uint32_t k = 0; k < def->vertex_count; k++) listed[sheet->vertex_first + def->vertices[k]] = 1;
+        // those listed, the nearest, and what is within the radius: centres lie a thickness off the mesh, on which points are
+        for (uint32_t k = 0; k < def->vertex_count; k++) listed[first + def->vertices[k]] = 1;
         uint32_t count = 0;
         for (uint32_t i = 0; i < shell->particle_count; i++) {
-            listed[i] = shell->matter.sheet[i] == def->sheet.index && pin_takes(shell, def, nearest, listed, i);
+            const bool corner = shell_is_corner(shell, i), spare = corner && shell_is_spare(shell, i);
+            const bool may = shell->matter.sheet[i] == def->sheet.index && !spare;
+            const float reach = def->radius + (corner ? 0 : field_at(shell->matter.thickness, i));
+            for (uint32_t k = 0; k < def->point_count && may && !listed[i]; k++)
+                listed[i] = nearest[k] == i ||
+                            (def->radius > 0 && pin_distance2(shell, i, def->points + 3 * (size_t)k) <= reach * reach);
             count += listed[i];
         }
         ok = NEW(memory, pin->particles, count) && NEW(memory, pin->anchors, count);

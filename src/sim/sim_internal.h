@@ -111,6 +111,8 @@ SingeResult sim_build(SingeSim *sim);
 void sim_log_commit(const SingeSim *sim);
 /// Logs once that conduction is less exact than requested.
 void sim_log_unconverged(SingeSim *sim);
+/// Logs that a pin's point lies off its sheet.
+void sim_log_missed(const SingeSim *sim, uint32_t pin, uint32_t sheet, const float *point, float distance);
 /// Logs that a collider's mesh was inside out.
 void sim_log_turned(const SingeSim *sim, uint32_t collider);
 /// Logs once that a sheet has no spare vertices left for tears.

@@ -235,6 +235,38 @@ TEST(sheets_that_begin_inside_a_collider_are_logged) {
     }
 }
 
+/// A pin's point that misses its sheet causes one warning, before the commit and after it; one that is near does not.
+TEST(pins_that_miss_their_sheet_are_logged) {
+    static const float points[2][6] = {{0, 0, 0.002f, 0, 0, 0.004f}, {0, 0, 0.3f, 0, 0, 0.4f}};
+    for (int late = 0; late < 2; late++)
+        for (int misses = 0; misses < 2; misses++) {
+            Heard heard = {0};
+            SingeSimDef def = singe_default_sim();
+            def.log = (SingeLog){hear, &heard};
+            TestMesh mesh = test_grid(8, 8, 0.005f, 0.005f);
+            const SingeSheetDef sheet = test_sheet(&mesh);
+            SingePinDef pin = singe_default_pin();
+            SingeSheetId id;
+            SingePinId pin_id;
+            SingeSim *sim;
+            assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+            test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+            pin.sheet = id;
+            pin.point_count = 2;
+            pin.points = points[misses];
+            pin.radius = 0;
+
+            if (late) test_ok(sim, singe_sim_commit(sim));
+            test_ok(sim, singe_sim_add_pin(sim, &pin, &pin_id));
+            if (!late) test_ok(sim, singe_sim_commit(sim));
+            assert_int_equal(heard.lines[SINGE_LOG_WARNING], misses);
+            if (misses)
+                assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], "pin 0: its point [0, 0, 0.3] m misses sheet"));
+            singe_sim_destroy(sim);
+            test_mesh_free(&mesh);
+        }
+}
+
 TEST(timers_and_time_grow) {
     Scene scene = scene_make(NULL, 10);
     SingeTimers last = singe_sim_timers(scene.sim);

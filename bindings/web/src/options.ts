@@ -94,7 +94,7 @@ export interface ColliderOptions {
 
 export interface PinOptions {
     /** m, 0 to 1e6; all particles within this distance of a point are held, and at least the vertex nearest to each
-     *  point; singe check warns of a point that misses the sheet by a tenth of its diagonal */
+     *  point; a point that misses the sheet by a tenth of its diagonal is warned of */
     radius?: number;
 }
 
