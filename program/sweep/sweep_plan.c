@@ -386,9 +386,9 @@ static void read_plan(PlanReader *reader, bool fit) {
     if (!arena_failed(plan->arena)) check_overlaps(reader, node_find(root, "set"));
 
     const bool drawn = plan->method == PLAN_RANDOM || plan->method == PLAN_LATIN_HYPERCUBE;
-    if (!plan->scene) message_add(messages, text, root->location, "a plan needs 'scene'");
-    if (!plan->parameter_count) message_add(messages, text, root->location, "a plan needs 'parameters'");
-    if (drawn && !plan->samples)
+    if (!node_find(root, "scene")) message_add(messages, text, root->location, "a plan needs 'scene'");
+    if (!node_find(root, "parameters")) message_add(messages, text, root->location, "a plan needs 'parameters'");
+    if (drawn && !node_find(root, "samples"))
         message_add(messages, text, root->location, "method %s needs 'samples'", methods[plan->method]);
     if (fit && !plan->target.given && !messages->count)
         message_add(messages, text, root->location, "a fit needs 'target'");

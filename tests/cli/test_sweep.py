@@ -97,7 +97,7 @@ class Sweep(Case):
             ("method: grd\nparameters: {pace: [1]}\n", 2, "expected grid, list, random or latin-hypercube, got 'grd'"),
             ("parameters:\n  pace: {from: 1, to: 2 C, steps: 2}\n", 3, "'from' has none and 'to' has C"),
             ("parameters:\n  pace: {from: 1, to: 2}\n", 3, "needs 'steps'"),
-            ("parameters:\n  pace: {from: 1, stop: 2}\n", 3, "unknown key 'stop'"),
+            ("parameters:\n  pace: {from: 1, to: 2, steps: 2, stop: 2}\n", 3, "unknown key 'stop'"),
             ("parameters:\n  pace: 3\n", 3, "expected a list of values, or a range"),
             ("parameters:\n  pace: []\n", 3, "expected a list of values, or a range"),
             ("parameters:\n  pace: {from: 0, to: 1, steps: 3, logarithmic: yes}\n", 3, "above 0"),
@@ -112,6 +112,8 @@ class Sweep(Case):
             ("speed: 1\nparameters: {pace: [1]}\n", 2, "unknown key 'speed'"),
             ("set: 1\nparameters: {pace: [1]}\n", 2, "set: expected a map"),
             ("", 1, "needs 'parameters'"),
+            ("parameters: {}\n", 2, "expected a map of 1 to 64 keys of the scene"),
+            ("method: random\nsamples: many\nparameters: {pace: {from: 1, to: 2}}\n", 3, "whole number"),
             ("parameters:\n  pace: [1, 2]\n  pace: [3]\n", 4, "'pace' is given twice in parameters"),
             ("parameters:\n  pace: {from: 1, to: 2, from: 2, steps: 2}\n", 3, "'from' is given twice in a range"),
             ("set: {fps: 24, fps: 25}\nparameters: {pace: [1]}\n", 2, "'fps' is given twice in set"),
@@ -134,6 +136,7 @@ class Sweep(Case):
                 self.write_plan(text)
                 _, err = self.sweep(expect=2)
                 self.assertRegex(err, rf"plan.yaml:{line}:\d+: error: .*" + re.escape(expected))
+                self.assertEqual(err.count(": error: "), 1, err)
                 self.assertFalse(os.path.exists(self.path("s")))
         with open(self.path("plan.yaml"), "w") as file:
             file.write("- 1\n")
