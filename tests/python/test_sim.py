@@ -434,6 +434,78 @@ class Given(Case):
             with self.subTest(text), self.assertRaisesRegex(kind, text):
                 call()
 
+    def test_bad_arguments_are_named(self):
+        """Whatever is given for an argument is taken, or refused by a message that says which it is."""
+        grid = singe.grid((0.02, 0.02), (2, 2))
+        sim, early = singe.Sim(), singe.Sim()
+        sheet = sim.sheet(*grid)
+        sim.commit()
+        corner = 0.01 * np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) - [0, 0, 1]
+        sides = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+        pin, source = sim.pin(sheet, points=[[0, 0, 0]]), sim.source("callback", callback=lambda view: 0.0)
+        collider = sim.collider("deforming", vertices=corner, triangles=sides)
+        drawn = corner + [0, 0, 1]
+
+        def varies(**field):
+            return early.sheet(*grid, material={"thickness": singe.Vary(1e-4, 2e-4, **field)})
+
+        calls = {
+            "pace": (lambda x: singe.Sim(pace=x), sim.set_pace),
+            "gravity": (lambda x: singe.Sim(gravity=x), sim.set_gravity),
+            "thread": (lambda x: singe.Sim(threads=x), lambda x: singe.Sim.load(sim.save(), threads=x)),
+            "seed": (lambda x: singe.Sim(seed=x),),
+            "gas": (lambda x: singe.Sim(gas=x),),
+            "solver": (lambda x: singe.Sim(solver=x),),
+            "wind": (lambda x: singe.Sim(wind=x),),
+            "points": (lambda x: early.sheet(x, grid.faces), lambda x: sheet.render_mesh(x, sides)),
+            "face": (lambda x: early.sheet(grid.points, x),),
+            "uv": (lambda x: early.sheet(*grid[:2], x), lambda x: early.sheet(*grid[:2], corner_uv=x),
+                   lambda x: sheet.render_mesh(drawn, sides, x)),
+            "material": (lambda x: early.sheet(*grid, material=x), sheet.set_material,
+                         lambda x: early.sheet(*grid, material={"base": x})),
+            "compliance": (lambda x: early.sheet(*grid, material={"compliance": x}),),
+            "velocity": (lambda x: early.sheet(*grid, velocity=x), sim.wind, sheet.set_velocity),
+            "drop_pieces_below": (lambda x: early.sheet(*grid, drop_pieces_below=x),),
+            "mesh": (lambda x: early.sheet(*grid, mesh=x),),
+            "wet": (lambda x: early.sheet(*grid, wet=x),),
+            "thickness": (lambda x: early.sheet(*grid, material={"thickness": x}), lambda x: varies(noise=x),
+                          lambda x: varies(attribute=x), lambda x: varies(texture=x)),
+            "kind": (sim.source, sim.collider),
+            "path|null byte": (lambda x: sim.source("ball", path=x), pin.move, collider.move, lambda x: sim.save(x)),
+            "texture": (lambda x: sim.source("texture", texture=x),),
+            "strength": (lambda x: sim.source("spot", strength=x),),
+            "callback": (lambda x: sim.source("callback", callback=x), source.set_callback),
+            "position": (sim.spot, lambda x: pin.set_positions(x, 1)),
+            "radius": (lambda x: sim.spot([0, 0, 0], radius=x), lambda x: sim.pin(sheet, [[0, 0, 0]], radius=x)),
+            "sheet": (lambda x: sim.pin(x, [[0, 0, 0]]),),
+            "point": (lambda x: sim.pin(sheet, points=x),),
+            "vert": (lambda x: sim.pin(sheet, vertices=x), lambda x: sim.collider("mesh", vertices=x, triangles=sides),
+                     lambda x: collider.set_vertices(x, 1)),
+            "triangles": (lambda x: sim.collider("mesh", vertices=corner, triangles=x),
+                          lambda x: sheet.render_mesh(drawn, x)),
+            "heights": (lambda x: sim.collider("heightfield", heights=x),),
+            "temperature": (sim.set_ambient_temperature,),
+            "seconds": (lambda x: sim.advance(x, 1),),
+            "steps_max": (lambda x: sim.advance(0, x),),
+            "n must": (sim.step,),
+            "time": (lambda x: collider.set_vertices(corner, x), lambda x: pin.set_positions(drawn[:1], x)),
+            "first": (lambda x: sheet.set_velocity([[0, 0, 0]], x),),
+            "share": (lambda x: sheet.set_material("cotton", x),),
+            "size": (singe.grid,),
+            "cells": (lambda x: singe.grid(cells=x),),
+            "width": (lambda x: singe.draw(sim.surface(), width=x),),
+            "snapshot|path|null byte": (singe.Sim.load,),
+        }
+        bad = (None, "a\0b", [[1, 2, 3], [1, 2]], object(), 2**70, 1.5, np.array([1 + 2j]), {"x": 1}, lambda *_: 0.0)
+        for word, ways in calls.items():
+            for way, value in ((way, value) for way in ways for value in bad):
+                with self.subTest(word, value=value):
+                    try:
+                        way(value)
+                    except (TypeError, ValueError, OSError, singe.Error) as error:
+                        self.assertNotIsInstance(error, ctypes.ArgumentError)
+                        self.assertRegex(str(error).lower(), f"{word}|there is no 'x'")
+
     def test_a_step_that_fails_changes_nothing(self):
         sim = burning()
         sim.step(10)

@@ -6,6 +6,7 @@ import ctypes
 import dataclasses
 import difflib
 import operator
+import reprlib
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
@@ -14,8 +15,10 @@ from . import _abi
 from ._library import library
 
 COLOURS = ("red", "green", "blue", "yellow")
-# counts and pointers that arrays set, and fields that Python callers do not need
-_HIDDEN = {"struct_size", "user_data", "allocator", "log", "record", "cancel", "tasks", "callback", "callback_context"}
+# what arrays set, as they do pointers, and fields that Python callers do not need
+_HIDDEN = {"struct_size", "user_data", "allocator", "log", "record", "cancel", "tasks", "callback", "callback_context",
+           "vertex_count", "triangle_count", "face_count", "attribute_count", "source_count", "cell_count",
+           "path_count", "strength_count", "point_count", "rows", "columns"}
 
 
 @dataclasses.dataclass
@@ -44,9 +47,22 @@ def default(struct: Any, init: str) -> Any:
     return made
 
 
+def numbers(values: Any, what: str, kind: Any = np.float32) -> np.ndarray:
+    """A contiguous array of the type `kind`, or of the values' own where it is None; TypeError or ValueError names
+    `what`."""
+    try:
+        if np.iscomplexobj(values):
+            raise TypeError
+        with np.errstate(over="ignore"):  # infinities are refused where they are used
+            return np.ascontiguousarray(values, kind)
+    except (TypeError, ValueError, OverflowError) as error:
+        refusal = TypeError if isinstance(error, TypeError) else ValueError
+        raise refusal(f"{what} must be an array of numbers, not {reprlib.repr(values)}") from None
+
+
 def floats(values: Any, width: int, what: str) -> np.ndarray:
     """Contiguous float32 [n, width], or [n] if width is 0; ValueError names `what`."""
-    array = np.ascontiguousarray(values, dtype=np.float32)
+    array = numbers(values, what)
     if array.ndim != (2 if width else 1) or (width and array.shape[1] != width):
         raise ValueError(f"{what} must have the shape [n{f', {width}' if width else ''}], not {list(array.shape)}")
     return array
@@ -54,7 +70,7 @@ def floats(values: Any, width: int, what: str) -> np.ndarray:
 
 def indices(values: Any, what: str) -> np.ndarray:
     """Contiguous uint32 [n] from integers in range; ValueError names `what`."""
-    array = np.asarray(values)
+    array = numbers(values, what, None)
     if array.size == 0:
         return np.zeros(0, np.uint32)
     if array.dtype.kind not in "iu":
@@ -64,17 +80,31 @@ def indices(values: Any, what: str) -> np.ndarray:
     return np.ascontiguousarray(array.reshape(-1), dtype=np.uint32)
 
 
+def triples(values: Any, what: str) -> np.ndarray:
+    """As indices, of rows of three."""
+    array = numbers(values, what, None)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{what} must have the shape [n, 3], not {list(array.shape)}")
+    return indices(array, what)
+
+
 def text(value: Any, what: str) -> bytes:
     """A name for C; ValueError names `what`. C would read a name with a NUL character only up to it."""
     name = str(value)
     if "\0" in name:
         raise ValueError(f"{what} must not contain a NUL character: {name!r}")
-    return name.encode()
+    try:
+        return name.encode()
+    except UnicodeEncodeError:
+        raise ValueError(f"{what} must be text of whole characters, not {name!r}") from None
 
 
 def vector(kind: Any, values: Any, what: str, enum: Optional[str] = None) -> Any:
     """A C array of exactly as many values as the type `kind` has; ValueError names `what`."""
-    items = list(values)
+    try:
+        items = list(values)
+    except TypeError:
+        raise TypeError(f"{what} must have {kind._length_} values, not be {reprlib.repr(values)}") from None
     if len(items) != kind._length_:
         raise ValueError(f"{what} must have {kind._length_} values, not {len(items)}")
     return kind(*(_enumerator(enum, item, what) if enum else number(kind._type_, item, what) for item in items))
@@ -97,7 +127,7 @@ def _enumerator(enum: str, value: Any, what: str) -> int:
         if value.replace("-", "_") not in names:
             raise ValueError(f"{what} must be one of {', '.join(names)}, not {value!r}")
         return names[value.replace("-", "_")]
-    return operator.index(value)
+    return number(ctypes.c_int, value, what)
 
 
 def number(kind: Any, value: Any, what: str) -> Any:
@@ -105,22 +135,29 @@ def number(kind: Any, value: Any, what: str) -> Any:
     if kind in (ctypes.c_float, ctypes.c_double):
         try:
             return float(value)
-        except (TypeError, ValueError):
-            raise TypeError(f"{what} must be a number, not {value!r}") from None
+        except (TypeError, ValueError, OverflowError):
+            raise TypeError(f"{what} must be a number, not {reprlib.repr(value)}") from None
     if kind is ctypes.c_bool:
         return bool(value)
     try:
         whole = operator.index(value)
     except TypeError:
-        raise TypeError(f"{what} must be a whole number, not {value!r}") from None
+        raise TypeError(f"{what} must be a whole number, not {reprlib.repr(value)}") from None
     if kind(whole).value != whole:
         raise ValueError(f"{what} must fit {ctypes.sizeof(kind)} bytes, not be {whole}")
     return whole
 
 
+def named(values: Any, what: str) -> Mapping[str, Any]:
+    """Fields by name; TypeError names `what`."""
+    if not isinstance(values, Mapping):
+        raise TypeError(f"{what} must be a dict of fields, not {reprlib.repr(values)}")
+    return values
+
+
 def assign(made: Any, values: Mapping[str, Any], keep: List[Any], sheet: Optional["Attributes"] = None) -> None:
     """Sets fields of a Def by name. `sheet` collects arrays of parameters; without it they are refused."""
-    kinds = {name: kind for name, kind in made._fields_ if name not in _HIDDEN}
+    kinds = {name: kind for name, kind in made._fields_ if name not in _HIDDEN and not hasattr(kind, "contents")}
     for name, value in values.items():
         if name not in kinds:
             near = difflib.get_close_matches(name, kinds, 1)
@@ -140,11 +177,9 @@ def _assign_one(made: Any, name: str, kind: Any, value: Any, keep: List[Any], sh
         setattr(made, name, vector(kind, value, name, enum))
     elif issubclass(kind, ctypes.Structure):
         inner = getattr(made, name)
-        if isinstance(value, bool):
-            value = {"enabled": value}
-        elif "enabled" in dict(kind._fields_):
-            value = {"enabled": True, **value}
-        assign(inner, value, keep, sheet)
+        if "enabled" in dict(kind._fields_):
+            value = {"enabled": value} if isinstance(value, bool) else {"enabled": True, **named(value, name)}
+        assign(inner, named(value, name), keep, sheet)
     elif kind is ctypes.c_char_p:
         setattr(made, name, None if value is None else text(value, name))
     else:
@@ -189,7 +224,7 @@ def _param(value: Any, name: str, keep: List[Any], sheet: Optional[Attributes]) 
     """A parameter from a number, a Vary, or an array with a value per vertex."""
     made = _abi.SingeParam()
     if not isinstance(value, Vary):
-        if np.ndim(value) == 0:
+        if not np.iterable(value):
             made.value = number(ctypes.c_float, value, name)
             return made
         array = floats(value, 0, name)
@@ -202,7 +237,7 @@ def _param(value: Any, name: str, keep: List[Any], sheet: Optional[Attributes]) 
              if getattr(value, kind) is not None]
     if len(given) != 1:
         raise ValueError(f"{name}: give exactly one of attribute, texture and noise")
-    made.value, made.to = float(value.value), float(value.to)
+    made.value, made.to = number(ctypes.c_float, value.value, name), number(ctypes.c_float, value.to, name)
     _field(made, *given[0], name, keep, sheet)
     return made
 
@@ -214,8 +249,11 @@ def _field(made: _abi.SingeParam, kind: str, given: Any, name: str, keep: List[A
     if kind == "texture":
         set_texture(field.texture, given, name, keep)
     elif kind == "noise":
-        size, octaves, seed = (list(given) + [4, 1][len(given) - 1:]) if isinstance(given, Sequence) else (given, 4, 1)
-        field.noise.scale, field.noise.octaves, field.noise.seed = float(size), int(octaves), int(seed)
+        parts = list(given) if isinstance(given, (list, tuple)) else [given]
+        if not 1 <= len(parts) <= 3:
+            raise ValueError(f"{name}: noise must be a size, or (size, octaves, seed), not {given!r}")
+        for part, value in zip(("scale", "octaves", "seed"), parts + [4, 1][len(parts) - 1:]):
+            setattr(field.noise, part, number(dict(field.noise._fields_)[part], value, f"{name}: the noise's {part}"))
     else:
         if sheet is None:
             raise ValueError(f"{name} cannot follow an attribute here: only a sheet has attributes")
@@ -227,7 +265,7 @@ def _field(made: _abi.SingeParam, kind: str, given: Any, name: str, keep: List[A
 
 def set_texture(texture: _abi.SingeTexture, values: Any, name: str, keep: List[Any]) -> None:
     """A grey picture, [rows, columns], 0 black to 1 white, the first row at the top."""
-    array = np.ascontiguousarray(values, dtype=np.float32)
+    array = numbers(values, name)
     if array.ndim != 2 or array.size == 0:
         raise ValueError(f"{name}: a texture must have the shape [rows, columns], not {list(array.shape)}")
     texture.height, texture.width = array.shape
@@ -236,7 +274,7 @@ def set_texture(texture: _abi.SingeTexture, values: Any, name: str, keep: List[A
 
 def path_keys(path: Any, keep: List[Any]) -> Tuple[int, Any]:
     """Key frames: rows (time, x, y, z) or (time, x, y, z, qx, qy, qz, qw), in s and m."""
-    rows = np.asarray(path, dtype=np.float64)
+    rows = numbers(path, "a path", np.float64)
     if rows.ndim != 2 or rows.shape[1] not in (4, 8):
         raise ValueError("a path must have rows (time, x, y, z) or (time, x, y, z, qx, qy, qz, qw)")
     keys = (_abi.SingePoseKey * len(rows))()

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._fields import Attributes, assign, default, floats, indices, path_keys, pointer
+from ._fields import Attributes, assign, default, floats, indices, number, path_keys, pointer, triples
 from ._library import library, log_callback, raise_for
 from .views import StepView, shown
 
@@ -76,6 +76,10 @@ def make_mesh(points: Any, faces: Any, uv: Any, corner_uv: Any, attributes: Attr
     assign(made, options, keep)
     made.log.write = log_callback
     made.vertex_count, made.positions = len(points), pointer(points, ctypes.c_float, keep)
+    try:
+        faces = faces if isinstance(faces, np.ndarray) else [list(face) for face in faces]
+    except TypeError:
+        raise TypeError(f"faces must be lists of vertices, or an array [n, corners], not {faces!r}") from None
     if isinstance(faces, np.ndarray) or len({len(face) for face in faces}) <= 1:
         faces = np.asarray(faces)
         if faces.ndim != 2:
@@ -166,7 +170,8 @@ class Collider(Placed):
             raise ValueError(f"the collider has {wanted} vertices, not {len(array)}")
         if wanted is None:
             raise ValueError("set_vertices needs a deforming collider that this Sim added")
-        self._sim._call("singe_sim_set_collider_vertices", self.id, pointer(array, ctypes.c_float, keep), float(time))
+        self._sim._call("singe_sim_set_collider_vertices", self.id, pointer(array, ctypes.c_float, keep),
+                        number(ctypes.c_double, time, "time"))
 
 
 class Pin(Placed):
@@ -188,7 +193,8 @@ class Pin(Placed):
         array = floats(positions, 3, "positions")
         if len(array) != len(self.particles):
             raise ValueError(f"the pin holds {len(self.particles)} particles, not {len(array)}")
-        self._sim._call("singe_sim_set_pin_positions", self.id, pointer(array, ctypes.c_float, keep), float(time))
+        self._sim._call("singe_sim_set_pin_positions", self.id, pointer(array, ctypes.c_float, keep),
+                        number(ctypes.c_double, time, "time"))
 
 
 class Sheet(Object):
@@ -230,7 +236,8 @@ class Sheet(Object):
         """Sets the velocities of its vertices from `first` on: [n, 3] m/s. Takes effect in the next step."""
         keep: List[Any] = []
         array = floats(velocity, 3, "velocity")
-        self._sim._call("singe_sim_set_velocity", self.id, first, len(array), pointer(array, ctypes.c_float, keep))
+        self._sim._call("singe_sim_set_velocity", self.id, number(ctypes.c_uint32, first, "first"), len(array),
+                        pointer(array, ctypes.c_float, keep))
 
     def render_mesh(self, points: Any, triangles: Any, uv: Any = None, **options: Any) -> None:
         """Draws a mesh in place of the sheet from now on: finer, thick, with hems, seams and buttons.
@@ -244,11 +251,8 @@ class Sheet(Object):
         keep: List[Any] = []
         made = default(_abi.SingeRenderMeshDef, "singe_init_render_mesh")
         assign(made, options, keep)
-        given, positions = np.asarray(triangles), floats(points, 3, "points")
-        if given.ndim != 2 or given.shape[1] != 3:
-            raise ValueError(f"triangles must have the shape [n, 3], not {list(given.shape)}")
-        corners = indices(given, "triangles")
-        made.vertex_count, made.triangle_count = len(positions), len(given)
+        corners, positions = triples(triangles, "triangles"), floats(points, 3, "points")
+        made.vertex_count, made.triangle_count = len(positions), len(corners) // 3
         made.positions = pointer(positions, ctypes.c_float, keep)
         made.triangles = pointer(corners, ctypes.c_uint32, keep)
         if uv is not None:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import base64
+import ctypes
 import struct
 import zlib
 from typing import Any, Tuple
 
 import numpy as np
+
+from ._fields import number
 
 # burn progress and sRGB: paper, brown, char, ash
 _BURN = np.array([0, 0.15, 0.45, 0.8, 1])
@@ -55,6 +58,9 @@ def colours(burn: np.ndarray, temperature: np.ndarray, shade: Any = 1.0) -> np.n
 
 def draw(surface: Any, width: int = 480, height: int = 360) -> np.ndarray:
     """A picture [height, width, 3] of 8 bits; the remaining surface fills it."""
+    width, height = number(ctypes.c_uint32, width, "width"), number(ctypes.c_uint32, height, "height")
+    if not width or not height:
+        raise ValueError(f"width and height must be at least 1, not {width} and {height}")
     picture = np.broadcast_to(_GROUND, (height * width, 3)).copy()
     if not len(surface.triangles):
         return picture.reshape(height, width, 3).astype(np.uint8)

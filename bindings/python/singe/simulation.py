@@ -15,8 +15,8 @@ import numpy as np
 
 from . import _abi, errors
 from ._aside import LONG, Aside, is_interruptible
-from ._fields import (Attributes, as_dict, assign, default, floats, indices, number, path_keys, pointer, set_texture,
-                      text, vector)
+from ._fields import (Attributes, as_dict, assign, default, floats, indices, named, number, numbers, path_keys,
+                      pointer, set_texture, text, triples, vector)
 from ._library import library, log_callback, raise_for
 from ._whole import whole
 from .objects import Collider, Pin, Sheet, Source, make_mesh
@@ -52,7 +52,7 @@ class _Recording:
     """A new file to which the library writes a recording, at once."""
 
     def __init__(self, path: Union[str, "os.PathLike[str]"]):
-        self._file = open(path, "wb", buffering=0)
+        self._file = open(os.fspath(path), "wb", buffering=0)
         self.write = _WRITE(self._write)
 
     def _write(self, _context: object, data: int, size: int) -> bool:
@@ -185,11 +185,12 @@ class Sim(Views):
         """
         keep: List[Any] = []
         points = floats(points, 3, "points")
-        named = Attributes(len(points), attributes)
+        all_ = Attributes(len(points), attributes)
         made = default(_abi.SingeSheetDef, "singe_init_sheet")
         assign(made, {"name": name, "velocity": velocity, "drop_pieces_below": drop_pieces_below}, keep)
-        made.material = _material(material, keep, named)
-        quads = make_mesh(points, faces, uv, corner_uv, named, mesh or {}, keep)
+        made.material = _material(material, keep, all_)
+        options = {} if mesh is None else named(mesh, "mesh")
+        quads = make_mesh(points, faces, uv, corner_uv, all_, options, keep)
         quads.fill(made)
         id_ = _abi.SingeSheetId()
         self._call("singe_sim_add_sheet", ctypes.byref(made), ctypes.byref(id_))
@@ -207,7 +208,7 @@ class Sim(Views):
         Fields are those of SingeSourceDef. path: rows (time, x, y, z) in s and m. texture: [rows, columns] 0 to 1.
         strength: rows (time, factor). callback: see Source.set_callback.
         """
-        if (callback is not None) != (kind == "callback"):
+        if (callback is not None) != (isinstance(kind, str) and kind == "callback"):
             raise ValueError("a source of the kind 'callback' needs a callback, and no other kind takes one")
         keep: List[Any] = []
         made = default(_abi.SingeSourceDef, "singe_init_source")
@@ -217,7 +218,7 @@ class Sim(Views):
         if texture is not None:
             set_texture(made.texture, texture, "texture", keep)
         if strength is not None:
-            rows = np.asarray(strength, np.float64)
+            rows = numbers(strength, "strength", np.float64)
             if rows.ndim != 2 or rows.shape[1] != 2:
                 raise ValueError("strength must have rows (time, factor)")
             made.strength = (_abi.SingeValueKey * len(rows))(*(_abi.SingeValueKey(t, v) for t, v in rows))
@@ -233,6 +234,8 @@ class Sim(Views):
             self._call("singe_sim_set_source_callback", id_, _abi.SingeFluxFn(), None)
             self._forget_callback(id_)
             return
+        if not callable(callback):
+            raise TypeError(f"callback must be a function or None, not {callback!r}")
         own = weakref.ref(self)  # so that a Sim is freed when nobody holds it
 
         def heat(_context: object, view: int, *sums: Any) -> None:
@@ -273,7 +276,9 @@ class Sim(Views):
         """
         keep: List[Any] = []
         made = default(_abi.SingePinDef, "singe_init_pin")
-        made.sheet, made.radius = sheet.id, float(radius)
+        if not isinstance(sheet, Sheet):
+            raise TypeError(f"sheet must be a singe.Sheet, not {sheet!r}")
+        made.sheet, made.radius = sheet.id, number(ctypes.c_float, radius, "radius")
         if sheet._sim is not self:
             raise errors.HandleError("the sheet belongs to another simulation")
         if points is not None:
@@ -303,12 +308,10 @@ class Sim(Views):
             array = floats(vertices, 3, "vertices")
             made.vertex_count, made.vertices = len(array), pointer(array, ctypes.c_float, keep)
         if triangles is not None:
-            if np.ndim(triangles) != 2 or np.shape(triangles)[1] != 3:
-                raise ValueError(f"triangles must have the shape [n, 3], not {list(np.shape(triangles))}")
-            corners = indices(triangles, "triangles")
+            corners = triples(triangles, "triangles")
             made.triangle_count, made.triangles = len(corners) // 3, pointer(corners, ctypes.c_uint32, keep)
         if heights is not None:
-            array = np.ascontiguousarray(heights, np.float32)
+            array = numbers(heights, "heights")
             if array.ndim != 2:
                 raise ValueError(f"heights must have the shape [rows, columns], not {list(array.shape)}")
             made.rows, made.columns = array.shape
@@ -332,11 +335,11 @@ class Sim(Views):
 
     def set_pace(self, pace: float) -> None:
         """Sets the seconds of fire per second of motion, from the next step on."""
-        self._call("singe_sim_set_pace", float(pace))
+        self._call("singe_sim_set_pace", number(ctypes.c_double, pace, "pace"))
 
     def set_ambient_temperature(self, temperature: float) -> None:
         """Sets the temperature, K. The simulation is rebuilt; earlier arrays keep their values."""
-        self._rebuilt("singe_sim_set_ambient_temperature", float(temperature))
+        self._rebuilt("singe_sim_set_ambient_temperature", number(ctypes.c_double, temperature, "temperature"))
 
     def _set_material(self, sheet: Sheet, material: Material, share: Any) -> None:
         keep: List[Any] = []
@@ -372,7 +375,7 @@ class Sim(Views):
             found.extend(self._new_events(handle))
 
         try:
-            for _ in range(n):
+            for _ in range(number(ctypes.c_uint32, n, "n")):
                 self._stepped(one)
         finally:
             self._events = np.concatenate(found) if found else np.zeros(0, EVENT)
@@ -383,7 +386,7 @@ class Sim(Views):
         Whole steps beyond `steps_max` are dropped. Ctrl-C ends the call at once; the rest of `seconds` is lost, except
         for steps in progress, at most 16 without `steps_max`, which end by themselves.
         """
-        whole = float(seconds)
+        whole = number(ctypes.c_double, seconds, "seconds")
         most = number(ctypes.c_uint32, steps_max, "steps_max")
         part = whole if steps_max else _SLICE * (self._time_step or self._mean_step() or 1e-3)
         done = 0
@@ -580,7 +583,7 @@ def _now(sheet: Sheet, vertices: np.ndarray) -> np.ndarray:
 
 
 def _material(material: Material, keep: List[Any], sheet: Optional[Attributes]) -> _abi.SingeMaterialDef:
-    values = {"base": material} if isinstance(material, str) else dict(material)
+    values = {"base": material} if isinstance(material, str) else dict(named(material, "material"))
     made = default(_abi.SingeMaterialDef, "singe_init_material")
     error = _abi.SingeError()
     base = text(values.pop("base", "office-paper"), "the name of a material").replace(b"_", b"-")
