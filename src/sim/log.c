@@ -131,6 +131,20 @@ void sim_log_missed(const SingeSim *sim, uint32_t pin, uint32_t sheet, const flo
         pin, (double)point[0], (double)point[1], (double)point[2], sim->sheets[sheet].sheet.name, (double)distance);
 }
 
+void sim_log_render_mesh(const SingeSim *sim, uint32_t sheet, uint32_t left_out, uint32_t odd_edges) {
+    const char *name = sim->sheets[sheet].sheet.name;
+    if (left_out)
+        sim_log(sim, SINGE_LOG_WARNING,
+                "render mesh of sheet \"%s\": triangles left out, as they have no area or the corners of another: %u",
+                name, left_out);
+    if (odd_edges)
+        sim_log(
+            sim, SINGE_LOG_WARNING,
+            "render mesh of sheet \"%s\": edges of more than two triangles, or of two wound against each other, which are "
+            "faults for `singe verify`: %u",
+            name, odd_edges);
+}
+
 void sim_log_turned(const SingeSim *sim, uint32_t collider) {
     sim_log(sim, SINGE_LOG_INFO, "collider %u: its mesh was inside out and has been flipped", collider);
 }

@@ -111,6 +111,8 @@ SingeResult sim_build(SingeSim *sim);
 void sim_log_commit(const SingeSim *sim);
 /// Logs once that conduction is less exact than requested.
 void sim_log_unconverged(SingeSim *sim);
+/// Logs triangles of a render mesh that are not drawn, and edges that `singe verify` counts as faults.
+void sim_log_render_mesh(const SingeSim *sim, uint32_t sheet, uint32_t left_out, uint32_t odd_edges);
 /// Logs that a pin's point lies off its sheet.
 void sim_log_missed(const SingeSim *sim, uint32_t pin, uint32_t sheet, const float *point, float distance);
 /// Logs that a collider's mesh was inside out.

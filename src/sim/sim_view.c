@@ -137,6 +137,8 @@ SingeResult singe_sim_add_render_mesh(SingeSim *sim, SingeSheetId id, const Sing
     sim->render_meshes[count] = mesh;
     sim->render_mesh_count = count + 1;
     sim->render_vertex_count += (int32_t)def.vertex_count;
+    const RenderFlaws flaws = render_mesh_flaws(mesh);
+    sim_log_render_mesh(sim, id.index, flaws.left_out, flaws.odd_edges);
     return SINGE_OK;
 }
 

@@ -67,7 +67,27 @@ static Float3 doubled_area(const RenderMesh *mesh, const uint32_t *at) {
 
 // ---- in
 
-/// Checks the mesh and copies it, without triangles that have a corner twice.
+/// Copies the triangles that have an area and are the first with their corners.
+static SingeResult take_triangles(Memory *memory, const SingeRenderMeshDef *def, RenderMesh *mesh, SingeError *error) {
+    KeyTable known;
+    bool ok = table_open(memory, def->triangle_count, &known);
+    for (uint32_t t = 0; t < def->triangle_count && ok; t++) {
+        const uint32_t *at = &def->triangles[3 * (size_t)t];
+        const uint32_t least = at[0] < at[1] ? 0 : 1, first = at[least] < at[2] ? least : 2;
+        const uint32_t a = at[first], b = at[(first + 1) % 3], c = at[(first + 2) % 3], before = known.count;
+        table_number(&known, a, b < c ? b : c, b < c ? c : b);
+        if (known.count > before && float3_length(doubled_area(mesh, at)) > 0)
+            memcpy(mesh->triangles[mesh->triangle_count++], at, sizeof *mesh->triangles);
+    }
+
+    mesh->left_out = def->triangle_count - mesh->triangle_count;
+    table_close(memory, &known);
+    if (!ok) return no_memory(error);
+    if (mesh->triangle_count) return SINGE_OK;
+    return error_set(error, SINGE_ERROR_MESH, "render mesh", -1, "the mesh has no triangles");
+}
+
+/// Checks the mesh and copies it.
 static SingeResult take(Memory *memory, const RenderSheet *sheet, const SingeRenderMeshDef *def, RenderMesh *mesh,
                         SingeError *error) {
     if (!def->positions || !def->triangles)
@@ -110,13 +130,7 @@ static SingeResult take(Memory *memory, const RenderSheet *sheet, const SingeRen
         if (def->uv) memcpy(vertex->uv, &def->uv[2 * (size_t)v], sizeof vertex->uv);
     }
 
-    for (uint32_t t = 0; t < def->triangle_count; t++) {
-        const uint32_t *at = &def->triangles[3 * (size_t)t];
-        if (at[0] == at[1] || at[1] == at[2] || at[2] == at[0]) continue;
-        memcpy(mesh->triangles[mesh->triangle_count++], at, sizeof *mesh->triangles);
-    }
-    if (mesh->triangle_count) return SINGE_OK;
-    return error_set(error, SINGE_ERROR_MESH, "render mesh", -1, "the mesh has no triangles");
+    return take_triangles(memory, def, mesh, error);
 }
 
 // ---- normals and parts
@@ -219,6 +233,23 @@ static SingeResult list_edges(Memory *memory, RenderMesh *mesh, SingeError *erro
     return ok ? SINGE_OK : no_memory(error);
 }
 
+/// Counts the edges of more than two triangles, and of two that run the same way along it.
+static SingeResult count_odd_edges(Memory *memory, RenderMesh *mesh, SingeError *error) {
+    uint32_t(*ways)[2] = NULL;
+    TRY(list_edges(memory, mesh, error));
+    const uint32_t count = mesh->edge_count;
+    if (!NEW(memory, ways, count)) return no_memory(error);
+
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            const uint32_t edge = mesh->triangle_edges[t][k];
+            ways[edge][mesh->triangles[t][k] == mesh->edges[edge][0]]++;
+        }
+    for (uint32_t e = 0; e < count; e++) mesh->odd_edges += ways[e][0] > 1 || ways[e][1] > 1;
+    FREE(memory, ways, count);
+    return SINGE_OK;
+}
+
 /// Appends the parts of a triangle. halves: the vertex in the middle of each edge, or SHELL_NONE.
 static void divide(const uint32_t at[3], const uint32_t halves[3], uint32_t (*out)[3], uint32_t *count) {
     int long_count = 0, first = 0;
@@ -317,6 +348,7 @@ static SingeResult bind(const Fine *fine, float cell, const SingeRenderMeshDef *
 static SingeResult make(Memory *memory, Pool *pool, const RenderSheet *sheet, const SingeRenderMeshDef *def,
                         RenderMesh *mesh, SingeError *error) {
     TRY(take(memory, sheet, def, mesh, error));
+    TRY(count_odd_edges(memory, mesh, error));
     TRY(find_parts(memory, def->rigid, mesh, error));
 
     // the surface of the sheet at rest, before any tear
@@ -362,6 +394,8 @@ void render_mesh_free(Memory *memory, RenderMesh *mesh) {
     FREE(memory, mesh->edges, mesh->edge_capacity);
     FREE(memory, mesh, 1);
 }
+
+RenderFlaws render_mesh_flaws(const RenderMesh *mesh) { return (RenderFlaws){mesh->left_out, mesh->odd_edges}; }
 
 bool render_hides(const RenderMesh *mesh, uint32_t cell) {
     return !mesh->beside && cell - mesh->cell_first < mesh->cell_count; // wraps around below the first

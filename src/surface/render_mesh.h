@@ -20,6 +20,14 @@ SingeResult render_mesh_create(Memory *memory, Pool *pool, const RenderSheet *sh
                                RenderMesh **mesh, SingeError *error);
 void render_mesh_free(Memory *memory, RenderMesh *mesh);
 
+/// What is wrong with a mesh that is drawn all the same.
+typedef struct RenderFlaws {
+    uint32_t left_out;  ///< triangles without an area, or with the corners of an earlier one
+    uint32_t odd_edges; ///< of more than two triangles, or of two that are wound against each other
+} RenderFlaws;
+
+RenderFlaws render_mesh_flaws(const RenderMesh *mesh);
+
 /// Whether a cell is not drawn because the mesh is.
 bool render_hides(const RenderMesh *mesh, uint32_t cell);
 

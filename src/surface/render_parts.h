@@ -8,6 +8,7 @@
 struct RenderMesh {
     uint32_t cell_first, cell_count; ///< of its sheet
     bool beside;                     ///< the sheet is drawn, too
+    uint32_t left_out, odd_edges;    ///< of RenderFlaws
     uint32_t vertex_count, vertex_capacity;
     RenderVertex *vertices;
     uint32_t triangle_count, triangle_capacity;

@@ -346,6 +346,33 @@ class Verify(Case):
         self.assertEqual([n > 0 for n in total(rows, "crossings")], [i == 3 for i in range(6)])
         self.assertIn("tiny.0004.ply", err)
 
+    def test_flaws_of_render_meshes(self):
+        """What check warns of is what verify counts: of a mesh that is no surface, and nothing of one that is mended."""
+        corner = [(0.01 * x - 0.02, 0.01 * y - 0.02, 5e-4) for y in range(5) for x in range(5)] + [(0, 0, 4e-3)]
+        faces = [face for y in range(4) for x in range(4) for a in [5 * y + x]
+                 for face in ((a, a + 1, a + 6), (a, a + 6, a + 5))]
+        for name, given, warning, counted in (
+            ("good", faces, None, None),
+            ("double", faces + faces[:3] + [faces[9][::-1], (0, 1, 2)], "corners of another: 5", None),
+            ("wound", faces[:-1] + [faces[-1][::-1]], "for `singe verify`: 2", "edges whose triangles are wound"),
+            ("fin", faces + [(6, 12, 25)], "for `singe verify`: 1", "edges of more than two triangles"),
+        ):
+            with self.subTest(name):
+                with open(self.path(name + ".obj"), "w") as file:
+                    file.writelines("v %g %g %g\n" % p for p in corner)
+                    file.writelines("f %d %d %d\n" % tuple(i + 1 for i in face) for face in given)
+                scene = self.path(name + ".yaml")
+                with open(scene, "w") as file:
+                    file.write("frames: 2\nsteps: 1\nsheets:\n  - grid: {size: [4 cm, 4 cm], cells: [4, 4]}\n"
+                               f"    render_mesh: {{mesh: {name}.obj}}\n")
+                _, err = self.singe("check", scene)
+                lines = [line for line in err.splitlines() if "render mesh" in line]
+                self.assertEqual(len(lines), 1 if warning else 0, err)
+                self.assertIn(warning or "", "".join(lines))
+                self.singe("run", scene, "-o", self.path(name), "--quiet", "--no-preview")
+                out, err = self.singe("verify", self.path(name), expect=1 if counted else 0)
+                self.assertRegex(out, rf"{counted}.* [1-9]" if counted else "no faults")
+
     def test_rounding(self):
         """An edge of the size of its coordinates' last bits is as long as they are rounded to, and not stretched."""
         def sliver(s, bits, rest_bits=1):

@@ -400,6 +400,38 @@ TEST(threads_bind_and_draw_the_same) {
     singe_surface_free(&first);
 }
 
+/// Triangles without an area, and those that come again with any winding, are left out; edges that are not a surface's are
+/// counted, which the drawn mesh keeps.
+TEST(flaws_of_meshes_are_counted) {
+    Garment *g = garment(4, 2e-3f, 0), *clean = garment(4, 2e-3f, 0);
+    SingeError error = {0};
+    add_layer(g->draft, 4, side, 1e-3f);
+    add_layer(clean->draft, 4, side, 1e-3f);
+    const uint32_t more[][3] = {{6, 1, 0}, {0, 1, 6}, {7, 2, 8}, {0, 1, 2}, {3, 3, 4}}; // three of before, and two flat
+    memcpy(&g->draft->triangles[3 * g->draft->triangle_count], more, sizeof more);
+    g->draft->triangle_count += 5;
+    assert_int_equal(bind(g, &error), SINGE_OK);
+    assert_int_equal(render_mesh_flaws(g->mesh).left_out, 5);
+    assert_int_equal(render_mesh_flaws(g->mesh).odd_edges, 0);
+    assert_int_equal(draw(g)->triangle_count, draw(clean)->triangle_count);
+    assert_int_equal(render_mesh_flaws(clean->mesh).left_out, 0);
+    garment_free(clean);
+    garment_free(g);
+
+    // a third triangle at an edge, and one that is wound against its two neighbours
+    g = garment(4, 2e-3f, 0);
+    add_layer(g->draft, 4, side, 1e-3f);
+    const uint32_t top = add_vertex(g->draft, 0, 0.01f, 2e-3f), fin[3] = {0, 6, top};
+    memcpy(&g->draft->triangles[3 * g->draft->triangle_count++], fin, sizeof fin);
+    const uint32_t last = 3 * 31, kept = g->draft->triangles[last];
+    g->draft->triangles[last] = g->draft->triangles[last + 1];
+    g->draft->triangles[last + 1] = kept;
+    assert_int_equal(bind(g, &error), SINGE_OK);
+    assert_int_equal(render_mesh_flaws(g->mesh).left_out, 0);
+    assert_int_equal(render_mesh_flaws(g->mesh).odd_edges, 3);
+    garment_free(g);
+}
+
 /// Through the public call: after the commit, to a sheet that there is.
 TEST(simulations_draw_meshes) {
     SingeSimDef def = singe_default_sim();
