@@ -22,6 +22,7 @@ lock() {
 
 lock uv 3.11 uv
 lock usd 3.11 usd-core numpy
+lock newton 3.11 newton newton-usd-schemas usd-core numpy
 lock vtk 3.11 vtk numpy
 lock alembic 3.11 alembic3d numpy
 lock blender-4.5 3.11 'bpy==4.5.*' numpy # each bpy is for one Python

@@ -3,7 +3,7 @@
 #
 # usage: check.sh SINGE FOLDER [GROUP...]     FOLDER/NAME is the environment of a client, FOLDER/work/NAME what it made
 #
-# The groups are usd, vtk, paraview, alembic, rerun, gltf, vat and blender; all of them without one. gltf and vat read images with
+# The groups are usd, newton, vtk, paraview, alembic, rerun, gltf, vat and blender; all of them without one. gltf and vat read images with
 # vtk's Python.
 #
 # Exit codes: 0 all is good; 1 a client found a fault; 3 none did, but some could not be installed.
@@ -12,7 +12,7 @@ singe=$(realpath "$1")
 mkdir -p "$2"
 folder=$(realpath "$2")
 shift 2
-groups=" ${*:-usd vtk paraview alembic rerun gltf vat blender} "
+groups=" ${*:-usd newton vtk paraview alembic rerun gltf vat blender} "
 here=$(cd "$(dirname "$0")" && pwd)
 locks=$here/../locks
 python=${PYTHON:-python3}
@@ -59,6 +59,10 @@ client() {
 mkdir -p "$folder/work"
 usd_client() {
     if environment usd; then client usd usd.py; else lacking usd "PyPI's usd-core"; fi
+}
+
+newton_client() {
+    if environment newton; then client newton newton_client.py; else lacking newton "PyPI's newton"; fi
 }
 
 vtk_client() {
@@ -141,7 +145,7 @@ blender_client() {
     done
 }
 
-for group in usd vtk paraview alembic rerun gltf vat blender; do
+for group in usd newton vtk paraview alembic rerun gltf vat blender; do
     if [[ $groups == *" $group "* ]]; then "${group}_client"; fi
 done
 [ $failed -eq 0 ] || exit 1

@@ -16,14 +16,14 @@ HERE = pathlib.Path(__file__).resolve().parent
 VENV = os.environ.get("SINGE_CLIENTS", str(HERE.parent.parent / "build/clients/usd/bin/python"))
 try:
     import numpy as np
-    from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, UsdUtils, Vt
+    from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, UsdSkel, UsdUtils, Vt
 except ImportError:
     if os.path.exists(VENV) and "--again" not in sys.argv:
         os.execv(VENV, [VENV, *sys.argv, "--again"])
     print("skipped: no OpenUSD; make check-clients installs it (PyPI's usd-core)")
     sys.exit(77)
 sys.path.insert(0, str(HERE.parent.parent / "bindings/python"))
-from singe import errors, usd  # noqa: E402
+from singe import errors, usd, usd_bodies  # noqa: E402
 from singe.picture import png  # noqa: E402
 import singe  # noqa: E402
 
@@ -259,6 +259,127 @@ def instances():
         same_leaf(made, sheet, POINTS + [x, 0, 0])
 
 
+def scattered():
+    """A point instancer of two prototypes, in centimetres, y up: turned, scaled and masked copies; a moving one."""
+    stage = new("scattered.usda", "Y", 0.01)
+    stage.SetStartTimeCode(1)
+    stage.SetEndTimeCode(3)
+    leaf(stage, "/World/Asset/Leaves/Kinds/Leaf", of_stage(POINTS, "Y", 0.01))
+    lifted = leaf(stage, "/World/Asset/Leaves/Kinds/Lifted", of_stage(POINTS, "Y", 0.01))
+    UsdGeom.Xformable(lifted).AddTranslateOp().Set((0, 7, 0))
+    UsdGeom.Xform.Define(stage, "/World/Asset").AddTranslateOp().Set((100, 0, 0))
+    many = UsdGeom.PointInstancer.Define(stage, "/World/Asset/Leaves")
+    many.CreatePrototypesRel().SetTargets(["/World/Asset/Leaves/Kinds/Leaf", "/World/Asset/Leaves/Kinds/Lifted"])
+    many.CreateProtoIndicesAttr([0, 1, 0, 1])
+    many.CreatePositionsAttr([(0, 0, 0), (50, 0, 0), (0, 0, 90), (0, 30, 0)])
+    many.CreateOrientationsAttr([Gf.Quath(1), Gf.Quath(np.sqrt(0.5), 0, np.sqrt(0.5), 0), Gf.Quath(1), Gf.Quath(1)])
+    many.CreateScalesAttr([(1, 1, 1), (2, 2, 2), (1, 1, 1), (1, 1, 1)])
+    many.CreateInvisibleIdsAttr([2])
+    scene, made = read(stage, ["/World/Asset"])
+    assert [sheet["name"] for sheet in scene["sheets"]] == ["Leaf", "Lifted", "Lifted_2"], scene
+    first, second, third = scene["sheets"]
+    same_leaf(made, first, POINTS + [1, 0, 0])
+    # a quarter about the stage's y, our z
+    x, y, z = (POINTS + [0, 0, 0.07]).T
+    points = read_ply(made.parent / second["mesh"])[0]
+    wanted = 2 * np.stack([-y, x, z], 1) + [1.5, 0, 0]
+    assert np.abs(points - wanted).max() < 1e-4, np.abs(points - wanted).max()  # orientations are half floats
+    same_leaf(made, third, POINTS + [1, 0, 0.37])
+    assert not stage.GetPrimAtPath("/World/Asset/Leaves/copy1") and "copy1" not in (FOLDER / "scattered.usda").read_text()
+
+    balls = UsdGeom.PointInstancer.Define(stage, "/World/Balls")
+    UsdGeom.Sphere.Define(stage, "/World/Balls/Ball").CreateRadiusAttr(3)
+    balls.CreatePrototypesRel().SetTargets(["/World/Balls/Ball"])
+    balls.CreateProtoIndicesAttr([0, 0])
+    balls.CreatePositionsAttr().Set([(0, 0, 0), (10, 0, 0)], 1)
+    balls.GetPositionsAttr().Set([(0, 0, 0), (10, 4, 0)], 3)
+    scene, made = read(stage, ["/World/Asset"], colliders=["/World/Balls"], check=True)
+    still, moving = scene["colliders"]
+    assert moving["radius"] == 0.03 and [entry["position"] for entry in moving["path"]] == [
+        [0.1, 0, 0], [0.1, 0, 0.02], [0.1, 0, 0.04]], moving
+    assert all(entry["position"] == [0, 0, 0] for entry in still["path"])
+
+
+def scattered_in_instances():
+    """A point instancer inside an instance, and one inside the prototype of another."""
+    asset = new("bush.usda")
+    twig = UsdGeom.PointInstancer.Define(asset, "/World/Twig")
+    leaf(asset, "/World/Twig/Leaf", POINTS)
+    twig.CreatePrototypesRel().SetTargets(["/World/Twig/Leaf"])
+    twig.CreateProtoIndicesAttr([0, 0])
+    twig.CreatePositionsAttr([(0, 0, 0), (0, 0, 0.1)])
+    asset.Save()
+    stage = new("bushes.usda")
+    bush = UsdGeom.Xform.Define(stage, "/World/Bush")
+    bush.GetPrim().GetReferences().AddReference("./bush.usda", "/World")
+    bush.GetPrim().SetInstanceable(True)
+    bush.AddTranslateOp().Set((0, 2, 0))
+    scene, made = read(stage, ["/World/Bush"])
+    assert len(scene["sheets"]) == 2
+    same_leaf(made, scene["sheets"][1], POINTS + [0, 2, 0.1])
+    garden = UsdGeom.PointInstancer.Define(stage, "/World/Garden")
+    stage.DefinePrim("/World/Garden/Bush").GetReferences().AddReference("./bush.usda", "/World")
+    garden.CreatePrototypesRel().SetTargets(["/World/Garden/Bush"])
+    garden.CreateProtoIndicesAttr([0, 0, 0])
+    garden.CreatePositionsAttr([(0, 0, 0), (1, 0, 0), (2, 0, 0)])
+    scene, made = read(stage, ["/World/Garden"], check=True)
+    assert len(scene["sheets"]) == 6
+    same_leaf(made, scene["sheets"][5], POINTS + [2, 0, 0.1])
+
+
+def deformable():
+    """A body of the proposed schema: what burns, what is drawn, mass and stiffness from it, in centimetres and grams."""
+    stage = new("body.usda", "Y", 0.01)
+    UsdPhysics.SetStageKilogramsPerUnit(stage, 0.001)
+    body = UsdGeom.Xform.Define(stage, "/World/Cloth").GetPrim()
+    body.AddAppliedSchema("PhysicsDeformableBodyAPI")
+    cloth = leaf(stage, "/World/Cloth/Sim", of_stage(POINTS, "Y", 0.01))
+    cloth.GetPrim().AddAppliedSchema("PhysicsSurfaceDeformableSimAPI")
+    cloth.CreateVelocitiesAttr([(0, 100, 0)] * len(POINTS))
+    cloth.GetPrim().CreateAttribute("physics:thicknesses", Sdf.ValueTypeNames.FloatArray).Set([0.02])
+    leaf(stage, "/World/Cloth/Hull", of_stage(POINTS, "Y", 0.01)).GetPrim().AddAppliedSchema("PhysicsCollisionAPI")
+    drawn = leaf(stage, "/World/Cloth/Drawn", of_stage(POINTS, "Y", 0.01))
+    paint(stage, drawn, "./page.png")
+    stuff = UsdShade.Material.Define(stage, "/World/Cotton")
+    for name, value in (("density", 0.6), ("surfaceBendStiffness", 2000.0)):  # g/cm3, g cm2/s2
+        stuff.GetPrim().CreateAttribute("physics:" + name, Sdf.ValueTypeNames.Float).Set(value)
+    UsdShade.MaterialBindingAPI.Apply(cloth.GetPrim()).Bind(stuff, UsdShade.Tokens.weakerThanDescendants, "physics")
+    scene, made = read(stage, ["/World"], check=True)
+    sheet, = scene["sheets"]
+    same_leaf(made, sheet)
+    same_leaf(made, {"mesh": sheet["render_mesh"]["mesh"]})
+    assert sheet["picture"] == "page.png" and sheet["velocity"] == [0, 0, 1], sheet
+    assert np.allclose([sheet["material"]["grammage"], sheet["material"]["bending"]], [0.12, 2e-4]), sheet
+    # a mass of the body comes before a density, masses of points before both
+    body.CreateAttribute("physics:mass", Sdf.ValueTypeNames.Float).Set(2.0)
+    first, made = read(stage, ["/World"])
+    masses = cloth.GetPrim().CreateAttribute("physics:masses", Sdf.ValueTypeNames.FloatArray)
+    masses.Set([0.1] * len(POINTS))
+    second, made = read(stage, ["/World"])
+    ratio = second["sheets"][0]["material"]["grammage"] / first["sheets"][0]["material"]["grammage"]
+    assert abs(ratio - 0.1 * len(POINTS) / 2) < 1e-6, ratio
+
+
+def taken_on():
+    """A frame of a burn as deformable bodies, and a sheet of those again."""
+    cache = singe.read_cache(FOLDER / "out/burn")
+    target = FOLDER / "bodies.usda"
+    usd_bodies.write(cache, target)
+    frame = cache[-1]
+    stage = Usd.Stage.Open(str(target))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/World/Leaf"))
+    assert np.array_equal(np.array(mesh.GetPointsAttr().Get(), np.float32), frame.position)
+    assert np.array_equal(np.array(mesh.GetVelocitiesAttr().Get(), np.float32), frame.velocity)
+    scene, made = read(target, ["/World"], check=True)
+    sheet, = scene["sheets"]
+    points, faces, uv, names, _ = read_ply(made.parent / sheet["mesh"])
+    assert np.array_equal(points, frame.position) and np.array_equal(faces, frame.triangles)
+    material = cache.scene["sheets"][0]["material"]
+    assert abs(sheet["material"]["grammage"] / material["grammage"] - 1) < 0.1, sheet
+    assert abs(sheet["material"]["bending"] / (material["thickness"]**2 / material["compliance"]["green"]) - 1) < 1e-6
+    assert {"temperature", "burnt"} <= set(names), names
+
+
 def euler(x, y, z):
     """Columns, about x, then y, then z, as scenes turn things."""
     return np.array(Gf.Matrix3d(Gf.Rotation((1, 0, 0), x) * Gf.Rotation((0, 1, 0), y) * Gf.Rotation((0, 0, 1), z))).T
@@ -474,6 +595,17 @@ def refused():
     broken(lambda stage, mesh: stage.SetMetadata("metersPerUnit", 0.0), "metersPerUnit is 0")
     broken(lambda stage, mesh: stage.GetRootLayer().pseudoRoot.SetInfo("upAxis", "X"), "upAxis is X")
 
+    def scatter(indices, positions):
+        def change(stage, mesh):
+            many = UsdGeom.PointInstancer.Define(stage, "/World/Many")
+            many.CreatePrototypesRel().SetTargets(["/World/Leaf"])
+            many.CreateProtoIndicesAttr(indices)
+            many.CreatePositionsAttr(positions)
+        return change
+    broken(scatter([0, 7], [(0, 0, 0)] * 2), "/World/Many: protoIndices has 7, but there are 1", ["/World/Many"])
+    broken(scatter([0, 0], [(0, 0, 0)]), "/World/Many: has", ["/World/Many"])
+    broken(scatter([0] * 1001, [(0, 0, 0)] * 1001), "/World/Many: 1001 copies, expected at most 1000", ["/World/Many"])
+
     def backwards(stage, mesh):
         stage.SetStartTimeCode(5)
         stage.SetEndTimeCode(1)
@@ -493,7 +625,8 @@ def main():
     shutil.rmtree(FOLDER, ignore_errors=True)
     FOLDER.mkdir(parents=True)
     (FOLDER / "page.png").write_bytes(png(np.full((4, 4, 3), 200, np.uint8)))
-    stages = [plain, turned_and_scaled, mirrored, painted, holes, instances, moving, skinned, packed, varied, burnt]
+    stages = [plain, turned_and_scaled, mirrored, painted, holes, instances, scattered, scattered_in_instances, moving,
+              skinned, packed, varied, deformable, burnt, taken_on]
     for stage in stages:
         stage()
         print(f"{stage.__name__}: as in the stage")

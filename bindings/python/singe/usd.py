@@ -19,7 +19,7 @@ from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence, Tu
 
 import numpy as np
 
-from . import errors
+from . import errors, usd_bodies
 from ._library import logger
 from ._whole import whole
 
@@ -30,6 +30,7 @@ _PICTURES = (".png", ".jpg", ".jpeg")
 # what a PLY's vertex has for itself
 _RESERVED = {"x", "y", "z", "nx", "ny", "nz", "s", "t", "u", "v", "texture_u", "texture_v"}
 _FRAMES_MAX = 100000
+_COPIES_MAX = 1000  # as many objects of a kind a scene has
 
 
 def _modules() -> Any:
@@ -39,6 +40,7 @@ def _modules() -> Any:
         import pxr.Tf
         import pxr.Usd
         import pxr.UsdGeom
+        import pxr.UsdPhysics
         import pxr.UsdShade
         import pxr.UsdSkel
         import pxr.Ar
@@ -161,11 +163,75 @@ class _Reader:
             raise _fault(path, f"{self.path} has no such prim; its meshes are {listed}" if found else
                          f"{self.path} has no such prim, and no meshes; references that were not found: "
                          f"{len(self.stage.GetCompositionErrors())}")
+        self._expand_instancers(path)
+        root = self.at(path)
         found = [prim for prim in self._below(root) if prim.GetTypeName() in kinds]
         if found:
             return found
         kind = root.GetTypeName() or "prim without a type"
         raise _fault(path, f"a {kind}, and nothing at or below it is {what}")
+
+    def _expand_instancers(self, path: str) -> None:
+        """Point instancers at or below a path get a prim for each copy, in the session layer: the file stays as it is."""
+        kind = self.pxr.UsdGeom.PointInstancer
+        done: List[str] = []
+        while True:
+            found = [prim for prim in self._below(self.at(path))
+                     if prim.IsA(kind) and str(prim.GetPath()) not in done]
+            if not found:
+                return
+            prim = self._editable(found[0])
+            done.append(str(prim.GetPath()))
+            self._expand(kind(prim))
+
+    def _editable(self, prim: Any) -> Any:
+        """The prim itself where it is a copy that an instance shares with others."""
+        path = prim.GetPath()
+        self.stage.SetEditTarget(self.stage.GetSessionLayer())
+        while prim.IsInstanceProxy():
+            shared = prim
+            while not shared.IsInstance():
+                shared = shared.GetParent()
+            shared.SetInstanceable(False)
+            prim = self.stage.GetPrimAtPath(path)
+        return prim
+
+    def _expand(self, instancer: Any) -> None:
+        prim, first = instancer.GetPrim(), self.times[0]
+        prototypes = instancer.GetPrototypesRel().GetForwardedTargets()
+        which = np.array(instancer.GetProtoIndicesAttr().Get(first) or [], np.int64)
+        if len(which) and not 0 <= which.min() <= which.max() < len(prototypes):
+            raise _fault(prim.GetPath(), f"protoIndices has {which.max()}, but there are {len(prototypes)} prototypes")
+        shown = instancer.ComputeMaskAtTime(first)
+        chosen = [copy for copy in range(len(which)) if not shown or shown[copy]]
+        if len(chosen) > _COPIES_MAX:
+            raise _fault(prim.GetPath(), f"{len(chosen)} copies, expected at most {_COPIES_MAX}")
+        placed = self._placements(instancer, len(which))
+        for child in prim.GetAllChildren():
+            child.SetActive(False)  # prototypes are not drawn themselves
+        for copy in chosen:
+            place = self.pxr.UsdGeom.Xform.Define(self.stage, prim.GetPath().AppendChild(f"copy{copy + 1}"))
+            operation = place.MakeMatrixXform()
+            for time, matrices in placed:
+                operation.Set(matrices[copy], time)
+            thing = self.stage.DefinePrim(place.GetPath().AppendChild(prototypes[which[copy]].name))
+            thing.GetReferences().AddInternalReference(prototypes[which[copy]])
+            thing.SetActive(True)
+
+    def _placements(self, instancer: Any, count: int) -> List[Tuple[Any, Any]]:
+        """Time codes and the matrices of all copies then; one of them, of all times, where nothing moves."""
+        usd, kind = self.pxr.Usd, self.pxr.UsdGeom.PointInstancer
+        moving = any(attribute.ValueMightBeTimeVarying() for attribute in (
+            instancer.GetPositionsAttr(), instancer.GetOrientationsAttr(), instancer.GetScalesAttr(),
+            instancer.GetProtoIndicesAttr()))
+        made = []
+        for time in self.times if moving else self.times[:1]:
+            matrices = instancer.ComputeInstanceTransformsAtTime(time, time, kind.ExcludeProtoXform, kind.IgnoreMask)
+            if matrices is None or len(matrices) != count:
+                raise _fault(instancer.GetPath(), f"has {len(matrices or [])} places for {count} copies at time code "
+                                                  f"{time.GetValue():g}: copies that come and go are not read")
+            made.append((time if moving else usd.TimeCode.Default(), matrices))
+        return made
 
     def _below(self, root: Any) -> Iterable[Any]:
         usd, geom = self.pxr.Usd, self.pxr.UsdGeom
@@ -378,8 +444,16 @@ class _Reader:
 
     # ---- the objects of a scene
 
-    def sheet(self, prim: Any) -> Dict[str, Any]:
-        keys: Dict[str, Any] = {"name": self.name(prim)}
+    def burning(self, path: str) -> List[Any]:
+        """The meshes at or below a path that burn: of a deformable body the simulated one alone."""
+        found = self.prims(path, ["Mesh"], "a mesh")
+        simulated = [prim for prim in found if usd_bodies.SIMULATED in usd_bodies.applied(prim)]
+        bodies = [usd_bodies.body_of(prim) for prim in simulated]
+        return [prim for prim in found if prim in simulated
+                or not any(body and body == usd_bodies.body_of(prim) for body in bodies)]
+
+    def _looked_at(self, prim: Any, keys: Dict[str, Any]) -> _Mesh:
+        """The mesh of a prim, with the uv of its picture."""
         variable, change = self.look(prim, keys)
         mesh = self.mesh(prim, self.times[0], variable)
         if change is not None and mesh.uv is not None:
@@ -389,6 +463,34 @@ class _Reader:
             mesh = mesh._replace(uv=scaled @ np.array([[c, s], [-s, c]]) + np.array(moved, float))
         if "picture" in keys and mesh.uv is None:
             self.note(prim.GetPath(), "has a picture and no uv to put it on")
+        return mesh
+
+    def _body(self, prim: Any, mesh: _Mesh, keys: Dict[str, Any]) -> None:
+        """What a deformable body says beside its mesh: a material's numbers, a velocity, a mesh that is drawn."""
+        velocities = np.array(self.pxr.UsdGeom.Mesh(prim).GetVelocitiesAttr().Get(self.times[0]) or [], float)
+        if len(velocities) and np.isfinite(velocities).all() and velocities.any():
+            keys["velocity"] = _numbers(self.matrix(prim, self.times[0])[0] @ velocities.mean(0))
+            if np.ptp(velocities, axis=0).any():
+                self.note(prim.GetPath(), "its points have velocities of their own; the sheet starts with their mean")
+        if prim.GetAttribute("physics:restShapePoints").HasAuthoredValue():
+            self.note(prim.GetPath(), "has a shape at rest, which is not read: the sheet is at rest as it lies")
+        material = usd_bodies.material_of(self.pxr, prim, _area(mesh), self.unit,
+                                          self.pxr.UsdPhysics.GetStageKilogramsPerUnit(self.stage))
+        if material:
+            keys["material"] = {name: _number(value) for name, value in material.items()}
+        body = usd_bodies.body_of(prim)
+        drawn = usd_bodies.drawn_with(prim, list(self._below(body))) if body else []
+        if drawn:
+            keys["render_mesh"] = {"mesh": self.name(drawn[0]) + ".ply"}
+            _write_ply(self.folder / keys["render_mesh"]["mesh"], self._looked_at(drawn[0], keys))
+        if len(drawn) > 1:
+            self.note(body.GetPath(), f"has {len(drawn)} meshes to draw; {drawn[0].GetPath()} is drawn")
+
+    def sheet(self, prim: Any) -> Dict[str, Any]:
+        keys: Dict[str, Any] = {"name": self.name(prim)}
+        mesh = self._looked_at(prim, keys)
+        if usd_bodies.SIMULATED in usd_bodies.applied(prim):
+            self._body(prim, mesh, keys)
         if self.moves(prim) or self.pxr.UsdGeom.Mesh(prim).GetPointsAttr().ValueMightBeTimeVarying():
             self.note(prim.GetPath(), "moves in the stage; the sheet starts as it is at the first frame and then moves "
                                       "freely")
@@ -446,6 +548,16 @@ class _Reader:
         return {"kind": "ball" if "path" in keys else "spot", **radius, **keys}
 
 
+def _area(mesh: _Mesh) -> float:
+    """m2, each face as a fan."""
+    ends = np.cumsum(mesh.counts)
+    corner = np.arange(len(mesh.corners))
+    first = np.repeat(ends - mesh.counts, mesh.counts)
+    inner = (corner > first) & (corner < np.repeat(ends, mesh.counts) - 1)
+    a, b, c = (mesh.points[mesh.corners[at]] for at in (first[inner], corner[inner], corner[inner] + 1))
+    return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+
+
 def _number(value: Any) -> float:
     return float(f"{float(value):.9g}")
 
@@ -458,8 +570,8 @@ def scene(stage: Path, folder: Path, sheets: Sequence[str], *, colliders: Sequen
           fire: Sequence[str] = (), also: Optional[Path] = None) -> pathlib.Path:
     """Writes a scene of a stage into a folder, and returns the path of its file: NAME.yaml for NAME.usda.
 
-    sheets, colliders: paths of prims; every mesh at or below one is a sheet or a collider of its own, and a Sphere,
-    Cube, Capsule or Plane is a collider. fire: paths of prims that are hot balls of 1200 K, as a null that stands where
+    sheets, colliders: paths of prims; every mesh at or below one is a sheet or a collider of its own, as is each copy of
+    a point instancer, and a Sphere, Cube, Capsule or Plane is a collider. fire: paths of prims that are hot balls of 1200 K, as a null that stands where
     the match is. also: a file with further keys of the scene, such as `pace` or `pins`, which is copied behind.
 
     FormatError has the path of the prim. What was read otherwise than it looks in the stage is logged as a warning.
@@ -469,7 +581,7 @@ def scene(stage: Path, folder: Path, sheets: Sequence[str], *, colliders: Sequen
     place = pathlib.Path(folder)
     place.mkdir(parents=True, exist_ok=True)
     reader = _Reader(stage, place)
-    meshes = [prim for path in sheets for prim in reader.prims(path, ["Mesh"], "a mesh")]
+    meshes = [prim for path in sheets for prim in reader.burning(path)]
     solids = [prim for path in colliders for prim in reader.prims(
         path, ["Mesh", "Sphere", "Cube", "Capsule", "Plane"], "a Mesh, Sphere, Cube, Capsule or Plane")]
     if not meshes:
