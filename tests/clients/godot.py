@@ -54,6 +54,9 @@ def unpack():
     part.mkdir(exist_ok=True)
     for package in sorted((apt / "cache/archives").glob("*.deb")):
         run("dpkg-deb", "-x", package, part)
+    for name in ("bin", "lib", "lib64"):  # links that Debian's installer makes, not its packages
+        if not (part / name).exists():
+            (part / name).symlink_to(f"usr/{name}")
     (part / "tmp").mkdir(exist_ok=True)
     part.rename(root)
     return root
