@@ -28,6 +28,7 @@ lock alembic 3.11 alembic3d numpy
 lock blender-4.5 3.11 'bpy==4.5.*' numpy # each bpy is for one Python
 lock blender-5.2 3.13 'bpy==5.2.*' numpy
 lock conan 3.11 'conan>=2'
+lock conda 3.11 py-rattler-build py-rattler
 lock zig 3.11 ziglang
 lock wasmtime 3.11 wasmtime
 lock gate 3.11 compas==2.15.1 pymeshfix==0.18.1 pyvista==0.49.1 --no-deps # the versions of tests/gate/gate.py

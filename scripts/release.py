@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
 """Builds the files of a release from a commit, with the same bytes every time.
 
-    release.py [--out FOLDER] [--commit COMMIT] [--twice] [--wheels]
+    release.py [--out FOLDER] [--commit COMMIT] [--twice] [--wheels] [--sign KEY]
 
     singe-VERSION.tar.gz                  the sources
     singe-VERSION-linux-ARCH.tar.gz       the static command for any Linux, without preview, EXR, assimp and fit
-    singe_VERSION_ARCH.deb, libsinge-dev_VERSION_ARCH.deb    for the Debian or Ubuntu on which this runs
+    singe_VERSION-1.dsc, .debian.tar.xz, .orig.tar.gz        Debian's source package
+    singe_VERSION-1_ARCH.deb, libsinge-dev_VERSION-1_ARCH.deb    of it, for the Debian or Ubuntu on which this runs
     *.whl                                 with --wheels; bindings/python/build_wheels.py states its needs
     singe-VERSION.spdx.json               the contents with versions and licences (SPDX 2.3)
-    SHA256SUMS
+    singe-VERSION.intoto.json             of which commit and packages they were made (SLSA provenance 1, not signed by itself)
+    SHA256SUMS, and with --sign SHA256SUMS.asc, by the key of gpg that KEY names
 
---twice builds everything again in another folder and compares the bytes. Needs the packages of setup.sh, dpkg-dev, and
+--twice builds everything again in another folder and compares the bytes. Needs the packages of setup.sh, debhelper, and
 the static libraries in the -dev packages of libfyaml, libpng, zlib and libjpeg.
 """
 
@@ -33,6 +35,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 LINKED = {"libc6-dev": "LGPL-2.1-or-later", "libfyaml-dev": "MIT", "libpng-dev": "Libpng", "zlib1g-dev": "Zlib",
           "libjpeg62-turbo-dev": "IJG AND BSD-3-Clause AND Zlib"}
 
+# nobody's address: whoever publishes the packages names a maintainer here and in packaging/debian/control
+MAINTAINER = "The Singe authors <singe@localhost>"
+
 
 def run(*command, **options):
     options.setdefault("stdout", subprocess.DEVNULL)
@@ -49,6 +54,21 @@ def sources(commit, prefix, epoch, target):
                          capture_output=True).stdout
     with open(target, "wb") as file, gzip.GzipFile("", "wb", 9, file, mtime=epoch) as packed:
         packed.write(tar)
+
+
+def time_of(commit):
+    return int(ask("git", "-C", ROOT, "show", "-s", "--format=%ct", commit))
+
+
+def unpacked(commit, work, out):
+    """Writes the archive of the sources into out, and its tree into work; returns the tree, the version, the archive."""
+    text = ask("git", "-C", ROOT, "show", f"{commit}:include/singe/base.h")
+    version = re.search(r'#define SINGE_VERSION "(.*)"', text).group(1)
+    archive = out / f"singe-{version}.tar.gz"
+    sources(commit, f"singe-{version}", time_of(commit), archive)
+    with tarfile.open(archive) as tar:
+        tar.extractall(work, filter="data")
+    return work / f"singe-{version}", version, archive
 
 
 def pack(folder, prefix, epoch, target):
@@ -75,11 +95,36 @@ def configure(source, build, *more):
     run("cmake", "--build", build)
 
 
-def debian_packages(source, work, out):
-    build = work / "deb"
-    configure(source, build)
-    run("cpack", "-G", "DEB", "-B", work / "cpack", cwd=build)
-    for package in (work / "cpack").glob("*.deb"):
+def debian_source(source, version, epoch, orig, work, out):
+    """Debian's source package of a tree, whose archive is `orig`; returns the path of its .dsc."""
+    place = work / "debian"
+    tree = place / f"singe-{version}"
+    shutil.copytree(source, tree)
+    shutil.copytree(source / "packaging" / "debian", tree / "debian")
+    day = ask("date", "-u", "-R", "-d", f"@{epoch}", env={**os.environ, "LC_ALL": "C"})
+    (tree / "debian" / "changelog").write_text(
+        f"singe ({version}-1) unstable; urgency=medium\n\n  * As CHANGELOG.md of the sources says.\n\n"
+        f" -- {MAINTAINER}  {day}\n")
+    shutil.copy(orig, place / f"singe_{version}.orig.tar.gz")
+    run("dpkg-source", "-b", tree.name, cwd=place)
+    for made in place.glob("singe_*"):
+        shutil.copy(made, out)
+    return out / f"singe_{version}-1.dsc"
+
+
+def sources_of_debian(commit, out):
+    """Debian's source package alone."""
+    with tempfile.TemporaryDirectory() as work:
+        work = pathlib.Path(work)
+        source, version, archive = unpacked(commit, work, work)
+        debian_source(source, version, time_of(commit), archive, work, out)
+
+
+def debian_packages(dsc, work, out):
+    run("dpkg-source", "-x", dsc, work / "deb")
+    run("dpkg-buildpackage", "-b", "-us", "-uc", cwd=work / "deb", stderr=subprocess.DEVNULL,
+        env={**os.environ, "DEB_BUILD_OPTIONS": "noautodbgsym"})
+    for package in work.glob("*.deb"):
         shutil.copy(package, out)
 
 
@@ -131,26 +176,38 @@ def bill_of_materials(version, commit, created, out):
     (out / f"singe-{version}.spdx.json").write_text(json.dumps(document, indent=1) + "\n")
 
 
+def provenance(version, commit, created, out):
+    """An in-toto statement of SLSA provenance 1: the files, the commit, and Debian's packages whose code they contain."""
+    subjects = [{"name": path.name, "digest": {"sha256": hashlib.sha256(path.read_bytes()).hexdigest()}}
+                for path in sorted(out.iterdir())]
+    packages = [{"uri": f"pkg:deb/debian/{name}@{ask('dpkg-query', '-W', '-f', '${Version}', name)}"} for name in LINKED]
+    statement = {
+        "_type": "https://in-toto.io/Statement/v1", "subject": subjects,
+        "predicateType": "https://slsa.dev/provenance/v1",
+        "predicate": {
+            "buildDefinition": {
+                "buildType": "urn:singe:scripts/release.py",
+                "externalParameters": {"commit": commit},
+                "resolvedDependencies": [{"uri": "urn:singe:git", "digest": {"gitCommit": commit}}, *packages]},
+            "runDetails": {"builder": {"id": "urn:singe:scripts/release.py"}, "metadata": {"startedOn": created}}}}
+    (out / f"singe-{version}.intoto.json").write_text(json.dumps(statement, indent=1) + "\n")
+
+
 def release(commit, out, wheels):
-    epoch = int(ask("git", "-C", ROOT, "show", "-s", "--format=%ct", commit))
+    epoch = time_of(commit)
     created = ask("date", "-u", "-d", f"@{epoch}", "+%Y-%m-%dT%H:%M:%SZ")
     os.environ.update(SOURCE_DATE_EPOCH=str(epoch), LC_ALL="C", TZ="UTC")
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
     with tempfile.TemporaryDirectory() as work:
         work = pathlib.Path(work)
-        tree = work / "source.tar.gz"
-        sources(commit, "source", epoch, tree)
-        with tarfile.open(tree) as tar:
-            tar.extractall(work, filter="data")
-        source = work / "source"
-        version = re.search(r'#define SINGE_VERSION "(.*)"', (source / "include/singe/base.h").read_text()).group(1)
-        sources(commit, f"singe-{version}", epoch, out / f"singe-{version}.tar.gz")
+        source, version, archive = unpacked(commit, work, out)
         static_command(source, work, out, f"singe-{version}-linux-{os.uname().machine}", epoch)
-        debian_packages(source, work, out)
+        debian_packages(debian_source(source, version, epoch, archive, work, out), work, out)
         if wheels:
             run(sys.executable, source / "bindings" / "python" / "build_wheels.py", "--out", out, "--work", work / "wheels")
     bill_of_materials(version, commit, created, out)
+    provenance(version, commit, created, out)
     sums = "".join(f"{hashlib.sha256(p.read_bytes()).hexdigest()}  {p.name}\n" for p in sorted(out.iterdir()))
     (out / "SHA256SUMS").write_text(sums)
     return sums
@@ -162,6 +219,7 @@ def main():
     parser.add_argument("--commit", default="HEAD")
     parser.add_argument("--twice", action="store_true")
     parser.add_argument("--wheels", action="store_true")
+    parser.add_argument("--sign", metavar="KEY")
     options = parser.parse_args()
     options.commit = ask("git", "-C", ROOT, "rev-parse", options.commit)  # HEAD may move meanwhile
     sums = release(options.commit, options.out.resolve(), options.wheels)
@@ -173,6 +231,9 @@ def main():
         if differ or len(sums) != len(other):
             sys.exit("release.py: the second build has other bytes:\n" + "\n".join(differ))
         print(f"built twice: {len(sums.splitlines())} files have the same bytes")
+    if options.sign:
+        run("gpg", "--batch", "--yes", "--armor", "--detach-sign", "--local-user", options.sign, "SHA256SUMS",
+            cwd=options.out)
 
 
 if __name__ == "__main__":

@@ -27,8 +27,7 @@ class Singe(ConanFile):
         self.version = re.search(r'#define SINGE_VERSION "(.*)"', text).group(1)
 
     def export_sources(self):
-        for pattern in ("CMakeLists.txt", "LICENSE", "include/*", "src/*", "packaging/cmake/*",
-                        "packaging/description.txt"):
+        for pattern in ("CMakeLists.txt", "LICENSE", "include/*", "src/*", "packaging/cmake/*"):
             copy(self, pattern, self.root, self.export_sources_folder)
 
     def config_options(self):
