@@ -152,6 +152,7 @@ void airborne_draw(Preview *preview) {
     const size_t pixels = (size_t)preview->def.width * (size_t)preview->def.height;
     memset(preview->veil, 0, pixels * sizeof *preview->veil);
     wisps_draw(preview);
+    flakes_draw(preview);
     sparks_draw(preview);
     for (size_t i = 0; i < pixels; i++) {
         const Veil *veil = &preview->veil[i];

@@ -50,5 +50,6 @@ void airborne_draw(Preview *preview);
 
 void sparks_draw(Preview *preview);
 void wisps_draw(Preview *preview);
+void flakes_draw(Preview *preview);
 
 #endif

@@ -37,7 +37,8 @@
 #define FLAME_BAKED 5.2f    ///< radiance of what is 1 where gas is baked
 #define SOOT_DENSE 42.0f    ///< 1/m: radiance per metre relative to that of a thick flame
 #define SOOT_OPAQUE 14.0f   ///< 1/m, extinction
-#define BLUE_DENSE 5.5f     ///< 1/m: radiance of the root per metre
+#define BLUE_DENSE 1.3f     ///< 1/m: radiance of the root per metre
+#define BLUE_ENDS 0.005f    ///< m
 #define SHELL_RISE 0.0005f  ///< m, w
 #define SHELL 0.0018f       ///< m
 #define EDGE 0.17f          ///< burning share at a flame's edge
@@ -145,7 +146,7 @@ static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noi
     float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001f * fine.d);
     float strong = stepf(0, 0.25f, edge), hot = 0.35f + 0.42f * strong - 0.3f * tip + 0.25f * wide.d + 0.15f * fine.a;
     soot *= soot;
-    float root = stepf(STAND_OFF, 4 * STAND_OFF, rise) * (1 - soot);
+    float root = stepf(STAND_OFF, 3 * STAND_OFF, rise) * (1 - soot) * (1 - stepf(BLUE_ENDS / 3, BLUE_ENDS, rise));
     soot *= 0.3f + 1.2f * stepf(-0.5f, 0.5f, 0.7f * wide.d + 0.6f * fine.a);
     point->opaque = SOOT_OPAQUE * soot;
     point->soot = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * soot);

@@ -36,6 +36,7 @@ PreviewDef preview_default(void) {
         .background = {0.16f, 0.15f, 0.145f},
         .exposure = 1,
         .sparks = 1,
+        .flakes = 1,
         .wisps = 1,
         .hottest = 5000,
         .pace = 1,

@@ -89,6 +89,7 @@ typedef struct PreviewDef {
     float background[3];
     float exposure; ///< multiplies before tone mapping
     float sparks;   ///< how many embers throw, relative to the usual
+    float flakes;   ///< how many burning borders lose, relative to the usual
     float wisps;    ///< how dense the smoke of embers is, relative to the usual
     float hottest;  ///< K; what is hotter is drawn as hot as this
     bool plain;     ///< sheets are drawn as if nothing had burnt, to show their shapes

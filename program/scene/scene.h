@@ -227,7 +227,7 @@ typedef struct ScenePreview {
     float ground_colour[3], ground_gloss, ground_stain;
     float background[3];
     float exposure;
-    float sparks, wisps;
+    float sparks, flakes, wisps;
     float hottest; ///< K
     bool plain;
     float shutter; ///< share of a frame's time

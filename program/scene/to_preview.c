@@ -21,6 +21,7 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
         .exposure = preview->exposure,
         .hottest = preview->hottest,
         .sparks = preview->sparks,
+        .flakes = preview->flakes,
         .wisps = preview->wisps,
         .plain = preview->plain,
         .shutter = preview->shutter / scene->fps,

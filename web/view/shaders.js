@@ -295,7 +295,7 @@ uniform vec3 fireColour;
 out vec4 colour;
 
 const float BASE_SPEED = 0.14, BUOYANCY = 3.0, EDDY_RATE = 8.0, EDDY_WIDE = 0.014, EDDY_FINE = 0.006, FLAME_HEIGHT = 0.058, FLAME_END = 0.17;
-const float SOOT_DENSE = 42.0, SOOT_OPAQUE = 14.0, BLUE_DENSE = 3.5, SHELL_RISE = 0.0005, SHELL = 0.0018, EDGE = 0.17, TAPER = 0.40;
+const float SOOT_DENSE = 42.0, SOOT_OPAQUE = 14.0, BLUE_DENSE = 0.9, BLUE_ENDS = 0.005, SHELL_RISE = 0.0005, SHELL = 0.0018, EDGE = 0.17, TAPER = 0.40;
 const float STAND_OFF = 0.0006, SOOT_BEGINS = 0.0038, SOOT_FULL = 0.0105, OUTSIDE = -0.006;
 
 float passed(float height) {
@@ -329,7 +329,7 @@ Point flame(vec4 c, vec4 wide, vec4 fine) {
     float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001 * fine.a);
     float hot = 0.35 + 0.42 * stepf(0.0, 0.25, edge) - 0.3 * tip + 0.25 * wide.a + 0.15 * fine.r;
     soot *= soot;
-    float root = stepf(STAND_OFF, 4.0 * STAND_OFF, rise) * (1.0 - soot);
+    float root = stepf(STAND_OFF, 3.0 * STAND_OFF, rise) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 3.0, BLUE_ENDS, rise));
     soot *= 0.3 + 1.2 * stepf(-0.5, 0.5, 0.7 * wide.a + 0.6 * fine.r);
     point.opaque = SOOT_OPAQUE * soot;
     point.soot = flameColour(clamp(hot, 0.0, 1.0)) * SOOT_DENSE * soot;

@@ -1,0 +1,227 @@
+// Flakes: small plates of char and ash that come off a burning border, and fall as plates do.
+//
+// A flake is carried up by the air of a flame, which it leaves within CARRIED, and falls at the speed w of a plate that
+// lies on the air, with w of its mass. It does not fall straight. Light plates either flutter, swinging from side to
+// side, or tumble, turning over and gliding one way (Belmonte, Eisenberg and Moses 1998; Andersen, Pesavento and Wang
+// 2005). With its tilt q about a level axis and d the direction across it, at the age a,
+//
+//     q = Q sin(f a),  the side is  (S / f)(1 - cos(f a)) d,  and it falls faster while it is steep,   or
+//     q = f a,         the side is  S a d,                    bobbing twice a turn,
+//
+// both about an axis that itself turns slowly. f follows from f d / w, which differs little between plates.
+//
+// What is drawn are points of the plate, each a soft dot, at moments while the shutter is open.
+
+#include "preview/airborne.h"
+
+enum {
+    FLAKES_A_SLOT = 3,  ///< that a site may lose in a slot
+    ACROSS_LIMIT = 28,  ///< points along a side of its square
+    MOMENT_LIMIT = 28,  ///< while the shutter is open
+    LANDING_STEPS = 12, ///< of halving
+};
+#define FLAKE_CELL 0.020f     ///< m, of the sites
+#define FLAKE_SLOT 0.1f       ///< s
+#define FLAKE_LIFE 1.7f       ///< s, the longest
+#define CARRIED 0.70f         ///< s
+#define LYING 0.3f            ///< s, of what came to the ground: what lies there is the stain's
+#define STARTING 0.06f        ///< s, within which it falls at its speed
+#define FLAKES_A_METRE 190.0f ///< 1/(m s), of sites that glow along a few cm
+#define FLAKES_CROWD 0.25f    ///< m of glowing line above which flakes become rarer
+#define FLAKE_DEPTH 3.2f      ///< optical depth across: 0.96 of what is behind is hidden
+#define FLAKE_AIR_DENSITY 1.2f
+#define FLAKE_COLD 600.0f ///< K: nothing of it glows
+
+/// A flake's flight.
+typedef struct Flake {
+    Float3 from, drift;      ///< m, m/s
+    float up, fall, side;    ///< m/s: with the flame, and when it has left it
+    float often, swing;      ///< rad/s, and rad: 0 tumbles
+    float phase, turn, spin; ///< rad, rad, rad/s
+    float life, hot;         ///< s, K
+    float size, narrow;      ///< m, half of its length; its width over that
+    float ash;               ///< 0 char to 1 ash
+    float landing;           ///< s, the age at which it lies on the ground; infinite: never
+    uint32_t seed;
+} Flake;
+
+/// A plate in space: its centre and two half axes.
+typedef struct Plate {
+    Float3 centre, along, across, normal;
+} Plate;
+
+static float flake_rise(const Flake *flake, float age) {
+    const float carried = CARRIED * (1 - expf(-age / CARRIED)), lag = STARTING * (1 - expf(-age / STARTING));
+    return flake->up * carried - flake->fall * (age - lag);
+}
+
+static Plate flake_at(const Flake *flake, float age) {
+    const bool lies = age >= flake->landing, tumbles = flake->swing == 0;
+    if (lies) age = flake->landing;
+    const float start = age * age / (age + 2 * STARTING), beat = flake->often * age + flake->phase;
+    const float tilt = tumbles ? beat : flake->swing * sinf(beat), turn = flake->turn + flake->spin * age;
+    const Float3 axis = {cosf(turn), sinf(turn), 0}, aside = {-axis.y, axis.x, 0};
+    const float side = tumbles ? flake->side * start
+                               : flake->side / flake->often * (cosf(flake->phase) - cosf(beat)) * start / (age + 1e-6f);
+    const float bob = 0.25f * flake->fall / flake->often * (sinf(2 * beat) - sinf(2 * flake->phase));
+
+    Plate plate;
+    plate.centre = float3_mad(float3_mad(flake->from, flake->drift, start), aside, side);
+    plate.centre.z += flake_rise(flake, age) + (lies ? 0 : bob);
+    const float c = lies ? 1 : cosf(tilt), s = lies ? 0 : sinf(tilt);
+    plate.along = float3_scale(axis, flake->size);
+    plate.across = float3_scale(float3(c * aside.x, c * aside.y, -s), flake->size * flake->narrow);
+    plate.normal = float3(s * aside.x, s * aside.y, c);
+    return plate;
+}
+
+/// Draws the flake as it is at the age; `share` of the exposure, `lit` what an albedo of 1 reflects.
+static void plate_draw(Preview *preview, const Flake *flake, Float3 lit, float age, float share) {
+    const Plate plate = flake_at(flake, age);
+    const Float3 to = float3_sub(preview->camera.eye, plate.centre);
+    float at[2], depth;
+    if (!airborne_project(preview, plate.centre, at, &depth)) return;
+    const float pixel = preview->camera.pixel * depth, wide = 2 * flake->size / pixel;
+    const int across = (int)clampf(ceilf(1.2f * wide), 3, ACROSS_LIMIT);
+    const float spacing = wide / (float)across, blur = camera_blur(&preview->camera, depth);
+
+    // edge on, it is as thick as it is curled
+    const float seen = 0.07f + 0.93f * fabsf(float3_dot(plate.normal, to)) / float3_length(to);
+    const float cover = FLAKE_DEPTH * share * seen * flake->narrow * spacing * spacing;
+    const float heat = FLAKE_COLD + (flake->hot - FLAKE_COLD) * expf(-3.2f * age / flake->life);
+
+    for (int j = 0; j < across; j++)
+        for (int i = 0; i < across; i++) {
+            const uint32_t dither =
+                hash_u32(flake->seed ^ (uint32_t)(i + across * j) ^ (uint32_t)(age * 65536) * 0x8da6b343u);
+            const float u = 2 * ((float)i + hash_unit(dither)) / (float)across - 1;
+            const float v = 2 * ((float)j + hash_unit(dither + 1)) / (float)across - 1;
+
+            // a torn outline has corners
+            const float from = sqrtf(u * u + v * v) + 1e-6f, x = u / from, y = v / from;
+            const float inside = 0.80f + 0.34f * noise2(1.6f * x + 9, 1.6f * y + 5, flake->seed) +
+                                 0.15f * noise2(5 * x + 3, 5 * y + 8, flake->seed) - from;
+            if (inside <= 0) continue;
+
+            // pale at its border and in patches; embers last there
+            const float patch = noise2(2.3f * u + 5, 2.3f * v + 5, flake->seed + 1);
+            const float rim = 1 - stepf(0, 0.28f, inside), pale = clampf(flake->ash + 0.25f * rim + 0.3f * patch, 0, 1);
+            const float curl = 1 + 0.35f * v * (patch + 0.4f);
+            const float albedo = mixf(0.03f, 0.45f, pale * pale) * maxf(curl, 0.4f);
+            const float glows = maxf(rim, stepf(0.1f, 0.5f, patch)) * stepf(FLAKE_COLD, 900, heat);
+            Float3 light = float3_scale(lit, albedo);
+            light = float3_mad(light, blackbody_glow(preview->blackbody, heat + 80 * patch), EMBER_GAIN * glows);
+
+            const Float3 point = float3_mad(float3_mad(plate.centre, plate.along, u), plate.across, v);
+            if (!airborne_project(preview, point, at, &depth)) return;
+            airborne_dot(preview, at, maxf(0.8f * spacing, blur), float3_scale(light, cover), cover);
+        }
+}
+
+/// Draws the flake while the shutter is open, from the age `begin` to `end`.
+static void flake_draw(Preview *preview, const Flake *flake, float begin, float end, float strength) {
+    Float3 points[SIGHT_POINTS];
+    float clear[SIGHT_POINTS], first[2], last[2], depth;
+    for (int i = 0; i < SIGHT_POINTS; i++) {
+        points[i] = flake_at(flake, mixf(begin, end, ((float)i + 0.5f) / SIGHT_POINTS)).centre;
+        points[i].z += 2e-4f; // above the ground that it lies on
+    }
+    if (!airborne_project(preview, points[0], first, &depth)) return;
+    if (!airborne_project(preview, points[SIGHT_POINTS - 1], last, &depth)) return;
+    airborne_sight(preview, points, SIGHT_POINTS, clear);
+
+    // light of both sides
+    const EmberLights *lamps = &preview->scene.lights;
+    const Plate plate = flake_at(flake, 0.5f * (begin + end));
+    const float facing = float3_dot(plate.normal, float3_sub(preview->camera.eye, plate.centre)), through = 0.25f;
+    const Float3 normal = float3_scale(plate.normal, facing < 0 ? -1 : 1);
+    const float sun = float3_dot(normal, preview->sun);
+    Float3 lit = float3_mad(sky_ambient(&preview->sky, normal), preview->sun_light, maxf(sun, -through * sun));
+    for (int k = 0; k < preview->scene.light_count; k++) {
+        const Float3 to = float3_sub(float3(lamps->x[k], lamps->y[k], lamps->z[k]), plate.centre);
+        const float d2 = float3_dot(to, to) + lamps->softness[k], cosine = float3_dot(normal, to) / sqrtf(d2);
+        const float share = minf(maxf(cosine, -through * cosine) / d2, 4e3f);
+        lit = float3_mad(lit, float3(lamps->strength[0][k], lamps->strength[1][k], lamps->strength[2][k]), share);
+    }
+
+    const float way = hypotf(last[0] - first[0], last[1] - first[1]);
+    const float turned = flake->often * (end - begin) * flake->size / (preview->camera.pixel * depth);
+    const int moments = (int)clampf(1 + way + turned, 1, MOMENT_LIMIT);
+    for (int k = 0; k < moments; k++) {
+        const float part = ((float)k + 0.5f) / (float)moments, age = mixf(begin, end, part);
+        const float left = 1 - stepf(0.75f, 1, age / flake->life), open = clear[(int)(part * SIGHT_POINTS)];
+        if (open * left > 0) plate_draw(preview, flake, lit, age, strength * open * left / (float)moments);
+    }
+}
+
+/// The flake of a key, which leaves `site`.
+static Flake flake_make(const Preview *preview, const EmberSite *site, uint32_t key) {
+    float r[14];
+    for (uint32_t n = 0; n < 14; n++) r[n] = hash_unit(key + 1 + n);
+    const float flames = site->length > 0 ? minf(site->flaming / site->length, 1) : 0;
+
+    // char of 20 g/m2, ash of 6; most are small
+    const float ash = r[0], grammage = mixf(0.020f, 0.006f, ash), drag = 1.3f;
+    const float size = 0.0012f + 0.0042f * r[1] * r[1] * r[1];
+    Flake flake = {.from = float3_mad(site->position, float3(r[2] - 0.5f, r[3] - 0.5f, r[4] - 0.5f), 0.010f),
+                   .drift = float3(0.24f * (r[5] - 0.5f), 0.24f * (r[6] - 0.5f), 0),
+                   .up = (0.8f + 0.4f * flames) * clampf(1.3f * r[7] - 0.25f, 0, 1),
+                   .fall = sqrtf(2 * 9.81f * grammage / (FLAKE_AIR_DENSITY * drag)),
+                   .swing = r[8] < 0.4f ? 0 : 0.5f + 1.1f * r[8],
+                   .phase = 2 * PI_F * r[9],
+                   .turn = 2 * PI_F * r[10],
+                   .spin = 5 * (r[11] - 0.5f),
+                   .life = FLAKE_LIFE * (0.5f + 0.5f * r[12]),
+                   .hot = 840 + 300 * r[13],
+                   .size = size,
+                   .narrow = 0.45f + 0.5f * r[4],
+                   .ash = ash,
+                   .seed = key};
+    flake.side = 0.7f * flake.fall;
+    flake.often = clampf(2 * PI_F * 0.07f * flake.fall / flake.size, 14, 50);
+    flake.landing = INFINITY;
+
+    // when it comes to the ground
+    const float ground = preview->def.ground_height - flake.from.z;
+    if (isfinite(ground) && flake_rise(&flake, flake.life) < ground) {
+        float low = 0, high = flake.life;
+        for (int i = 0; i < LANDING_STEPS; i++) {
+            const float middle = 0.5f * (low + high);
+            *(flake_rise(&flake, middle) > ground ? &low : &high) = middle;
+        }
+        flake.landing = low;
+    }
+    flake.life = minf(flake.life, flake.landing + LYING);
+    return flake;
+}
+
+void flakes_draw(Preview *preview) {
+    EmberSite sites[SITE_LIMIT];
+    if (preview->def.flakes <= 0) return;
+    ember_sites(preview, FLAKE_CELL, sites);
+    float total = 0;
+    for (int i = 0; i < SITE_LIMIT; i++) total += sites[i].weight;
+    if (total <= 0) return;
+
+    const float open = preview->def.shutter, now = (float)fmod(preview->time, 4096.0);
+    const float rate = FLAKES_A_METRE * preview->def.flakes / sqrtf(1 + total / FLAKES_CROWD);
+    const int last = (int)floorf((now + 0.5f * open) / FLAKE_SLOT),
+              first = (int)floorf((now - FLAKE_LIFE) / FLAKE_SLOT);
+
+    for (int i = 0; i < SITE_LIMIT; i++)
+        for (int slot = first; slot <= last && sites[i].weight > 0; slot++) {
+            const uint32_t moment = hash_u32((sites[i].key + 0x68e31da4u) ^ (uint32_t)slot * 0xd8163841u);
+            const float chance = rate * sites[i].weight * FLAKE_SLOT / FLAKES_A_SLOT;
+            for (uint32_t k = 0; k < FLAKES_A_SLOT; k++) {
+                const uint32_t key = hash_u32(moment + 131 * k);
+                const float strength = clampf(5 * (1 - hash_unit(key) / chance), 0, 1);
+                if (!(strength > 0)) continue;
+
+                const Flake flake = flake_make(preview, &sites[i], key);
+                const float age = now - ((float)slot + hash_unit(key ^ 0x5bd1e995u)) * FLAKE_SLOT;
+                const float begin = maxf(age - 0.5f * open, 0), end = minf(age + 0.5f * open, flake.life);
+                if (begin < end || (open == 0 && age >= 0 && age < flake.life))
+                    flake_draw(preview, &flake, begin, end, strength);
+            }
+        }
+}
