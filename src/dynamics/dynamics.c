@@ -58,7 +58,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
         NEW(memory, plan->colliders, plan->collider_capacity) && NEW(memory, plan->partial, plan_partials(shell)) &&
         (!plan->solver->create || plan->solver->create(memory, shell, plan)) &&
         patches_create(memory, shell, &plan->patches) && attach_create(memory, shell, &plan->attachments) &&
-        smooth_create(memory, shell, plan) &&
+        smooth_create(memory, shell, plan) && plates_create(memory, plan) &&
         (!settings->contact.enabled ||
          !collision_plan_create(memory, shell, &settings->contact, settings->time_step, &plan->collision));
     if (!done) {
@@ -85,6 +85,7 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) 
     FREE(memory, plan->height_wait, height_wait_count(shell));
     FREE(memory, plan->colliders, plan->collider_capacity);
     FREE(memory, plan->partial, plan_partials(shell));
+    plates_free(memory, plan);
     FREE(memory, plan->reach[0], shell->springs[SINGE_BLUE].strand_count);
     FREE(memory, plan->reach[1], shell->springs[SINGE_GREEN].strand_count);
     patches_free(memory, shell, &plan->patches);
@@ -185,6 +186,7 @@ static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepC
 
     // what stays the same during the part
     dynamics_prepare(plan, shell, state, context->wind, context->sources, pool, dynamics);
+    dynamics_fly(plan, shell, ablate, state->time, h, dynamics);
     if (plan->collision)
         TRY(dynamics_contact_result(collision_open(memory, plan->collision, shell, state, pool, h, first, dynamics),
                                     pool, error));

@@ -71,6 +71,11 @@ typedef struct Patches {
 
 typedef struct Paper Paper;
 
+enum { PLATE_LIMIT = 256 };
+
+/// A free piece that falls (plates.c).
+typedef struct Plate Plate;
+
 /// The edge between two cells that a green spring joins, at rest (crease.c).
 typedef struct Hinge {
     uint8_t side[2]; ///< which side of the cell at each of the spring's ends it is
@@ -101,9 +106,12 @@ struct DynamicsPlan {
     CollisionPlan *collision; ///< NULL without contact of sheets
     Hinge *hinges;            ///< [green springs], or NULL without creases
     bool creased;             ///< there are creases after the last step
-    uint32_t *reach[2];       ///< [strands] of blue and green: springs in a smoothing_length; 0: fewer than two
-    uint8_t *height_wait;     ///< [height_wait_count] substeps for which a block of cells is skipped
-    float (*cell_normal)[4];  ///< unit times twice the area
+    Plate *plates;            ///< [PLATE_LIMIT], of which plate_count are in use during a step
+    uint16_t *plate_slot;     ///< [particles] by piece: 1 + its plate, 0 between steps
+    uint32_t plate_count;
+    uint32_t *reach[2];      ///< [strands] of blue and green: springs in a smoothing_length; 0: fewer than two
+    uint8_t *height_wait;    ///< [height_wait_count] substeps for which a block of cells is skipped
+    float (*cell_normal)[4]; ///< unit times twice the area
     MovingCollider *colliders;
     uint32_t collider_capacity;
     double *partial; ///< [pool_blocks(particles or springs of a colour)]
@@ -113,6 +121,14 @@ struct DynamicsPlan {
 /// Inverse masses, weights, normals, drag and wind for this step (prepare.c).
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, const SingeWindDef *wind,
                       const SourceList *sources, Pool *pool, DynamicsState *dynamics);
+
+/// Makes room for the plates; false when out of memory.
+bool plates_create(Memory *memory, DynamicsPlan *plan);
+void plates_free(Memory *memory, DynamicsPlan *plan);
+
+/// Lift, friction and turning of free pieces in h seconds of air (plates.c).
+void dynamics_fly(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, double time, float h,
+                  DynamicsState *dynamics);
 
 /// The stages for each particle between two projections (move.c).
 typedef struct Between {
