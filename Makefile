@@ -114,7 +114,7 @@ web: web-package
 
 web-package:
 	cmake --preset wasm
-	cmake --build --preset wasm --target singe_wasm singe_files_wasm
+	cmake --build --preset wasm --target singe_wasm singe_files_wasm singe_layout
 	cd bindings/web && npm ci --ignore-scripts && npm run build
 	cp build-wasm/web/singe.wasm build-wasm/web/singe-files.wasm bindings/web/dist
 

@@ -1,25 +1,25 @@
 // The module's memory: structs by the lists of layout.c, arrays, and room for the arguments of one call.
+import { layout } from "./layout.js";
 
-type Words = Map<string, number>;
+/** A field's type, how many numbers it has, its offset, and the enum of its words. */
+type Field = readonly [type: string, length: number, offset: number, words?: string];
+/** Numbers that a struct points to: their type, how many an element has, the pointer's offset, the field that counts elements. */
+type ArrayField = readonly [type: string, width: number, offset: number, count: string];
+interface Struct { size: number; fields: Record<string, Field | undefined>; arrays?: Record<string, ArrayField | undefined> }
+export interface Layout { structs: Record<string, Struct | undefined>; words: Record<string, Record<string, number> | undefined> }
 
-interface Field { words: Words | null; type: number; length: number; offset: number }
-interface ArrayField { type: number; width: number; offset: number; count: number }
-interface Struct { size: number; fields: Map<string, Field>; arrays: Map<string, ArrayField> }
-
-// enum of layout.c
-const FLOAT = 0, INT = 1, UINT32 = 2, UINT64 = 3, BOOL = 4, PARAM = 5, DOUBLE = 6, INT32 = 7, UINT8 = 8;
+/** Bytes of numbers that have not four. */
+const WIDE: Record<string, number> = { bool: 1, double: 8, uint64: 8 };
+const ARRAYS = { float: Float32Array, int: Int32Array, uint32: Uint32Array, uint8: Uint8Array };
 
 /** The functions of exports.txt. Pointers are numbers, and so are results; 64-bit integers are not used. */
 export type Exports = Record<string, (...numbers: number[]) => number> & { malloc(size: number): number };
 export type Numbers = Float32Array | Int32Array | Uint32Array | Uint8Array;
 
 export class Memory {
-    private structs = new Map<string, Struct>();
     private room: number[] = [];
 
-    constructor(readonly memory: WebAssembly.Memory, readonly call: Exports) {
-        this.readLayout();
-    }
+    constructor(readonly memory: WebAssembly.Memory, readonly call: Exports) {}
 
     // ---- numbers and strings
 
@@ -72,7 +72,7 @@ export class Memory {
     // ---- structs
 
     size(name: string): number { return this.struct(name).size; }
-    at(struct: number, name: string, field: string): number { return struct + this.field(name, field).offset; }
+    at(struct: number, name: string, field: string): number { return struct + this.field(name, field)[2]; }
 
     /** Writes the options that are given; the others keep their values. An unknown key is an error. */
     write(struct: number, name: string, options: object): void {
@@ -80,74 +80,71 @@ export class Memory {
     }
 
     set(struct: number, name: string, key: string, value: unknown): void {
-        const field = this.field(name, key), many = field.length > 1;
-        if (many && (!value || typeof value !== "object" || (value as unknown[]).length !== field.length))
-            throw new TypeError(`${name}.${key}: a list of ${field.length} was expected`);
+        const [type, length, offset, enumeration] = this.field(name, key), words = enumeration === undefined ? undefined : layout.words[enumeration], many = length > 1;
+        if (many && (!value || typeof value !== "object" || (value as unknown[]).length !== length))
+            throw new TypeError(`${name}.${key}: a list of ${length} was expected`);
         const values = many ? Array.from(value as ArrayLike<unknown>) : [value];
-        const step = field.type === PARAM ? this.size("param") : field.type === UINT64 ? 8 : field.type === BOOL ? 1 : 4;
-        values.forEach((one, k) => this.setOne(struct + field.offset + k * step, `${name}.${key}`, field, one));
+        const step = type === "param" ? this.size("param") : WIDE[type] ?? 4;
+        values.forEach((one, k) => this.setOne(struct + offset + k * step, `${name}.${key}`, type, words, one));
     }
 
     get(struct: number, name: string, key: string): number | number[] | boolean {
-        const field = this.field(name, key), data = this.data, at = struct + field.offset;
-        const one = (k: number): number => {
-            if (field.type === FLOAT) return data.getFloat32(at + 4 * k, true);
-            if (field.type === DOUBLE) return data.getFloat64(at + 8 * k, true);
-            if (field.type === UINT64) return Number(data.getBigUint64(at + 8 * k, true));
-            return field.type === INT ? data.getInt32(at + 4 * k, true) : data.getUint32(at + 4 * k, true);
+        const [type, length, offset] = this.field(name, key), data = this.data, step = WIDE[type] ?? 4;
+        const one = (at: number): number => {
+            if (type === "float") return data.getFloat32(at, true);
+            if (type === "double") return data.getFloat64(at, true);
+            if (type === "uint64") return Number(data.getBigUint64(at, true));
+            return type === "int" ? data.getInt32(at, true) : data.getUint32(at, true);
         };
-        if (field.type === BOOL) return data.getUint8(at) !== 0;
-        return field.length > 1 ? Array.from({ length: field.length }, (_, k) => one(k)) : one(0);
+        if (type === "bool") return data.getUint8(struct + offset) !== 0;
+        return length > 1 ? Array.from({ length }, (_, k) => one(struct + offset + k * step)) : one(struct + offset);
     }
 
     /** All numbers of a struct, by their names. */
     read(struct: number, name: string): Record<string, number | number[] | boolean> {
-        return Object.fromEntries([...this.struct(name).fields.keys()].map((key) => [key, this.get(struct, name, key)]));
+        return Object.fromEntries(Object.keys(this.struct(name).fields).map((key) => [key, this.get(struct, name, key)]));
     }
 
     /** An array that a struct points to: a window on the module's memory, valid until the next call. */
     array(struct: number, name: string, key: string, count?: number): Numbers {
-        const field = this.struct(name).arrays.get(key);
+        const field = this.struct(name).arrays?.[key];
         if (!field) throw new TypeError(`${name} has no array ${key}`);
-        const length = (count ?? this.u32(struct + field.count)) * field.width, at = this.u32(struct + field.offset);
+        const [type, width, offset, counted] = field, at = this.u32(struct + offset);
         if (!at) return new Float32Array(0);
-        const Kind = field.type === INT32 ? Int32Array : field.type === UINT32 ? Uint32Array : field.type === UINT8 ? Uint8Array
-            : Float32Array;
-        return new Kind(this.memory.buffer, at, length);
+        return new ARRAYS[type as keyof typeof ARRAYS](this.memory.buffer, at, (count ?? this.u32(this.at(struct, name, counted))) * width);
     }
 
     /** The names of a struct's arrays. */
-    arrays(name: string): string[] { return [...this.struct(name).arrays.keys()]; }
+    arrays(name: string): string[] { return Object.keys(this.struct(name).arrays ?? {}); }
 
     // ---- layout.c
 
     private struct(name: string): Struct {
-        const struct = this.structs.get(name);
+        const struct = layout.structs[name];
         if (!struct) throw new TypeError(`there is no struct ${name}`);
         return struct;
     }
 
     private field(name: string, key: string): Field {
-        const field = this.struct(name).fields.get(key);
+        const { fields } = this.struct(name), field = Object.hasOwn(fields, key) && fields[key];
         if (!field) throw new TypeError(`${name} has no ${key}`);
         return field;
     }
 
-    private setOne(at: number, where: string, field: Field, value: unknown): void {
+    private setOne(at: number, where: string, type: string, words: Record<string, number> | undefined, value: unknown): void {
         const data = this.data;
-        if (field.words) {
-            const number = field.words.get(value as string);
-            if (number === undefined) throw new TypeError(`${where}: one of ${[...field.words.keys()].join(", ")} was expected`);
-            data.setInt32(at, number, true);
-        } else if (field.type === PARAM) {
+        if (words) {
+            if (!Object.hasOwn(words, value as string)) throw new TypeError(`${where}: one of ${Object.keys(words).join(", ")} was expected`);
+            data.setInt32(at, words[value as string]!, true);
+        } else if (type === "param") {
             this.setParam(at, where, value);
-        } else if (field.type === BOOL) {
+        } else if (type === "bool") {
             data.setUint8(at, value ? 1 : 0);
         } else if (typeof value !== "number" || Number.isNaN(value)) {
             throw new TypeError(`${where}: a number was expected`);
-        } else if (field.type === FLOAT) {
+        } else if (type === "float") {
             data.setFloat32(at, value, true);
-        } else if (field.type === UINT64) {
+        } else if (type === "uint64") {
             data.setBigUint64(at, BigInt(Math.trunc(value)), true);
         } else {
             data.setInt32(at, value, true);
@@ -178,29 +175,5 @@ export class Memory {
         this.data.setFloat32(at, param.from, true);
         this.data.setFloat32(at + 4, param.to, true);
         this.data.setUint32(at + 8, field, true);
-    }
-
-    private readLayout(): void {
-        const layout = this.call.layout(), words = new Map<string, Words>();
-        const rows = (list: number, size: number): number[] =>
-            Array.from({ length: this.u32(layout + 8 * list + 4) }, (_, i) => this.u32(layout + 8 * list) + i * size);
-        for (const row of rows(3, 8))
-            this.structs.set(this.text(this.u32(row)), { size: this.u32(row + 4), fields: new Map(), arrays: new Map() });
-        for (const row of rows(2, 12)) {
-            const of = this.text(this.u32(row)), known = words.get(of) ?? new Map<string, number>();
-            known.set(this.text(this.u32(row + 4)), this.u32(row + 8));
-            words.set(of, known);
-        }
-        for (const row of rows(0, 24)) {
-            const enumeration = this.u32(row + 8);
-            this.struct(this.text(this.u32(row))).fields.set(this.text(this.u32(row + 4)), {
-                words: enumeration ? words.get(this.text(enumeration)) ?? null : null,
-                type: this.u32(row + 12), length: this.u32(row + 16), offset: this.u32(row + 20),
-            });
-        }
-        for (const row of rows(1, 24))
-            this.struct(this.text(this.u32(row))).arrays.set(this.text(this.u32(row + 4)), {
-                type: this.u32(row + 8), width: this.u32(row + 12), offset: this.u32(row + 16), count: this.u32(row + 20),
-            });
     }
 }
