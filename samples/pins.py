@@ -2,8 +2,8 @@
 #
 # Prints:
 #   0.5 s: lowest at -140 mm
-#   1.0 s: lowest at -40 mm
-#   1.5 s: lowest at -620 mm
+#   1.0 s: lowest at -30 mm
+#   1.5 s: lowest at -790 mm
 import sample
 
 sim = sample.fire()

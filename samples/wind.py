@@ -1,8 +1,8 @@
 # Wind that begins while the sheet burns: a mean velocity, and gusts of a seed.
 #
 # Prints:
-#   without wind the lower edge is 10 mm to the side
-#   with wind the lower edge is 90 mm to the side
+#   without wind the lower edge is -10 mm to the side
+#   with wind the lower edge is 70 mm to the side
 import sample
 
 sim = sample.fire()

@@ -68,15 +68,6 @@ static bool is_alone(const Queue *queue, int item) {
     return false;
 }
 
-/// Adds the items that have been run to the report, up to the first that has not.
-static void add_done(Queue *queue) {
-    for (; queue->added < queue->page->count; queue->added++) {
-        Report *report = queue->done[queue->added];
-        if (report) report_end(queue->report, report), queue->done[queue->added] = NULL;
-        else if (is_wanted(queue, queue->added)) return;
-    }
-}
-
 static void run_item(Queue *queue, int index, int threads, bool echo) {
     const PageItem *item = &queue->page->items[index];
     const double begun = console_clock();
@@ -96,25 +87,31 @@ static void run_item(Queue *queue, int index, int threads, bool echo) {
         if (error.code != result) queue->error = (SingeError){.code = result, .element = -1};
     }
 
+    // the items that have been run, up to the first that has not
     queue->done[index] = lab.report;
-    add_done(queue);
+    for (; queue->added < queue->page->count; queue->added++) {
+        Report *report = queue->done[queue->added];
+        if (!report && is_wanted(queue, queue->added)) break;
+        if (!report) continue;
+        report_end(queue->report, report);
+        queue->done[queue->added] = NULL;
+    }
+
     pthread_mutex_unlock(&queue->lock);
 }
 
-/// The next item that need not run alone, or -1.
-static int take_next(Queue *queue) {
-    int index = -1;
-    pthread_mutex_lock(&queue->lock);
-    for (; index < 0 && queue->next < queue->page->count && !queue->result; queue->next++)
-        if (is_wanted(queue, queue->next) && !is_alone(queue, queue->next)) index = queue->next;
-    pthread_mutex_unlock(&queue->lock);
-    return index;
-}
-
+/// Runs items that need not run alone, until there are none.
 static void *run_together(void *context) {
     Queue *queue = context;
-    for (int index; (index = take_next(queue)) >= 0;) run_item(queue, index, 1, false);
-    return NULL;
+    for (;;) {
+        int index = -1;
+        pthread_mutex_lock(&queue->lock);
+        for (; index < 0 && queue->next < queue->page->count && !queue->result; queue->next++)
+            if (is_wanted(queue, queue->next) && !is_alone(queue, queue->next)) index = queue->next;
+        pthread_mutex_unlock(&queue->lock);
+        if (index < 0) return NULL;
+        run_item(queue, index, 1, false);
+    }
 }
 
 /// Prints the error.

@@ -156,15 +156,6 @@ static void add_crossing(const CacheFrame *frame, uint32_t a, uint32_t b, Findin
                  (double)p[0], (double)p[1], (double)p[2]);
 }
 
-/// One warning for all pairs that cross in the first frame: sheets that lie in one place have thousands.
-static void say_from_start(const CacheFrame *frame, const uint32_t pair[2], const Findings *findings) {
-    const float *p = frame->position[frame->triangles[pair[0]][0]];
-    findings_say(findings, false,
-                 "%s: pairs of triangles that cross from the start: %" PRIu64
-                 ", the first of them %u and %u, near (%.4g, %.4g, %.4g) m",
-                 findings->file, findings->from_start, pair[0], pair[1], (double)p[0], (double)p[1], (double)p[2]);
-}
-
 static bool check_crossings(const CacheFrame *frame, const uint32_t *sound, uint32_t count, Findings *findings) {
     uint32_t(*triangles)[3] = malloc(((size_t)count + 1) * sizeof *triangles);
     CrossingList list = {0};
@@ -193,7 +184,16 @@ static bool check_crossings(const CacheFrame *frame, const uint32_t *sound, uint
     }
 
     for (size_t i = 0; i < list.count; i++) add_crossing(frame, list.pairs[i][0], list.pairs[i][1], findings);
-    if (findings->begins && findings->from_start) say_from_start(frame, list.pairs[0], findings);
+    if (findings->begins && findings->from_start) {
+        // one warning for all: sheets that lie in one place have thousands
+        const uint32_t *pair = list.pairs[0];
+        const float *p = frame->position[frame->triangles[pair[0]][0]];
+        findings_say(findings, false,
+                     "%s: pairs of triangles that cross from the start: %" PRIu64
+                     ", the first of them %u and %u, near (%.4g, %.4g, %.4g) m",
+                     findings->file, findings->from_start, pair[0], pair[1], (double)p[0], (double)p[1], (double)p[2]);
+    }
+
     crossings_free(&list);
     return good;
 }

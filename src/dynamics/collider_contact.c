@@ -35,15 +35,13 @@ enum { CONTACT_FEW = 4, CONTACT_LISTED = 256 };
 /// A position this near outside a surface, as a share of the offset or in m, counts as on it.
 static const float CONTACT_SKIN = 1.0f / 16, CONTACT_SKIN_MIN = 1e-6f;
 
-/// Shapes whose distance a few operations give. Planes have a kernel of their own.
-static bool collider_is_simple(const Collider *collider) {
-    return collider->def.kind == SINGE_COLLIDER_SPHERE || collider->def.kind == SINGE_COLLIDER_BOX ||
-           collider->def.kind == SINGE_COLLIDER_CAPSULE;
-}
-
 MovingCollider contact_collider(const Collider *collider, double before, double after) {
+    // shapes whose distance a few operations give; planes have a kernel of their own
+    const SingeColliderKind kind = collider->def.kind;
+    const bool is_simple =
+        kind == SINGE_COLLIDER_SPHERE || kind == SINGE_COLLIDER_BOX || kind == SINGE_COLLIDER_CAPSULE;
     MovingCollider moving = {.collider = collider,
-                             .is_simple = collider_is_simple(collider),
+                             .is_simple = is_simple,
                              .before = path_pose(&collider->path, before),
                              .after = path_pose(&collider->path, after)};
     Float3 low, high;

@@ -236,15 +236,6 @@ static bool march_whole(Marching *march, uint32_t cell) {
     return true;
 }
 
-/// Where cells' triangles are cut or split.
-static void march_cell(Marching *march, uint32_t cell) {
-    const Fine *fine = march->fine;
-    uint32_t line[4][FINE_SPLITS_MAX]; // cuts of the lines from the corners to the centre
-    for (int side = 0; side < 4; side++) memset(line[side], 0, (size_t)fine->splits[cell] * sizeof *line[side]);
-    for (int side = 0; side < 4; side++)
-        if (!fine_is_torn(fine, cell, side)) march_triangle(march, cell, side, line[side], line[(side + 1) & 3]);
-}
-
 static void march_cells(Marching *march) {
     const Fine *fine = march->fine;
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
@@ -255,7 +246,13 @@ static void march_cells(Marching *march) {
         if (hidden) continue;
 
         uint32_t before = fine->surface->triangle_count;
-        if (!march_whole(march, c)) march_cell(march, c);
+        if (!march_whole(march, c)) {          // its triangles are cut or split
+            uint32_t line[4][FINE_SPLITS_MAX]; // cuts of the lines from the corners to the centre
+            for (int side = 0; side < 4; side++) memset(line[side], 0, (size_t)fine->splits[c] * sizeof *line[side]);
+            for (int side = 0; side < 4; side++)
+                if (!fine_is_torn(fine, c, side)) march_triangle(march, c, side, line[side], line[(side + 1) & 3]);
+        }
+
         if (fine_is_split(fine, c)) fine->surface->fine_triangle_count += fine->surface->triangle_count - before;
     }
 
