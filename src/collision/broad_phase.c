@@ -104,6 +104,7 @@ SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell
     Find find = {plan, shell};
     plan->listed_count = plan->pair_count = plan->repulsion_count = 0; // repulsions name pairs
     plan->restless = 0;
+    plan->kept.current = false;
 
     // fewer steps where corners move fast relative to each other: on average by at most a third of a cell
     Float4 mean = {0};

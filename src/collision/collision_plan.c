@@ -188,6 +188,7 @@ static SingeResult search_again(Memory *memory, CollisionPlan *plan, const Shell
 
 SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags,
                                   Stream *stream) {
+    if (stream->mode == STREAM_READ) plan->kept.current = false;
     STREAM(stream, plan->searched);
     STREAM(stream, plan->restless);
     STREAM(stream, plan->step);
@@ -247,7 +248,8 @@ static void copy_search(CollisionPlan *plan, bool back) {
 }
 
 void collision_plan_keep(CollisionPlan *plan) {
-    copy_search(plan, false);
+    if (!plan->kept.current) copy_search(plan, false);
+    plan->kept.current = true;
     plan->kept.searched = plan->searched;
     plan->kept.restless = plan->restless;
     plan->kept.step = plan->step;
@@ -255,7 +257,7 @@ void collision_plan_keep(CollisionPlan *plan) {
 }
 
 void collision_plan_restore(Memory *memory, CollisionPlan *plan, const Shell *shell) {
-    copy_search(plan, true);
+    if (!plan->kept.current) copy_search(plan, true);
     plan->searched = plan->kept.searched;
     plan->restless = plan->kept.restless;
     plan->step = plan->kept.step;

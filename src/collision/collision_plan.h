@@ -145,8 +145,9 @@ struct CollisionPlan {
     uint32_t initial_capacity;
     uint8_t *intersecting; ///< [cells] 1: in one of these pairs
 
-    // the same as it was before the step, for one that fails
+    // the same as it was before the step, for one that fails; arrays are copied after a search alone
     struct {
+        bool current; ///< the arrays are those of the last search
         uint32_t searched, restless;
         uint64_t step;
         float (*position)[4], (*speed)[4];
