@@ -33,11 +33,17 @@ static const float EDGE_STRETCH = 1.4f;
 static const float WET_FROM = 0.1f, WET_TO = 0.6f; ///< water over the dry mass: air-dry, and soaked
 enum { LINE_PASSES = 12 };
 
+/// Share of a vertex that is ash.
+static float ash_of(const Matter *matter, const State *state, uint32_t vertex) {
+    const float min = field_at(matter->mass_min, vertex), yield = field_at(matter->char_yield, vertex);
+    const float fuel = state->burn.fuel[vertex];
+    return yield > min ? 1 - fuel - shell_char(state->burn.mass[vertex], fuel, min, yield) : 0;
+}
+
 float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
     const Matter *matter = &shell->matter;
     float fresh = field_at(matter->strength, vertex), weakened = plan->weakened[matter->sheet[vertex]];
-    float min = field_at(matter->mass_min, vertex), yield = field_at(matter->char_yield, vertex);
-    float fuel = state->burn.fuel[vertex], ash = 1 - fuel - shell_char(state->burn.mass[vertex], fuel, min, yield);
+    float fuel = state->burn.fuel[vertex];
 
     // water opens the bonds between fibres: paper that is soaked keeps some 10 % of its strength (Hubbe, Mini-Encyclopedia
     // of Papermaking Wet-End Chemistry: more than 10 or 15 % is wet-strength paper)
@@ -46,12 +52,12 @@ float tear_strength(const TearPlan *plan, const Shell *shell, const State *state
 
     if (fuel >= 1 || isinf(fresh)) return fresh * weakened;
     float burnt = real_powf(field_at(matter->char_strength, vertex) / fresh, 1 - fuel);
-    if (yield > min) burnt *= 1 + (LINE_ASH - 1) * ash;
+    burnt *= 1 + (LINE_ASH - 1) * ash_of(matter, state, vertex);
     if (weakened < 1) weakened *= real_powf(LINE_CHAR, 1 - fuel);
     return fresh * float_min(burnt, weakened);
 }
 
-float tear_strength_least(const Shell *shell, uint32_t index, float weakened) {
+float tear_strength_least(const Shell *shell, uint32_t index, float weakened, float ash) {
     const Matter *matter = &shell->matter;
     const Sheet *sheet = &shell->sheets[index];
     float least = INFINITY;
@@ -60,7 +66,7 @@ float tear_strength_least(const Shell *shell, uint32_t index, float weakened) {
     if (weakened < 1) weakened *= LINE_CHAR;
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
         const bool leaves_ash = field_at(matter->char_yield, v) > field_at(matter->mass_min, v);
-        const float burnt = field_at(matter->char_strength, v) * (leaves_ash ? LINE_ASH : 1);
+        const float burnt = field_at(matter->char_strength, v) * (leaves_ash ? 1 + (LINE_ASH - 1) * ash : 1);
         least = float_min(least, float_min(burnt, field_at(matter->strength, v) * weakened));
     }
     return least;
@@ -128,9 +134,15 @@ static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
     const Shell *shell = job->shell;
     const uint8_t *flags = job->state->ablate.cell_flags;
     float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
-    const float safe = TEAR_HINGE * job->plan->safe;
+    const float safe = TEAR_HINGE * job->plan->safe, safe_ash = TEAR_HINGE * job->plan->safe_ash;
 
-    if (square < safe * safe) return false;
+    // most carry less than what tears anything but ash
+    bool weak = square >= safe * safe;
+    for (int i = 0; i < 4 && !weak && square >= safe_ash * safe_ash; i++) {
+        const float least = safe * (1 + (LINE_ASH - 1) * ash_of(&shell->matter, job->state, shell->cells[cell][i]));
+        weak = square >= least * least;
+    }
+    if (!weak) return false;
 
     // a share of the strength is enough where a cell at the corner is gone
     const bool far = measure_is_far(job, cell, square);

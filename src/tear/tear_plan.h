@@ -45,7 +45,8 @@ struct TearPlan {
     uint32_t *leader;     ///< [particles] by piece: its weakest vertex, or LEADER_RUNS
     double *partial;      ///< [pool_blocks(cells)]
     uint32_t sheet_count;
-    float safe;      ///< N/m, nothing tears below: the least strength that a vertex of any sheet can come to
+    float safe;     ///< N/m, nothing tears below: the least strength that a vertex of any sheet without ash can come to
+    float safe_ash; ///< N/m, the same with ash
     float *weakened; ///< [sheets] max share of its fresh strength in this step
     float *fresh;    ///< [sheets] N/m, strength of the weakest vertex before it burns
     float *min;      ///< [sheets] that factor while it is held farther apart than its length
@@ -54,9 +55,9 @@ struct TearPlan {
 /// N/m, the line force at which a vertex tears.
 float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex);
 
-/// N/m, what no vertex of a sheet falls below, however it burns and soaks, where it keeps the share `weakened` of its
-/// strength when it must tear.
-float tear_strength_least(const Shell *shell, uint32_t sheet, float weakened);
+/// N/m, what no vertex of a sheet falls below, however it burns and soaks, while at most the share `ash` of it is ash,
+/// where it keeps the share `weakened` of its strength when it must tear.
+float tear_strength_least(const Shell *shell, uint32_t sheet, float weakened, float ash);
 
 /// Computes the filtered line force of every cell (line_force.c). Returns the number of cells near their strength.
 double tear_measure(TearPlan *plan, const Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT],

@@ -60,7 +60,7 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
         float4_store(plan->centroid[c], (a + (float4_load(x[corner[2]]) + float4_load(x[corner[3]]))) * 0.25f);
     }
 
-    plan->safe = INFINITY;
+    plan->safe = plan->safe_ash = INFINITY;
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
         float fresh = INFINITY;
@@ -69,7 +69,8 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
 
         plan->fresh[s] = fresh;
         plan->min[s] = isinf(fresh) ? 1 : float_min(1, 0.5f * shell_carried(shell, s, h) / fresh);
-        plan->safe = float_min(plan->safe, tear_strength_least(shell, s, plan->min[s]));
+        plan->safe = float_min(plan->safe, tear_strength_least(shell, s, plan->min[s], 0));
+        plan->safe_ash = float_min(plan->safe_ash, tear_strength_least(shell, s, plan->min[s], 1));
         plan->weakened[s] = 1;
     }
 
