@@ -7,6 +7,7 @@
 #include "cli/pictures.h"
 #include "cli/text.h"
 #include "formats/gas_grid.h"
+#include "scene/faults.h"
 
 static SingeResult no_memory(SingeError *error) {
     *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "output", .element = -1};
@@ -50,6 +51,7 @@ SingeResult outputs_open(Outputs *outputs, const Job *job, const Folder *folder,
     outputs->pictures = calloc(scene->sheet_count + 1, sizeof *outputs->pictures);
     if (!outputs->sheets || !outputs->pictures) return no_memory(error);
 
+    bool wet = false;
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         const SceneSheet *sheet = &scene->sheets[i];
         const Mesh *mesh = &job->assets.meshes[i];
@@ -67,6 +69,11 @@ SingeResult outputs_open(Outputs *outputs, const Job *job, const Folder *folder,
                                                     .became = mesh->became,
                                                     .source_count = mesh->source_count}};
         memcpy(outputs->sheets[i].colour, sheet->colour, sizeof sheet->colour);
+
+        SingeSheetDef def;
+        scene_sheet_def(scene, &job->assets, i, &def);
+        const SingeParam moisture = def.material.moisture;
+        wet |= moisture.value > 0 || (moisture.field && moisture.to > 0);
     }
 
     const ScenePreview *preview = &scene->preview;
@@ -74,6 +81,7 @@ SingeResult outputs_open(Outputs *outputs, const Job *job, const Folder *folder,
     *s = (OutputScene){.name = scene->name,
                        .fps = scene->fps,
                        .gas = gas,
+                       .wet = wet,
                        .texture_size = scene->output.texture_size,
                        .sheet_count = scene->sheet_count,
                        .sheets = outputs->sheets,

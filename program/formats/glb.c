@@ -379,7 +379,7 @@ static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
     put_vectors(w, &part, "_VELOCITY", s->velocity, false, false);
     if (!w->lean) put_vectors(w, &part, "_REST", s->rest_position, false, false);
 
-    for (int k = 0; k < SURFACE_FIELDS; k++) {
+    for (int k = 0; k < surface_field_count(s->wet); k++) {
         const char *name = surface_fields[k].name;
         if (!w->lean || strcmp(name, "temperature") == 0 || strcmp(name, "burnt") == 0)
             put_field(w, &part, &surface_fields[k]);

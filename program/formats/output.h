@@ -73,6 +73,7 @@ typedef struct OutputScene {
     bool plain;       ///< a single GLB: floats that every reader knows, not packed
     bool gas;         ///< gas/NAME.0001.vdb exist
     bool gas_detail;  ///< gas_detail/NAME.0001.vdb exist, too: the root refers to those
+    bool wet;         ///< a sheet held water at the start: frames have the field `water`
     uint32_t sheet_count, shape_count;
     const OutputSheet *sheets;
     const OutputShape *shapes;
@@ -187,8 +188,12 @@ static const SurfaceField surface_fields[] = {
     {"piece_id", offsetof(SingeSurface, piece), true},
     {"vertex_id", offsetof(SingeSurface, source_vertex), true},
     {"sheet", offsetof(SingeSurface, sheet), true},
+    {"water", offsetof(SingeSurface, water), false}, // only where a sheet held water at the start
 };
 enum { SURFACE_FIELDS = sizeof surface_fields / sizeof *surface_fields };
+
+/// How many of them there are.
+static inline int surface_field_count(bool wet) { return wet ? SURFACE_FIELDS : SURFACE_FIELDS - 1; }
 
 /// The values of a field: floats or int32_t.
 static inline const void *surface_field(const SingeSurface *surface, const SurfaceField *field) {

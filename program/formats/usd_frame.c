@@ -196,7 +196,9 @@ static void put_own(UsdWriter *w, const SheetPart *part, CrateValue values[USD_O
 }
 
 static CrateValue put_field(UsdWriter *w, const SheetPart *part, const SurfaceField *field) {
-    const void *values = gather(w, part, surface_field(w->surface, field), 1);
+    const void *values = surface_field(w->surface, field);
+    if (values) values = gather(w, part, values, 1);
+    else values = memset(w->gathered, 0, part->count * sizeof *w->gathered); // dry, as its picture of moisture is black
     return field->integer ? crate_ints(&w->crate, values, part->count)
                           : crate_floats(&w->crate, 1, values, part->count);
 }
@@ -211,12 +213,13 @@ static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
     // programs that bind no subsets, such as Blender from the second frame on, use the first for all faces
     const char *children[] = {"burnt", "fresh"};
     char primvars[SURFACE_FIELDS][40], name[USD_NAME];
+    const int own = surface_field_count(w->scene->wet);
     size_t count = 0;
 
     for (int i = 0; i < 3; i++) names[count++] = uniforms[i][0];
     for (int i = 0; i < USD_OWN; i++) names[count++] = usd_attributes[i].name;
 
-    for (int i = 0; i < SURFACE_FIELDS; i++) {
+    for (int i = 0; i < own; i++) {
         strcat(strcpy(primvars[i], "primvars:"), surface_fields[i].name);
         names[count++] = primvars[i];
     }
@@ -239,7 +242,7 @@ static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
         put_sampled(w, mesh, usd_attributes[i].name, usd_attributes[i].type, usd_attributes[i].vertex,
                     put_samples(w, sheet, i, values[i]));
 
-    for (int i = 0; i < SURFACE_FIELDS; i++) {
+    for (int i = 0; i < own; i++) {
         const CrateValue value = w->kept ? 0 : put_field(w, &part, &surface_fields[i]);
         put_sampled(w, mesh, primvars[i], surface_fields[i].integer ? "int[]" : "float[]", true,
                     put_samples(w, sheet, SLOT_FIELDS + i, value));
@@ -357,7 +360,8 @@ SingeResult usd_write_single(const char *path, const OutputScene *scene, const O
         for (uint32_t sheet = 0; sheet < scene->sheet_count && !result; sheet++, own += SLOTS) {
             const SheetPart part = sheet_part(&one.parts, sheet);
             put_own(&one, &part, own);
-            for (int k = 0; k < SURFACE_FIELDS; k++) own[SLOT_FIELDS + k] = put_field(&one, &part, &surface_fields[k]);
+            for (int k = 0; k < surface_field_count(scene->wet); k++)
+                own[SLOT_FIELDS + k] = put_field(&one, &part, &surface_fields[k]);
             for (int k = 0; k < 2; k++) own[SLOT_SUBSETS + k] = put_subset_faces(&one, &part, k);
         }
 

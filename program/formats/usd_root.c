@@ -126,7 +126,7 @@ static void put_sheet(Root *r, uint32_t sheet) {
         sink_text(&r->sink, "            %s %s%s\n", usd_attributes[i].type, usd_attributes[i].name, about);
     }
 
-    for (int i = 0; i < SURFACE_FIELDS; i++)
+    for (int i = 0; i < surface_field_count(r->scene->wet); i++)
         sink_text(&r->sink, "            %s primvars:%s (\n                interpolation = \"vertex\"\n            )\n",
                   surface_fields[i].integer ? "int[]" : "float[]", surface_fields[i].name);
 

@@ -21,7 +21,7 @@ static void put_element(Sink *xml, const VtpArray *array, uint64_t *offset) {
     *offset += 8 + value_size(array) * (size_t)array->width * array->count;
 }
 
-enum { POINT_VECTORS = 4, POINT_DATA = POINT_VECTORS + SURFACE_FIELDS, ARRAYS = POINT_DATA + 3 };
+enum { POINT_VECTORS = 4, ARRAYS = POINT_VECTORS + SURFACE_FIELDS + 3 };
 
 SingeResult vtp_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame, SingeError *error) {
     (void)scene;
@@ -31,17 +31,18 @@ SingeResult vtp_write_frame(const char *path, const OutputScene *scene, const Ou
     uint64_t offset = 0;
 
     const size_t n = s->vertex_count;
+    const int fields = surface_field_count(s->wet), points = POINT_VECTORS + fields, all = points + 3;
     arrays[0] = (VtpArray){"normal", "Float32", 3, s->normal, n};
     arrays[1] = (VtpArray){"uv", "Float32", 2, s->uv, n};
     arrays[2] = (VtpArray){"velocity", "Float32", 3, s->velocity, n};
     arrays[3] = (VtpArray){"rest", "Float32", 3, s->rest_position, n};
 
-    for (int i = 0; i < SURFACE_FIELDS; i++)
+    for (int i = 0; i < fields; i++)
         arrays[POINT_VECTORS + i] = (VtpArray){surface_fields[i].name, surface_fields[i].integer ? "Int32" : "Float32",
                                                1, surface_field(s, &surface_fields[i]), n};
-    arrays[POINT_DATA] = (VtpArray){"points", "Float32", 3, s->position, n};
-    arrays[POINT_DATA + 1] = (VtpArray){"connectivity", "Int32", 1, s->triangles, 3 * (size_t)s->triangle_count};
-    arrays[POINT_DATA + 2] = (VtpArray){"offsets", "Int64", 1, NULL, s->triangle_count};
+    arrays[points] = (VtpArray){"points", "Float32", 3, s->position, n};
+    arrays[points + 1] = (VtpArray){"connectivity", "Int32", 1, s->triangles, 3 * (size_t)s->triangle_count};
+    arrays[points + 2] = (VtpArray){"offsets", "Int64", 1, NULL, s->triangle_count};
 
     sink_text(&sink, "<?xml version=\"1.0\"?>\n"
                      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
@@ -54,15 +55,15 @@ SingeResult vtp_write_frame(const char *path, const OutputScene *scene, const Ou
               "<PointData Scalars=\"temperature\" Vectors=\"velocity\" Normals=\"normal\" TCoords=\"uv\">\n",
               s->vertex_count, s->triangle_count);
 
-    for (int i = 0; i < POINT_DATA; i++) put_element(&sink, &arrays[i], &offset);
+    for (int i = 0; i < points; i++) put_element(&sink, &arrays[i], &offset);
     sink_text(&sink, "</PointData>\n<Points>\n");
-    put_element(&sink, &arrays[POINT_DATA], &offset);
+    put_element(&sink, &arrays[points], &offset);
     sink_text(&sink, "</Points>\n<Polys>\n");
 
-    for (int i = POINT_DATA + 1; i < ARRAYS; i++) put_element(&sink, &arrays[i], &offset);
+    for (int i = points + 1; i < all; i++) put_element(&sink, &arrays[i], &offset);
     sink_text(&sink, "</Polys>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_");
 
-    for (int i = 0; i < ARRAYS; i++) {
+    for (int i = 0; i < all; i++) {
         const size_t count = (size_t)arrays[i].width * arrays[i].count;
         sink_u64(&sink, value_size(&arrays[i]) * count);
         if (arrays[i].values) sink_words(&sink, arrays[i].values, count);

@@ -98,7 +98,7 @@ class Convert(Case):
         return header, count, {name: [row[i] for row in rows] for i, (_, name) in enumerate(names)}
 
     def test_glb_holds_the_cache(self):
-        self.run_formats("o", "--frames", "6")
+        self.run_formats("o", "--frames", "6", "--set", "sheets.0.material.moisture=20 %")
         _, count, column = self.cache("o", 6)
         with open(self.path("o", "glb", "tiny.0006.glb"), "rb") as file:
             glb = file.read()
@@ -118,6 +118,8 @@ class Convert(Case):
         for name, accessor in primitive["attributes"].items():
             if name[1:].lower() in column:
                 self.assertEqual(list(values(accessor)), [float(x) for x in column[name[1:].lower()]], name)
+        self.assertIn("_WATER", primitive["attributes"])
+        self.assertTrue(0 < max(values(primitive["attributes"]["_WATER"])) <= 0.201)
         at = values(primitive["attributes"]["POSITION"])
         self.assertEqual(len(at), 3 * count)
         # y is up
@@ -157,8 +159,13 @@ class Convert(Case):
             self.assertLess(sizes[1], 0.5 * sizes[0])
 
     def test_vtp_holds_the_cache(self):
-        """Every number of the appended arrays is the PLY's."""
-        self.run_formats("o", "--frames", "6")
+        """Every number of the appended arrays is the PLY's, with and without water."""
+        for moisture in "0", "20 %":
+            with self.subTest(moisture):
+                self.run_formats("o", "--frames", "6", "--force", "--set", "sheets.0.material.moisture=" + moisture)
+                self.check_vtp(moisture != "0")
+
+    def check_vtp(self, wet):
         header, count, column = self.cache("o", 6)
         vtp = open(self.path("o", "vtp", "tiny.0006.vtp"), "rb").read()
         text, data = vtp.split(b'<AppendedData encoding="raw">\n_', 1)
@@ -180,6 +187,8 @@ class Convert(Case):
                 self.assertEqual(list(values[i::width]), column[name], name)
                 checked += 1
         self.assertEqual(checked, len(column))
+        self.assertEqual("water" in column, wet)
+        self.assertEqual("primvars:water" in open(self.path("o", "tiny.usda")).read(), wet)
         times = [float(item.get("timestep")) for item in xml.parse(self.path("o", "tiny.pvd")).iter("DataSet")]
         self.assertEqual(times, [frame / 24 for frame in range(6)])
         self.assertEqual(root.find("PolyData/FieldData/DataArray").text, re.search(r"time (\S+)", header.decode()).group(1))

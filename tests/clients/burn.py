@@ -68,7 +68,7 @@ output: {}
 VECTORS = {"points": "x y z", "velocities": "vx vy vz", "normals": "nx ny nz", "st": "s t", "rest": "rest_x rest_y rest_z"}
 VTK_VECTORS = {"normal": "nx ny nz", "uv": "s t", "velocity": "vx vy vz", "rest": "rest_x rest_y rest_z"}
 SCALARS = ("temperature temperature_peak mass burn_rate char_fraction ash_fraction burnt time_ignited piece_id vertex_id "
-           "sheet").split()
+           "sheet water").split()
 
 
 def write_picture(path, width=96, height=144):

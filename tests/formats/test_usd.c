@@ -19,7 +19,7 @@ static void make_sheet(SingeSurface *s, uint32_t side, int32_t sheets) {
     s->temperature = malloc(4 * count), s->temperature_peak = malloc(4 * count), s->mass = malloc(4 * count);
     s->burn_rate = malloc(4 * count), s->char_fraction = malloc(4 * count), s->ash_fraction = malloc(4 * count);
     s->burn = malloc(4 * count), s->time_ignited = malloc(4 * count), s->piece = malloc(4 * count);
-    s->source_vertex = malloc(4 * count), s->sheet = malloc(4 * count);
+    s->source_vertex = malloc(4 * count), s->sheet = malloc(4 * count), s->water = malloc(4 * count);
     s->triangles = malloc(12 * s->triangle_count);
     uint32_t seed = 1;
     for (uint32_t v = 0; v < count; v++) {
@@ -38,7 +38,7 @@ static void make_sheet(SingeSurface *s, uint32_t side, int32_t sheets) {
         s->burn_rate[v] = hot * noise, s->char_fraction[v] = 0.3f * hot, s->ash_fraction[v] = 0.1f * hot * noise;
         s->burn[v] = 1 - s->mass[v], s->time_ignited[v] = hot > 0 ? 0.5f + noise : -1;
         s->piece[v] = hot > 0.9f ? 1 + (int32_t)(v % 7) : 0, s->source_vertex[v] = v % 5 ? (int32_t)v : -1;
-        s->sheet[v] = (int32_t)(v % (uint32_t)sheets);
+        s->sheet[v] = (int32_t)(v % (uint32_t)sheets), s->water[v] = hot > 0 ? 0 : noise;
     }
     uint32_t t = 0;
     for (uint32_t y = 0; y + 1 < side; y++)
@@ -58,7 +58,8 @@ static SingeResult write_as(int format, const SingeSurface *s, uint32_t sheets, 
     list[0].picture = picture;
     for (int i = 0; i < 2; i++)
         list[i].mesh = (OutputMesh){.vertex_count = 4, .cell_count = 1, .positions = corners, .uv = uv, .cells = cell};
-    const OutputScene scene = {.name = "7 up", .fps = 24, .texture_size = 32, .sheet_count = sheets, .sheets = list};
+    const OutputScene scene = {
+        .name = "7 up", .fps = 24, .texture_size = 32, .wet = s->wet, .sheet_count = sheets, .sheets = list};
     const OutputFrame frame = {.surface = s, .time = 1.5, .number = 37};
     return output_formats[format].write_frame(path, &scene, &frame, error);
 }
@@ -102,7 +103,7 @@ static void check_mesh(const CrateFile *file, const SingeSurface *s, const char 
     check_attribute(file, s, mesh, sheet, "normals", s->normal, 24, 3);
     check_attribute(file, s, mesh, sheet, "primvars:st", s->uv, 20, 2);
     check_attribute(file, s, mesh, sheet, "primvars:rest", s->rest_position, 24, 3);
-    for (int i = 0; i < SURFACE_FIELDS; i++) {
+    for (int i = 0; i < surface_field_count(s->wet); i++) {
         char name[80];
         snprintf(name, sizeof name, "primvars:%s", surface_fields[i].name);
         check_attribute(file, s, mesh, sheet, name, surface_field(s, &surface_fields[i]),
@@ -147,7 +148,7 @@ TEST(sheets_are_meshes_of_their_own) {
     CrateFile file;
     SingeError error;
     make_sheet(&s, 12, 2);
-    s.triangle_count = 0;
+    s.triangle_count = 0, s.wet = true;
     Bytes bytes = written(&s, 2, NULL);
     crate_open(&file, bytes.data, bytes.size);
     check_mesh(&file, &s, "/_7_up/sheets/a_b", 0);
