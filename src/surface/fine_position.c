@@ -17,13 +17,15 @@
 // Both edges of a tear coincide until they separate. They are cut differently on either side, so their corners are
 // drawn back from each other, by a small fraction of a cell's side.
 #include "common/real.h"
-#include "surface/surface_fine.h"
+#include "surface/render_parts.h"
 
 #include <string.h>
 
-/// Max displacement of a position, over the shortest side at its corners, and over the distance to another surface.
+/// Max displacement of a position, over the shortest side at its corners, and over the distance to another surface; the
+/// latter beneath a render mesh, whose thickness takes some of it (render_draw.c).
 #define BULGE_MAX 0.1f
 #define ROOM_SHARE 0.4f
+#define ROOM_UNDER 0.15f
 /// How far the corners of coincident tear edges are drawn back, over the cell's side: less than the gap that contact
 /// keeps.
 #define TEAR_EDGE 1e-3f
@@ -136,6 +138,13 @@ void fine_position(Fine *fine) {
         fine->share[v] = 1;
         fine->max[v] = fine->room ? float_min(fine->bulge_max, ROOM_SHARE * fine->room[v]) : fine->bulge_max;
     }
+
+    // what is drawn in place of a sheet needs room beside it
+    for (uint32_t m = 0; m < fine->mesh_count && fine->room; m++)
+        for (uint32_t c = 0; c < fine->meshes[m]->cell_count; c++) {
+            const uint32_t *at = shell->cells[fine->meshes[m]->cell_first + c];
+            for (int i = 0; i < 4; i++) lessen(&fine->max[at[i]], ROOM_UNDER * fine->room[at[i]]);
+        }
 
     for (uint32_t k = 0; k < shell->edge_spare_used; k++)
         part_side(fine, blue->ends[spare + k], blue->ends[shell->edge_origin[k]]);

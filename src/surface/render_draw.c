@@ -19,8 +19,9 @@ enum { HALVINGS = 6 };
 /// The level of what is gone, at most.
 #define LEVEL_GONE -1e-3f
 
-/// Offsets along the normal are at most this share of the distance to another surface.
-#define ROOM_SHARE 0.4f
+/// Offsets along the normal are at most this share of the distance to another surface. With what the surface beneath
+/// leaves of it (fine_position.c) less than half of it is taken from either side, so that nothing crosses.
+#define ROOM_SHARE 0.25f
 
 /// A mesh that is being drawn.
 typedef struct RenderDrawing {
@@ -242,7 +243,10 @@ void render_place(const Fine *fine, const FineVertex *vertex, uint32_t v) {
     const FineFrame frame = fine_frame(fine, render->foot.cell, float3_load(surface->normal[v]));
     float room = INFINITY, height = render->offset[2];
     for (int i = 0; i < 4 && fine->room && !render->rigid; i++) room = float_min(room, ROOM_SHARE * fine->room[at[i]]);
-    if (fabsf(height) > room) height = copysignf(room, height);
+
+    // pressed beyond half of the room, what was higher more, so that faces keep their areas
+    const float half = 0.5f * room, beyond = fabsf(height) - half;
+    if (beyond > 0) height = copysignf(half + half * beyond / (half + beyond), height);
 
     const float offset[3] = {render->offset[0], render->offset[1], height};
     Float3 position = float3_load(surface->position[v]), normal = {0, 0, 0};

@@ -498,5 +498,46 @@ class Verify(Case):
         self.assertIn("are not verified", run.stderr.read())
 
 
+class RenderMeshes(Case):
+    """A thick mesh in place of each of two sheets that fall on each other and on a ball crosses nothing, if it is no
+    thicker than the contact; one that is thicker does."""
+
+    SCENE = """\
+frames: 6
+steps: 5
+contact: {{enabled: yes, thickness: 0.5 mm}}
+sheets:
+  - {{grid: {{size: [4 cm, 4 cm], cells: [12, 12]}}, translate: [0, 0, 22 mm]{mesh}}}
+  - {{grid: {{size: [4 cm, 4 cm], cells: [12, 12]}}, translate: [2 mm, 1 mm, 24 mm]{mesh}}}
+colliders:
+  - {{kind: sphere, radius: 2 cm}}
+  - {{kind: plane, position: [0, 0, -5 mm]}}
+gas: no
+"""
+
+    def crossings(self, height, expect=0):
+        """Pairs of triangles that cross, with two layers at this height (m) to either side; 0: without a mesh."""
+        n, side = 16, 0.04
+        with open(self.path("layers.obj"), "w") as file:
+            for z in (-height, height):
+                file.writelines("v %g %g %g\n" % (side * (k % (n + 1) / n - 0.5), side * (k // (n + 1) / n - 0.5), z)
+                                for k in range((n + 1) ** 2))
+            for first in (1, 1 + (n + 1) ** 2):
+                corners = [first + k // n * (n + 1) + k % n for k in range(n * n)]
+                file.writelines("f %d %d %d %d\n" % (v, v + 1, v + n + 2, v + n + 1) for v in corners)
+        with open(self.scene, "w") as file:
+            file.write(self.SCENE.format(mesh=", render_mesh: {mesh: layers.obj}" if height else ""))
+        self.run_scene("o", "--force", "--quiet")
+        self.singe("verify", self.path("o"), "--csv=" + self.path("v.csv"), expect=expect)
+        with open(self.path("v.csv")) as file:
+            return sum(int(row["crossings"]) for row in csv.DictReader(file))
+
+    def test_no_crossings_are_added(self):
+        self.assertEqual(self.crossings(0), 0)
+        self.assertEqual(self.crossings(0.15e-3), 0)
+        self.assertEqual(self.crossings(0.25e-3), 0)
+        self.assertGreater(self.crossings(0.7e-3, expect=1), 0)
+
+
 if __name__ == "__main__":
     unittest.main()
