@@ -159,6 +159,48 @@ TEST(a_source_with_power_has_a_flame) {
     }
 }
 
+/// What a jet makes of a steady fire: J/m3 of fuel and K where there is most, and how far along x its heat is, m.
+static void blow(float speed, double found[3]) {
+    GasSettings settings = settings_default();
+    Air air;
+    air_open(&air, &settings);
+    SingeSourceDef jet = singe_default_source();
+    jet.kind = SINGE_SOURCE_JET;
+    jet.position[0] = -0.08f, jet.position[1] = 0.02f, jet.position[2] = 0.03f;
+    jet.direction[0] = 1, jet.direction[1] = jet.direction[2] = 0;
+    jet.radius = 0.03f, jet.speed = speed, jet.start = 60.5f / 72;
+    rig_source(&air.rig, &jet);
+    for (int step = 0; step < 100; step++) {
+        air_burn(&air, 60.0 / 72, false);
+        air_step(&air);
+    }
+
+    const GasGrid *grid = &air.plan->grid;
+    double sum = 0, moment = 0;
+    for (int k = 0; k < grid->n[2]; k++)
+        for (int j = 0; j < grid->n[1]; j++)
+            for (int i = 0; i < grid->n[0]; i++) {
+                const double hot = (double)air_turn(&air)->field[GAS_LIGHTNESS][gas_at(grid, i, j, k)];
+                sum += hot, moment += hot * (i + 0.5);
+            }
+    found[0] = air_max(&air, GAS_FUEL);
+    found[1] = 293 / (1 - air_max(&air, GAS_LIGHTNESS));
+    found[2] = (double)air.plan->origin[0] + (double)air.plan->cell * moment / sum;
+    air_close(&air);
+}
+
+TEST(jets_thin_fuel_cool_and_bend_flames) {
+    double calm[3], breath[3], blown[3];
+    blow(0, calm), blow(1, breath), blow(8, blown);
+    for (int k = 0; k < 3; k++) {
+        static const char *const names[] = {"fuel, J/m3", "hottest, K", "heat at x, m"};
+        print_message("%s: %.4g calm, %.4g at 1 m/s, %.4g at 8 m/s\n", names[k], calm[k], breath[k], blown[k]);
+    }
+    assert_true(blown[0] < 0.4 * calm[0] && blown[0] < breath[0] && breath[0] < 0.8 * calm[0]);
+    assert_true(blown[1] - 293 < 0.2 * (calm[1] - 293) && breath[1] - 293 < 0.7 * (calm[1] - 293));
+    assert_true(breath[2] > calm[2] + 0.006); // faster, most of it has left the grid
+}
+
 /// Speed up on the axis of the mean plume at a height over the middle of a steady fire of `power` W.
 static double plume_speed(double power, double height) {
     enum { FIRST = 200, LAST = 440, PLANE_MAX = 1000 };
