@@ -27,6 +27,7 @@ sheets:
     grid: {{size: [4 cm, 8 cm], cells: [16, 32]}}
     colour: [0.8, 0.75, 0.6]
     translate: [8 cm, 0, 6 cm]
+    material: {{moisture: 3 %}}
 sources:
   - {{kind: spot, position: [0, -4 cm, 6 cm], radius: 12 mm, falloff: 12 mm, temperature: 1100 K, conductance: 200}}
   - {{kind: spot, position: [8 cm, -3 cm, 6 cm], radius: 12 mm, falloff: 12 mm, temperature: 1100 K, conductance: 200}}
