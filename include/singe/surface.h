@@ -62,6 +62,9 @@ typedef struct SingeRenderMeshDef {
     float edge_max; ///< m, longer edges are halved, >= 0; 0, the default, is half a side of a cell, which is the most
     float rigid;    ///< m, parts that hang together and are at most this large keep their shape, as buttons do; 0: none
     bool beside;    ///< the sheet is drawn, too; false
+    /// vertices are bound where the sheet has their uv, and lie on it there, wherever they are themselves: for meshes that
+    /// were modelled elsewhere or in another pose; false. `reach` and `rigid` do not matter then
+    bool by_uv;
 } SingeRenderMeshDef;
 
 /// Fills a Def with the defaults: `struct_size` bytes, the caller's sizeof.

@@ -155,6 +155,7 @@ static void load_render_mesh(Loader *loader, const SceneSheet *sheet, RenderFile
     file->def.edge_max = given->edge_max;
     file->def.rigid = given->rigid;
     file->def.beside = given->beside;
+    file->def.by_uv = given->by_uv;
 }
 
 static void load_sheet(Loader *loader, uint32_t index) {

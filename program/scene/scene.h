@@ -110,7 +110,7 @@ typedef struct SceneRenderMesh {
     bool given;
     SceneFile mesh;
     float reach, edge_max, rigid; ///< m
-    bool beside;
+    bool beside, by_uv;
 } SceneRenderMesh;
 
 typedef struct SceneSheet {

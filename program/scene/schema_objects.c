@@ -85,6 +85,9 @@ static const SchemaRow render_mesh_rows[] = {
     {"rigid", ROW_FLOAT, DIM_LENGTH, AT(SceneRenderMesh, rigid), WITHIN(0, 1e4),
      .doc = "parts that hang together and are at most this large keep their shape, as buttons do; 0: none"},
     {"beside", ROW_BOOL, DIM_NONE, AT(SceneRenderMesh, beside), .doc = "the sheet is drawn, too"},
+    {"by_uv", ROW_BOOL, DIM_NONE, AT(SceneRenderMesh, by_uv),
+     .doc = "its vertices lie on the sheet where that has their uv, wherever the file has them: for meshes that were "
+            "modelled elsewhere or in another pose"},
 };
 static const Schema schema_render_mesh = {
     .title = "a render mesh",
@@ -92,8 +95,8 @@ static const Schema schema_render_mesh = {
     ROWS(render_mesh_rows),
     .doc =
         "A mesh that is drawn in place of a sheet: finer, thick, with hems, seams and buttons "
-        "([render-meshes.md](render-meshes.md)). It is bound to the sheet by positions at rest, and burns and tears with "
-        "it."};
+        "([render-meshes.md](render-meshes.md)). It is bound to the sheet by positions at rest or by uv, and burns and tears "
+        "with it."};
 
 #define OF SceneSheet
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \

@@ -1,12 +1,14 @@
 // Finds the position of a sheet at rest that is nearest to each vertex of a render mesh, and what the vertex keeps from
 // there. Cells lie in a hashed grid by their centroids; its cubes have sides of the reach and the largest cell's radius,
-// so the 27 cubes around a position hold all cells within reach.
+// so the 27 cubes around a position hold all cells within reach. By uv it is the same in the plane of uv, where the reach
+// is the largest cell's radius.
 #include "surface/render_parts.h"
 
 typedef struct Binding {
     const Fine *fine;
     RenderMesh *mesh;
-    float cube;             ///< m
+    bool by_uv;             ///< below, uv are in place of m
+    float reach, cube;      ///< m
     float (*centroid)[4];   ///< [cells] and the radius, m
     uint32_t *first, *list; ///< [mask + 2], [cells] the cells of a slot
     uint32_t mask;
@@ -17,6 +19,17 @@ typedef struct Binding {
 static uint32_t slot_of(const Binding *binding, int x, int y, int z) {
     uint32_t hash = ((uint32_t)x * 0x9e3779b1u) ^ ((uint32_t)y * 0x85ebca77u) ^ ((uint32_t)z * 0xc2b2ae3du);
     return (hash ^ hash >> 15) & binding->mask;
+}
+
+static int cube_of(const Binding *binding, float x) {
+    return (int)floorf(fminf(fmaxf(x / binding->cube, -1e9f), 1e9f));
+}
+
+static Float3 corner_of(const Binding *binding, uint32_t cell, int i) {
+    const Shell *shell = binding->fine->shell;
+    if (!binding->by_uv) return float3_load(shell->rest_position[shell->cells[cell][i]]);
+    const float *uv = shell_corner_uv(shell, cell, i);
+    return float3(uv[0], uv[1], 0);
 }
 
 /// Weights of the point of a triangle that is nearest to p (Ericson, Real-Time Collision Detection, 2005, 5.1.5);
@@ -61,20 +74,18 @@ static float nearest(Float3 p, const Float3 corner[3], float weight[3]) {
 
 /// The nearest position of the sheet, among the cells within a cube of p's; its distance.
 static float find_foot(const Binding *binding, Float3 p, FineLocation *foot) {
-    const Shell *shell = binding->fine->shell;
-    const int x = (int)floorf(p.x / binding->cube), y = (int)floorf(p.y / binding->cube),
-              z = (int)floorf(p.z / binding->cube);
+    const int x = cube_of(binding, p.x), y = cube_of(binding, p.y), z = cube_of(binding, p.z);
     float min = INFINITY;
     for (int k = 0; k < 27; k++) {
         const uint32_t slot = slot_of(binding, x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1);
         for (uint32_t i = binding->first[slot]; i < binding->first[slot + 1]; i++) {
-            const uint32_t cell = binding->list[i], *at = shell->cells[cell];
+            const uint32_t cell = binding->list[i];
             const Float3 centroid = float3_load(binding->centroid[cell]);
             if (float3_length(float3_sub(p, centroid)) - binding->centroid[cell][3] > sqrtf(min)) continue;
 
             for (uint8_t side = 0; side < 4; side++) {
-                const Float3 corner[3] = {float3_load(shell->rest_position[at[side]]),
-                                          float3_load(shell->rest_position[at[(side + 1) & 3]]), centroid};
+                const Float3 corner[3] = {corner_of(binding, cell, side), corner_of(binding, cell, (side + 1) & 3),
+                                          centroid};
                 FineLocation there = {.cell = cell, .side = side};
                 const float square = nearest(p, corner, there.weight);
                 if (!(square < min)) continue;
@@ -90,7 +101,8 @@ static void find_range(void *context, int begin, int end) {
     const Binding *binding = context;
     for (int k = begin; k < end; k++) {
         RenderVertex *vertex = &binding->mesh->vertices[binding->begin + (uint32_t)k];
-        binding->distance[k] = find_foot(binding, float3_load(vertex->offset), &vertex->foot);
+        const Float3 at = binding->by_uv ? float3(vertex->uv[0], vertex->uv[1], 0) : float3_load(vertex->offset);
+        binding->distance[k] = find_foot(binding, at, &vertex->foot);
     }
 }
 
@@ -102,6 +114,10 @@ static void bind_range(void *context, int begin, int end) {
         float position[3], normal[3];
         const FinePatch patch = fine_patch(fine, vertex->foot.cell);
         fine_position_at(fine, &patch, &vertex->foot, position, normal);
+        if (binding->by_uv) { // on the surface
+            memcpy(vertex->rest, position, sizeof position);
+            memcpy(vertex->normal, normal, sizeof normal);
+        }
         const FineFrame frame = fine_frame(fine, vertex->foot.cell, float3_load(normal));
         const Float3 from = float3_sub(float3_load(vertex->rest), float3_load(position));
         const Float3 turned = float3_load(vertex->normal);
@@ -112,34 +128,35 @@ static void bind_range(void *context, int begin, int end) {
     }
 }
 
-void render_bind(const Fine *fine, RenderMesh *mesh) {
-    Binding binding = {.fine = fine, .mesh = mesh};
+void render_bind(const Fine *fine, bool by_uv, RenderMesh *mesh) {
+    Binding binding = {.fine = fine, .mesh = mesh, .by_uv = by_uv};
     pool_for(fine->pool, (int)mesh->vertex_count, 64, bind_range, &binding);
 }
 
 /// Puts the cells into the grid.
-static void fill_grid(Binding *binding, float reach) {
+static void fill_grid(Binding *binding) {
     const Shell *shell = binding->fine->shell;
     float radius = 0;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
-        const uint32_t *at = shell->cells[c];
-        const FineLocation centre = {.cell = c, .weight = {0, 0, 1}};
-        const Float3 centroid = fine_blend(at, &centre, (const float(*)[4])shell->rest_position);
+        Float3 centroid = {0, 0, 0};
+        for (int i = 0; i < 4; i++) centroid = float3_add(centroid, corner_of(binding, c, i));
+        centroid = float3_scale(centroid, 0.25f);
         float3_store(binding->centroid[c], centroid);
         for (int i = 0; i < 4; i++) {
-            const Float3 from = float3_sub(float3_load(shell->rest_position[at[i]]), centroid);
+            const Float3 from = float3_sub(corner_of(binding, c, i), centroid);
             binding->centroid[c][3] = fmaxf(binding->centroid[c][3], float3_length(from));
         }
         radius = fmaxf(radius, binding->centroid[c][3]);
     }
 
     // counted, then listed from the end of each slot
-    binding->cube = fmaxf(reach + radius, 1e-5f); // 20 km have 2^31 of these
+    if (binding->by_uv) binding->reach = radius;
+    binding->cube = fmaxf(binding->reach + radius, 1e-5f);
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t c = 0; c < shell->cell_count; c++) {
             const float *at = binding->centroid[c];
-            const uint32_t slot = slot_of(binding, (int)floorf(at[0] / binding->cube),
-                                          (int)floorf(at[1] / binding->cube), (int)floorf(at[2] / binding->cube));
+            const uint32_t slot =
+                slot_of(binding, cube_of(binding, at[0]), cube_of(binding, at[1]), cube_of(binding, at[2]));
             if (pass == 0) binding->first[slot]++;
             else binding->list[--binding->first[slot]] = c;
         }
@@ -147,23 +164,31 @@ static void fill_grid(Binding *binding, float reach) {
     }
 }
 
-SingeResult render_find_feet(const Fine *fine, float reach, uint32_t first, RenderMesh *mesh, SingeError *error) {
+SingeResult render_find_feet(const Fine *fine, bool by_uv, float reach, uint32_t first, RenderMesh *mesh,
+                             SingeError *error) {
     Memory *memory = fine->memory;
     const uint32_t cells = fine->shell->cell_count, count = mesh->vertex_count - first;
-    Binding binding = {.fine = fine, .mesh = mesh, .mask = 7, .begin = first};
+    Binding binding = {.fine = fine, .mesh = mesh, .by_uv = by_uv, .reach = reach, .mask = 7, .begin = first};
     while (binding.mask < cells) binding.mask = 2 * binding.mask + 1;
     SingeResult result = SINGE_OK;
     if (NEW(memory, binding.centroid, cells) && NEW(memory, binding.list, cells) &&
         NEW(memory, binding.first, (size_t)binding.mask + 2) && NEW(memory, binding.distance, count)) {
-        fill_grid(&binding, reach);
+        fill_grid(&binding);
         pool_for(fine->pool, (int)count, 64, find_range, &binding);
 
         uint32_t far = 0, worst = 0;
         for (uint32_t k = 0; k < count; k++) {
-            far += !(binding.distance[k] <= reach);
+            far += !(binding.distance[k] <= binding.reach);
             if (binding.distance[k] > binding.distance[worst]) worst = k;
         }
-        if (far && first)
+        if (far && by_uv && first)
+            result = error_set(error, SINGE_ERROR_MESH, "render mesh", -1,
+                               "the middle of an edge has a uv that the sheet has not");
+        else if (far && by_uv)
+            result =
+                error_set(error, SINGE_ERROR_MESH, "render mesh", worst,
+                          "%u of %u vertices have a uv that the sheet has not, such as vertex %u", far, count, worst);
+        else if (far && first)
             result = error_set(error, SINGE_ERROR_MESH, "render mesh", -1,
                                "the middle of an edge is farther from the sheet than its reach, %g m", (double)reach);
         else if (far && binding.distance[worst] < INFINITY)

@@ -9,6 +9,8 @@
 // sheet bends. The vertices of a rigid part, such as a button, are all bound to one position, that nearest to the part's
 // middle.
 //
+// By uv, S is where the sheet has the vertex's uv, and d is 0: the mesh lies on the sheet, wherever it was given.
+//
 // Edges are halved until none is longer than `edge_max`, at most half a cell's side: long triangles would neither follow
 // the sheet's folds nor notice its holes. A triangle becomes two, three or four, as one, two or all of its edges are long,
 // so neighbours meet without cracks.
@@ -100,6 +102,14 @@ static SingeResult take(Memory *memory, const RenderSheet *sheet, const SingeRen
     if (def->vertex_count > VERTICES_MAX || def->triangle_count > VERTICES_MAX)
         return error_set(error, SINGE_ERROR_LIMIT, "render mesh", -1, "more than %d vertices or triangles",
                          VERTICES_MAX);
+
+    if (def->by_uv && !def->uv)
+        return error_set(error, SINGE_ERROR_ARGUMENT, "render mesh", -1, "by_uv needs a mesh with uv");
+    bool mapped = false;
+    for (uint32_t v = 0; v < sheet->source->sheet.vertex_count && sheet->source->uv && !mapped; v++)
+        mapped = sheet->source->uv[v][0] != 0 || sheet->source->uv[v][1] != 0;
+    if (def->by_uv && !mapped)
+        return error_set(error, SINGE_ERROR_ARGUMENT, "render mesh", -1, "by_uv needs a sheet with uv");
 
     for (uint32_t v = 0; v < def->vertex_count; v++) {
         bool finite = true;
@@ -326,6 +336,10 @@ static SingeResult bind(const Fine *fine, float cell, const SingeRenderMeshDef *
     const float max = def->edge_max > 0 ? fminf(def->edge_max, 0.5f * cell) : 0.5f * cell;
     const float reach = def->reach > 0 ? def->reach : cell;
     const uint32_t given = mesh->vertex_count;
+    if (def->by_uv) { // first, as its edges are as long as they are on the sheet
+        TRY(render_find_feet(fine, true, reach, 0, mesh, error));
+        render_bind(fine, true, mesh);
+    }
 
     // triangles whose edges are no longer have at most the area of one whose edges all are as long
     double area = 0;
@@ -335,13 +349,13 @@ static SingeResult bind(const Fine *fine, float cell, const SingeRenderMeshDef *
         if (!mesh->vertices[at[0]].rigid) area += 0.5 * (double)float3_length(doubled);
     }
     if (area > 0.4331 * (double)max * (double)max * VERTICES_MAX) return too_fine(max, error);
-    TRY(render_find_feet(fine, reach, 0, mesh, error));
+    if (!def->by_uv) TRY(render_find_feet(fine, false, reach, 0, mesh, error));
     for (uint32_t halved = 1; halved;) {
         TRY(list_edges(fine->memory, mesh, error));
         TRY(halve(fine->memory, max, mesh, &halved, error));
     }
-    if (mesh->vertex_count > given) TRY(render_find_feet(fine, reach, given, mesh, error));
-    render_bind(fine, mesh);
+    if (mesh->vertex_count > given) TRY(render_find_feet(fine, def->by_uv, reach, given, mesh, error));
+    render_bind(fine, def->by_uv, mesh);
     return SINGE_OK;
 }
 
@@ -349,7 +363,7 @@ static SingeResult make(Memory *memory, Pool *pool, const RenderSheet *sheet, co
                         RenderMesh *mesh, SingeError *error) {
     TRY(take(memory, sheet, def, mesh, error));
     TRY(count_odd_edges(memory, mesh, error));
-    TRY(find_parts(memory, def->rigid, mesh, error));
+    TRY(find_parts(memory, def->by_uv ? 0 : def->rigid, mesh, error));
 
     // the surface of the sheet at rest, before any tear
     SheetSource source = *sheet->source;

@@ -18,12 +18,14 @@ struct RenderMesh {
     uint32_t (*edges)[2];
 };
 
-/// Finds the position of the sheet at rest that is nearest to `offset`, m, of the vertices from `first` on: their feet.
-/// `fine` has the sheet's surface at rest, and cells from 0. Vertices farther than `reach` (m) are refused.
-SingeResult render_find_feet(const Fine *fine, float reach, uint32_t first, RenderMesh *mesh, SingeError *error);
+/// Finds the position of the sheet at rest that is nearest to `offset`, m, of the vertices from `first` on, or the one
+/// that has their uv: their feet. `fine` has the sheet's surface at rest, and cells from 0. Vertices farther than `reach`
+/// (m) are refused.
+SingeResult render_find_feet(const Fine *fine, bool by_uv, float reach, uint32_t first, RenderMesh *mesh,
+                             SingeError *error);
 
 /// Fills what the vertices keep from their feet: offsets and normals in the frames there, from `rest` and from the
-/// normals in space.
-void render_bind(const Fine *fine, RenderMesh *mesh);
+/// normals in space; by uv these are first those of the sheet at the feet.
+void render_bind(const Fine *fine, bool by_uv, RenderMesh *mesh);
 
 #endif

@@ -301,6 +301,48 @@ TEST(buttons_are_rigid) {
     garment_free(g);
 }
 
+/// A mesh that stands elsewhere, turned, curled and three times as large, lies on the sheet by its uv, and burns with it.
+TEST(meshes_are_bound_by_uv) {
+    Garment *g = garment(9, 1e-3f, 1e-3f);
+    SingeError error = {0};
+    add_layer(g->draft, 31, side, 0);
+    for (uint32_t v = 0; v < g->draft->vertex_count; v++) {
+        float *p = &g->draft->positions[3 * v], *uv = &g->draft->uv[2 * v];
+        uv[0] = p[0] / side, uv[1] = p[1] / side;
+        float3_store(p, float3(5 + 0.3f * cosf(20 * p[1]), -3 * p[0], 2 + 0.3f * sinf(20 * p[1])));
+    }
+    assert_int_equal(bind(g, &error), SINGE_ERROR_MESH); // by position
+    g->def.by_uv = true;
+    const SingeSurface *s = draw(g);
+    double area = 0;
+    for (uint32_t v = 0; v < g->draft->vertex_count; v++) {
+        const uint32_t i = found(s, v);
+        const float *uv = &g->draft->uv[2 * v], at[3] = {side * uv[0], side * uv[1], 0};
+        assert_true(distance(s->position[i], at) < 1e-6f && distance(s->rest_position[i], at) < 1e-6f);
+        assert_true(s->normal[i][2] > 0.999f);
+        assert_memory_equal(s->uv[i], uv, sizeof s->uv[i]);
+    }
+    for (uint32_t t = 0; t < s->triangle_count; t++) area += fabs(doubled_area(s, t)) / 2;
+    assert_float_equal(area, 0.01, 1e-7);
+
+    // a uv that the sheet has not, no uv at all, and a sheet without
+    render_mesh_free(&g->memory, g->mesh);
+    g->mesh = NULL;
+    g->draft->uv[2 * 40] = 1.5f;
+    assert_int_equal(bind(g, &error), SINGE_ERROR_MESH);
+    assert_int_equal(error.element, 40);
+    g->draft->uv[2 * 40] = 1e30f;
+    assert_int_equal(bind(g, &error), SINGE_ERROR_MESH);
+    g->def.uv = NULL;
+    assert_int_equal(render_mesh_create(&g->memory, g->d->pool, &g->sheet, &g->def, &g->mesh, &error),
+                     SINGE_ERROR_ARGUMENT);
+    g->def.uv = g->draft->uv;
+    memset(g->source.uv, 0, g->source.sheet.vertex_count * sizeof *g->source.uv);
+    assert_int_equal(render_mesh_create(&g->memory, g->d->pool, &g->sheet, &g->def, &g->mesh, &error),
+                     SINGE_ERROR_ARGUMENT);
+    garment_free(g);
+}
+
 TEST(damaged_meshes_are_refused) {
     Garment *g = garment(4, 1e-3f, 0);
     SingeError error = {0};

@@ -233,7 +233,7 @@ class SingeSurface(Structure):
 class SingeRenderMeshDef(Structure):
     _fields_ = [("struct_size", c_size_t), ("vertex_count", c_uint32), ("triangle_count", c_uint32),
                 ("positions", POINTER(c_float)), ("uv", POINTER(c_float)), ("triangles", POINTER(c_uint32)),
-                ("reach", c_float), ("edge_max", c_float), ("rigid", c_float), ("beside", c_bool)]
+                ("reach", c_float), ("edge_max", c_float), ("rigid", c_float), ("beside", c_bool), ("by_uv", c_bool)]
 
 
 class SingeGas(Structure):

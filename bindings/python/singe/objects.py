@@ -245,8 +245,8 @@ class Sheet(Object):
         `points` [n, 3] in m, where the sheet is at rest; `triangles` [m, 3]; `uv` [n, 2] or the sheet's.
         Options: `reach`, m, how far a point may be from the sheet (the side of a cell); `edge_max`, m, longer
         edges are halved (half a cell's side); `rigid`, m, parts at most this large keep their shape, as buttons
-        do (0: none); `beside`: the sheet is drawn, too. After the commit. Saved simulations and copies are
-        without it.
+        do (0: none); `beside`: the sheet is drawn, too; `by_uv`: points lie on the sheet where that has their uv,
+        wherever they are given. After the commit. Saved simulations and copies are without it.
         """
         keep: List[Any] = []
         made = default(_abi.SingeRenderMeshDef, "singe_init_render_mesh")
