@@ -453,7 +453,7 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
     memset(plan->source_conductance, 0, plan->particles * sizeof *plan->source_conductance);
     memset(plan->source_temperature, 0, plan->particles * sizeof *plan->source_temperature);
 
-    plan->puts_out = air_of(sources, time) != NULL;
+    plan->puts_out = air_of(sources, time) != NULL || plan->smother.count > 0;
     for (uint32_t k = 0; colliders && k < colliders->count; k++)
         plan->puts_out |= colliders->items[k].generation && colliders->items[k].def.smothers;
     if (plan->puts_out) memset(plan->put_out, 0, plan->particles * sizeof *plan->put_out);
@@ -462,6 +462,8 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
         const Source *source = &sources->items[k];
         if (source_is_lit(source, time)) source_kinds[source->def.kind].add(pass, source, view);
     }
+
+    heat_smother(pass);
 
     // colliders that conduct or smother, and the gas
     for (uint32_t k = 0; colliders && k < colliders->count; k++) {

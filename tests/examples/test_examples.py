@@ -596,6 +596,24 @@ class PutOut(Example):
                 self.assertLess(self.rows[-1]["temperature_max"], 350 + ZERO_CELSIUS)
 
 
+class Blanket(Example):
+    """A sheet smothers another, which without it would burn on."""
+
+    NAME = "blanket"
+
+    def test_goes_out(self):
+        self.common()
+        burnt = self.column("burnt_fraction")
+        self.run_example("air", "--threads", "1", "--set", "sheets.1.material.smother_distance=0")
+        air = [float(row["burnt_fraction"]) for row in self.stats("air")]
+        self.say["burnt"] = f"{burnt[19]:.4f} before, {burnt[-1]:.4f} at the end, {air[-1]:.4f} with air"
+        self.report()
+        self.assertGreater(burnt[19], 0.005)
+        self.assertLess(burnt[-1] - burnt[48], 1e-6)
+        self.assertLess(self.rows[-1]["temperature_max"], 240 + ZERO_CELSIUS)
+        self.assertGreater(air[-1] - air[19], 2 * (burnt[-1] - burnt[19]))
+
+
 class Branches(Case):
     """Small runs of four examples, branched at ten random frames with nothing changed, give the bytes of the whole."""
 

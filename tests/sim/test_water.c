@@ -1,5 +1,5 @@
 // What puts fires out. Water boils off before sheets burn and takes the heat that is published; a jet of air blows the
-// flame off and cools; a collider smothers.
+// flame off and cools; a collider or another sheet smothers.
 #include "support/support.h"
 
 #include <math.h>
@@ -174,6 +174,77 @@ TEST(a_plate_smothers_a_fire) {
     assert_true(singe_sim_stats(smothered).mass > singe_sim_stats(plain).mass);
     assert_true(singe_sim_stats(smothered).temperature_max < 513);
     singe_sim_destroy(plain), singe_sim_destroy(smothered);
+}
+
+/// A sheet that burns, and another above it, which does not. From the 200th step on one of them keeps air within `distance`
+/// from the other.
+static SingeSim *covered(float height, float distance, bool from_above, uint32_t threads) {
+    SingeSimDef def = singe_default_sim();
+    def.thread_count = threads;
+    def.gravity[2] = 0;
+    def.solver.substeps = 1;
+    SingeSim *sim;
+    SingeSheetId burning, cover;
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    TestMesh low = test_grid(8, 8, 2.5e-3f, 2.5e-3f), high = test_grid(4, 4, 5e-3f, 5e-3f);
+    test_mesh_move(&high, 0, 0, height);
+    SingeSheetDef sheet = test_sheet(&low), above = test_sheet(&high);
+    sheet.material.drag = above.material.drag = singe_param(0);
+    sheet.material.ablate = false;
+    above.material.mass_rate = singe_param(0);
+    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &burning));
+    test_ok(sim, singe_sim_add_sheet(sim, &above, &cover));
+    test_ok(sim, singe_sim_commit(sim));
+
+    SingeSourceDef source = singe_default_source();
+    SingeSourceId heat;
+    source.kind = SINGE_SOURCE_TEXTURE;
+    source.texture = (SingeTexture){1, 1, &WHITE};
+    source.flux = (float)FLUX;
+    test_ok(sim, singe_sim_add_source(sim, &source, &heat));
+    test_steps(sim, 200);
+    test_ok(sim, singe_sim_remove_source(sim, heat));
+    SingeMaterialDef *keeps = from_above ? &above.material : &sheet.material;
+    keeps->smother_distance = singe_param(distance);
+    test_ok(sim, singe_sim_set_material(sim, from_above ? cover : burning, keeps, NULL));
+    test_steps(sim, 900);
+    assert_true(singe_sim_stats(sim).ledgers_close);
+    test_mesh_free(&low), test_mesh_free(&high);
+    return sim;
+}
+
+/// K, of the sheet that burns.
+static float hottest(const SingeSim *sim) {
+    float max = 0;
+    for (uint32_t v = 0; v < 81; v++) max = fmaxf(max, singe_sim_view(sim).temperature[v]);
+    return max;
+}
+
+TEST(a_sheet_smothers_a_fire) {
+    SingeSim *plain = covered(3e-3f, 0, true, 1), *near = covered(3e-3f, 8e-3f, true, 1),
+             *again = covered(3e-3f, 8e-3f, true, 2), *far = covered(25e-3f, 8e-3f, true, 1),
+             *own = covered(3e-3f, 8e-3f, false, 1);
+    print_message("hottest %g, covered %g K; mass %g, %g kg\n", (double)hottest(plain), (double)hottest(near),
+                  singe_sim_stats(plain).mass, singe_sim_stats(near).mass);
+    assert_true(hottest(plain) > 600 && hottest(near) < 513);
+    assert_true(singe_sim_stats(near).mass > 1.1 * singe_sim_stats(plain).mass);
+    for (uint32_t v = 0; v < 81; v++) assert_true(singe_sim_view(near).burn_rate[v] == 0);
+
+    // a sheet that is too far away does nothing, nor does a sheet to itself
+    assert_true(singe_sim_stats(far).mass == singe_sim_stats(plain).mass);
+    assert_true(singe_sim_stats(own).mass == singe_sim_stats(plain).mass);
+
+    // any number of threads, and saved
+    test_assert_same(near, again);
+    TestBytes bytes = test_save(near);
+    const SingeSimDef hooks = singe_default_sim();
+    SingeSim *loaded;
+    assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &loaded, NULL), SINGE_OK);
+    test_steps(near, 20), test_steps(loaded, 20);
+    test_assert_same(near, loaded);
+    free(bytes.data);
+    SingeSim *all[] = {plain, near, again, far, own, loaded};
+    for (int k = 0; k < 6; k++) singe_sim_destroy(all[k]);
 }
 
 TEST(bad_water_is_refused) {

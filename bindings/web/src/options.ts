@@ -323,4 +323,7 @@ export interface MaterialOptions {
      *  1e-5. Above 0 it sets compliance.green to thickness^2/D, less compliance.blue; 0: compliance.green as it is,
      *  by default 1e-5 N m. Stiff sheets need substeps */
     bending?: Param;
+    /** m, 0 to 1; what burns of other sheets within this distance of the sheet, in either layer, gets no air and
+     *  goes out; 0: none. A blanket has 2 mm or so; sheets keep the contact's thickness */
+    smother_distance?: Param;
 }
