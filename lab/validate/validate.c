@@ -22,6 +22,10 @@ static const PageItem items[] = {
      "Cotton burns in 13.5 % of oxygen and more at 20 C, whatever its weave (extinction oxygen index, after Horrocks, "
      "Price &amp; Tunc 1987).",
      validate_oxygen},
+    {"damp", "Damp cotton",
+     "Fire spreads over level cotton cloth with 0 to 34 % of water, and fastest with 2 % (Textile Research Journal 2018, "
+     "10.1177/0040517518807450).",
+     validate_damp},
     {"beam", "A clamped strip", "Plate theory: w = rho g l&#8308;/(8 D) + rho g l²/(2 S).", validate_beam},
     {"disc", "A bilayer disc",
      "A strongly bent disc of two layers is a cylinder whose curvature is (1 + nu)/2 times its natural one, 3/4 at nu "
@@ -39,7 +43,7 @@ enum { OPT_OUTPUT, OPT_ONLY, OPT_QUICK, OPT_THREADS, OPT_COUNT };
 static const ArgOption validate_options[OPT_COUNT] = {
     [OPT_OUTPUT] = {"output", 'o', "DIR", "folder for the page [out/validate]"},
     [OPT_ONLY] = {"only", 0, "NAME",
-                  "one of heat, umbrella, front, pmma, cone, oxygen, beam, disc, kinetics, ledgers, grades"},
+                  "one of heat, umbrella, front, pmma, cone, oxygen, damp, beam, disc, kinetics, ledgers, grades"},
     [OPT_QUICK] = {"quick", 0, NULL, "small sizes, for a quick check"},
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
 };

@@ -40,6 +40,8 @@ static const Graded graded[] = {
     {"cone", "peak", INDEPENDENT, true, "FSRI, cone calorimeter; a sheet heated at once burns nine times too fiercely"},
     {"cone", "total", INDEPENDENT, false, "FSRI, cone calorimeter"},
     {"oxygen", "limit", INDEPENDENT, false, "an extinction oxygen index of cotton"},
+    {"damp", "limit", INDEPENDENT, false, "level cotton cloth, Textile Research Journal 2018"},
+    {"damp", "fastest", INDEPENDENT, true, "the same; 2 % of water makes a flame larger, here water only cools"},
     {"beam", "sag", INDEPENDENT, false, "plate theory"},
     {"disc", "stiffness", BY_CONSTRUCTION, false, "the lattice of springs"},
     {"disc", "poisson_grid", BY_CONSTRUCTION, false, "the lattice of springs"},

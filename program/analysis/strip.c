@@ -109,9 +109,12 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
         material.compliance[c] = singe_param(0);
     }
 
+    // where it is lit it is hot and dry
     static const SingeField lit = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "lit"};
-    const SingeParam cold = material.temperature;
+    const SingeParam cold = material.temperature, damp = material.moisture;
     material.temperature = singe_param_field(cold.field ? 0.5f * (cold.value + cold.to) : cold.value, 1100, &lit);
+    const float water = damp.field ? 0.5f * (damp.value + damp.to) : damp.value;
+    if (water > 0) material.moisture = singe_param_field(water, 0, &lit);
     return material;
 }
 
