@@ -15,7 +15,7 @@ HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 .PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        site check-clients check-godot check-unity check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture mutations coverage fuzz-long soak pictures bench-peers clean
+        site check-clients check-godot check-unity check-unreal check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture mutations coverage fuzz-long soak pictures bench-peers clean
 
 all: build
 
@@ -90,6 +90,10 @@ check-godot: build
 # the script and the plug-in for Unity, by Mono and without Unity
 check-unity:
 	tests/clients/unity.py build/clients/unity
+
+# the component for Unreal, without Unreal
+check-unreal:
+	tests/clients/unreal.py build/clients/unreal
 
 # the extension in Blender 4.5 and 5.2; WHEELS=FOLDER also installs it together with its program
 check-blender: build

@@ -5,6 +5,10 @@
 
 #include <singe/singe.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { BURNING_KEPT = 64 };
 
 typedef struct BurningSheet {
@@ -49,5 +53,9 @@ bool burning_add_plane(BurningSheet *sheet, const float point[3], const float no
 /// How a vertex looks. Red, green and blue are how far it has browned, charred and turned to ash, as a factor on the
 /// sheet's picture; alpha is how brightly it glows. Temperatures in K, `burn` from 0 (fresh) to 1 (ash).
 void burning_colour(float temperature, float peak, float burn, uint8_t colour[4]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

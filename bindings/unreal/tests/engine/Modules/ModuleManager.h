@@ -1,0 +1,4 @@
+#pragma once
+
+struct FDefaultModuleImpl {};
+#define IMPLEMENT_MODULE(Kind, Name) Kind Name##Module;
