@@ -47,6 +47,8 @@ autodoc_preserve_defaults = True
 html_theme = "furo"
 html_title = f"Singe {version}"
 html_copy_source = False
+html_static_path = ["static"]
+html_css_files = ["site.css"]
 html_theme_options = {"light_css_variables": {"color-brand-primary": "#a63c06", "color-brand-content": "#a63c06"},
                       "dark_css_variables": {"color-brand-primary": "#ff9a52", "color-brand-content": "#ff9a52"}}
 
@@ -66,7 +68,7 @@ def navigation():
 
 def read_source(app, name, source):
     """Adds the navigation to the pages that are maps. Links to folders, which no page shows, become words; the headers'
-    folder is the C reference."""
+    folder is the C reference. A link that names a file has the title of its page instead."""
     def folder(match):
         place = (ROOT / name).parent / match.group(2)
         if place.resolve() == ROOT / "include/singe":
@@ -74,6 +76,7 @@ def read_source(app, name, source):
         return match.group(1) if place.is_dir() else match.group()
 
     source[0] = re.sub(r"\[([^][]*)\]\(([^)#:]+)\)", folder, source[0])
+    source[0] = re.sub(r"\[[\w./-]+\.md\](\([\w./-]+\.md(#[^)]*)?\))", r"[]\1", source[0])
     if name == root_doc:
         source[0] += navigation()
     if name == "docs/web" and PAGE.exists():
