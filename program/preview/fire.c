@@ -94,8 +94,8 @@ static void mark_bricks(Fire *fire, int x, int y, int z, float reach, uint8_t wh
 static void mark_all(Fire *fire) {
     memset(fire->seen, 0, fire->brick_capacity);
     memset(fire->burns, 0, fire->cell_capacity);
-    float wide = (FIRE_WARP_WIDE + FIRE_WARP_FINE) / fire->cell;
-    int fine = 1 + (int)minf(FIRE_WARP_FINE / fire->cell, 1000);
+    float wide = fire->scale * (FIRE_WARP_WIDE + FIRE_WARP_FINE) / fire->cell;
+    int fine = 1 + (int)minf(fire->scale * FIRE_WARP_FINE / fire->cell, 1000);
 
     for (int z = 1; z < fire->size[2] - 1; z++)
         for (int y = 1; y < fire->size[1] - 1; y++)
@@ -144,7 +144,7 @@ void fire_raise(Preview *preview) {
     for (size_t i = 0; i < fire->cell_capacity; i++) {
         FireCell *cell = &fire->cells[i];
         if (cell->flame <= 0) continue;
-        float left = 1 - stepf(0.6f * FLAME_END, FLAME_END, cell->rise / cell->flame);
+        float left = 1 - stepf(0.6f * FLAME_END, FLAME_END, cell->rise / cell->flame / fire->scale);
         cell->flame *= left;
         cell->rise *= left;
     }
@@ -254,6 +254,7 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
 
     float shift = (0.5f - FIRE_BORDER) * gas->cell;
     fire->cell = gas->cell;
+    fire->scale = clampf(gas->cell / FIRE_SCALE_CELL, 1, 3);
     fire->origin = float3_add(float3_load(gas->origin), float3(shift, shift, shift));
     memset(fire->cells, 0, fire->cell_capacity * sizeof *fire->cells);
     memset(fire->source, 0, fire->cell_capacity * sizeof *fire->source);

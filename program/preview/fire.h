@@ -55,6 +55,7 @@ typedef struct Fire {
     float (*roots)[2];  ///< [cells] rate at which paper burns there, and its height times that
     uint8_t *burns;     ///< [cells] whether flame may be within reach of the small eddies
     size_t brick_capacity;
+    float scale;       ///< of flames, 1 where cells are small: what burns over a wide cell has larger tongues
     float moment;      ///< s, time for which the eddies have risen
     Float3 daylight;   ///< of sun and sky, per unit of the smoke's albedo
     Float3 low, high;  ///< m, bounds of the bricks that are not empty
@@ -63,8 +64,9 @@ typedef struct Fire {
     Float3 colours[FIRE_COLOURS]; ///< radiance of a thick flame from its coolest to its hottest
 } Fire;
 
-#define FLAME_HEIGHT 0.058f ///< m, typical height of tongues
-#define FLAME_END 0.17f     ///< m, max height of a flame
+#define FIRE_SCALE_CELL 0.017f ///< m, cells above which flames are larger, in proportion
+#define FLAME_HEIGHT 0.058f    ///< m, typical height of tongues
+#define FLAME_END 0.17f        ///< m, max height of a flame
 
 // m, max displacement by eddies
 #define FIRE_WARP_WIDE 0.0055f

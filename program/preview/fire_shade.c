@@ -122,18 +122,18 @@ float fire_share(const FireCell *cell) {
 
 float fire_flicker(const Fire *fire, Float3 p) {
     Noise whole = noise_at(fire, float3(0.4f, 0.6f, 6 * fire->moment));
-    Noise part = eddies(fire, p, EDDY_RATE * fire->moment, 0.04f, 1);
+    Noise part = eddies(fire, p, EDDY_RATE * fire->moment / sqrtf(fire->scale), fire->scale * 0.04f, 1);
     return maxf(1 + 0.5f * whole.a + 0.8f * part.c, 0.1f);
 }
 
 /// The flame at a position, from its cell, the gradient of its share in 1/m, and the noises.
 static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noise wide, Noise fine, FirePoint *point) {
     float rise = maxf(cell->rise / cell->flame, 0), torn = stepf(0, 0.02f, rise);
-    float tall = rise / (FLAME_HEIGHT * (1 + 0.45f * wide.c + 0.2f * fine.d));
+    float tall = rise / (fire->scale * FLAME_HEIGHT * (1 + 0.45f * wide.c + 0.2f * fine.d));
     float coarse = 0.08f + 0.55f * torn + 0.15f * minf(tall, 1), small = 0.03f + 0.26f * torn;
     float edge = cell->flame * (1 + coarse * wide.c + small * (0.6f - 2.2f * fabsf(fine.c))) - EDGE - TAPER * tall -
                  0.2f * (1 - torn);
-    float noisy = cell->flame * (coarse / EDDY_WIDE + small / EDDY_FINE);
+    float noisy = cell->flame * (coarse / EDDY_WIDE + small / EDDY_FINE) / fire->scale;
     point->depth = maxf(edge / sqrtf(slope * slope + 0.4f * noisy * noisy + 1), FIRE_OUTSIDE);
 
     // the shell's profile, and its integral from the edge
@@ -234,9 +234,9 @@ FirePoint fire_at_point(const Preview *preview, Float3 p, int what) {
         if (sum[0] > 1e-4f) height = sum[1] / sum[0];
 
         // large eddies move it, then small ones
-        float passed = eddies_passed(height, fire->moment);
-        Noise wide = eddies(fire, p, passed, EDDY_WIDE, 1);
-        Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), 0.7f * FIRE_WARP_WIDE);
+        const float scale = fire->scale, passed = eddies_passed(height / scale, fire->moment / sqrtf(scale));
+        Noise wide = eddies(fire, p, passed, scale * EDDY_WIDE, 1);
+        Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), scale * 0.7f * FIRE_WARP_WIDE);
 
         // whether the small eddies can bring flame there
         const Float3 h = in_cells(fire, shifted);
@@ -246,8 +246,9 @@ FirePoint fire_at_point(const Preview *preview, Float3 p, int what) {
 
         if (fire->burns[x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z)]) {
             float slope;
-            Noise fine = eddies(fire, shifted, passed, EDDY_FINE, 1.6f);
-            cell = cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), 0.7f * FIRE_WARP_FINE), &slope);
+            Noise fine = eddies(fire, shifted, passed, sqrtf(scale) * EDDY_FINE, 1.6f * sqrtf(scale));
+            cell = cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), sqrtf(scale) * 0.7f * FIRE_WARP_FINE),
+                           &slope);
             if (cell.flame > 0.02f) shade_flame(fire, &cell, slope, wide, fine, &point);
         }
     }

@@ -211,6 +211,8 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 // again for a moment when the time since its ignition passes a delay given by noise, so that lines of equal delay
 // wander over the ash.
 
+#define EMBER_HOT 1180.0f ///< K
+
 static float seconds(const Preview *preview) { return (float)fmod(preview->time, 4096.0); }
 
 float ember_air(const Preview *preview, Float3 p) {
@@ -218,6 +220,13 @@ float ember_air(const Preview *preview, Float3 p) {
     float slow = noise3(float3(21 * p.x + 0.8f * t, 21 * p.y - 0.5f * t, 21 * p.z - 1.7f * t), 51);
     float quick = noise3(float3(55 * p.x, 55 * p.y, 55 * p.z - 7.0f * t), 52);
     return clampf(1 + 0.42f * slow + 0.22f * quick, 0.3f, 1.7f);
+}
+
+/// Embers that are hotter than EMBER_HOT shine on as orange: a film of ash covers them, and skin of any temperature would be
+/// flat white.
+static float ember_seen(float temperature) {
+    const float above = maxf(temperature - EMBER_HOT, 0), most = 160;
+    return temperature - above + above * most / (above + most);
 }
 
 /// Activity of the line at a point, 0 (dead) to 1.
@@ -244,7 +253,7 @@ static Float3 ember_line(const Preview *preview, const PaperState *state, const 
     // red-hot cracks in the char next to it
     float near = 0.10f * activity * life * expf(-0.05f * x * x);
     if (near > 0.003f) strength += near * paper_cracks(bent, 1.6f, 0.12f, footprint);
-    return float3_scale(blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * maxf(strength, 0));
+    return float3_scale(blackbody_glow(preview->blackbody, ember_seen(temperature)), EMBER_GAIN * maxf(strength, 0));
 }
 
 static Float3 sparks(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
@@ -283,7 +292,8 @@ static void ember_shade(const Preview *preview, const PaperState *state, const B
     float temperature =
         ember_temperature(state->temperature) + 130 * (life - 0.5f) + 70 * bent->fine + 40 * bent->medium;
     float strength = activity * (0.15f + 0.85f * life) * air;
-    point->glow = float3_mad(point->glow, blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * strength);
+    point->glow =
+        float3_mad(point->glow, blackbody_glow(preview->blackbody, ember_seen(temperature)), EMBER_GAIN * strength);
 }
 
 // ---- the sheet

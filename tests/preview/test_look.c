@@ -109,6 +109,21 @@ TEST(only_hot_and_burning_char_glows) {
     assert_true(burning > burning_blue);
 }
 
+/// A scrap that burns as a whole, at 1500 K, stays orange and uneven; it was flat white.
+TEST(scraps_of_ember_stay_orange) {
+    static uint8_t rgb[BYTES];
+    Float4 q;
+    PreviewDef def = above();
+
+    quad_make(&q, 0.1f, 0.01f);
+    for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
+    for (int i = 0; i < 4; i++) q.burn[i] = 0.74f, q.temperature[i] = 1500, q.rate[i] = 1;
+    draw(&def, &q.surface, 1, rgb);
+    print_message("a scrap of ember: %.0f %.0f %.0f\n", (double)middle(rgb, 0), (double)middle(rgb, 1),
+                  (double)middle(rgb, 2));
+    assert_true(middle(rgb, 0) > 120 && middle(rgb, 2) < 0.5f * middle(rgb, 0));
+}
+
 /// Ash pales with time.
 TEST(ash_pales_with_time) {
     static uint8_t rgb[BYTES];
