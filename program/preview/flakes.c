@@ -107,8 +107,9 @@ static void plate_draw(Preview *preview, const Flake *flake, Float3 lit, float a
             const float patch = noise2(2.3f * u + 5, 2.3f * v + 5, flake->seed + 1);
             const float rim = 1 - stepf(0, 0.28f, inside), pale = clampf(flake->ash + 0.25f * rim + 0.3f * patch, 0, 1);
             const float curl = 1 + 0.35f * v * (patch + 0.4f);
-            const float albedo = mixf(0.03f, 0.45f, pale * pale) * maxf(curl, 0.4f);
-            const float glows = maxf(rim, stepf(0.1f, 0.5f, patch)) * stepf(FLAKE_COLD, 900, heat);
+            const float albedo = mixf(0.03f, 0.36f, pale * pale) * maxf(curl, 0.4f);
+            const float alive = stepf(-0.1f, 0.5f, noise2(4 * u + 1, 4 * v + 1, flake->seed + 2));
+            const float glows = maxf(rim * alive, stepf(0.3f, 0.6f, patch)) * stepf(FLAKE_COLD, 900, heat);
             Float3 light = float3_scale(lit, albedo);
             light = float3_mad(light, blackbody_glow(preview->blackbody, heat + 80 * patch), EMBER_GAIN * glows);
 
@@ -162,7 +163,7 @@ static Flake flake_make(const Preview *preview, const EmberSite *site, uint32_t 
 
     // char of 20 g/m2, ash of 6; most are small
     const float ash = r[0], grammage = mixf(0.020f, 0.006f, ash), drag = 1.3f;
-    const float size = 0.0012f + 0.0042f * r[1] * r[1] * r[1];
+    const float size = 0.0011f + 0.0032f * r[1] * r[1] * r[1];
     Flake flake = {.from = float3_mad(site->position, float3(r[2] - 0.5f, r[3] - 0.5f, r[4] - 0.5f), 0.010f),
                    .drift = float3(0.24f * (r[5] - 0.5f), 0.24f * (r[6] - 0.5f), 0),
                    .up = (0.8f + 0.4f * flames) * clampf(1.3f * r[7] - 0.25f, 0, 1),
