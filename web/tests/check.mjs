@@ -335,6 +335,45 @@ const CASES = {
         assert.match(await other.textContent("#stop"), /WebGL 2/);
         await other.close();
     },
+    async "a stranger's first minute: page, match, hole, torn piece, link"() {
+        const shown = async (name) => {
+            if (!folder) return;
+            await page.evaluate(() => globalThis.page.quality(1));
+            await picture(name);
+            if (!/torn/.test(name)) await page.evaluate(() => globalThis.page.quality(0.1));
+        };
+        const pins = "pins=-95.0.0_-95.-60.0_-95.60.0";
+        await open(folder ? `begin=false&pace=5&${pins}` : `${QUICK}&pace=5&${pins}`, 0.1);
+        await step(0.1);
+        await shown("minute-1-page");
+        await page.click("[data-tool=match]");
+        await page.mouse.move(...(await place([0, -0.02, 0])));
+        await page.mouse.down();
+        await step(1 / 24);
+        await page.mouse.move(...(await place([0.02, 0, 0])), { steps: 4 });
+        const lit = await step(0.75);
+        await shown("minute-2-match");
+        await page.mouse.up();
+        const hole = await step(1.25);
+        assert.ok(lit.burnt > 0.001 && hole.burnt > 2 * lit.burnt, `burnt ${lit.burnt}, then ${hole.burnt}`);
+        await shown("minute-3-hole");
+
+        await page.click("[data-tool=hand]");
+        await page.mouse.move(...(await place([0.07, -0.03, 0])));
+        await page.mouse.down();
+        await step(1 / 24);
+        await page.mouse.move(...(await place([0.15, -0.03, 0.05])), { steps: 6 });
+        const torn = await step(0.7);
+        assert.ok(torn.skipped && torn.tears > 0, `${torn.tears} tears`);
+        await shown("minute-4-torn");
+        await page.mouse.up();
+        await page.click("summary");
+        await page.click("[data-save=link]");
+        await page.waitForFunction(() => /link/i.test(document.querySelector("#hint").textContent));
+        assert.match(new URL(page.url()).hash, /match=/);
+        await picture("minute-5-link");
+        await page.click("summary");
+    },
     async "the letter burns by itself, with flames"() {
         await open("", folder ? 1 : 0.3);
         const state = await step(1.5);

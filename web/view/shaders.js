@@ -330,6 +330,7 @@ Point flame(vec4 c, vec4 wide, vec4 fine) {
     float hot = 0.35 + 0.42 * stepf(0.0, 0.25, edge) - 0.3 * tip + 0.25 * wide.a + 0.15 * fine.r;
     soot *= soot;
     float root = stepf(STAND_OFF, 3.0 * STAND_OFF, rise) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 3.0, BLUE_ENDS, rise));
+    root *= stepf(0.0, 2.0 * SHELL, point.depth); // its outline is no ring
     soot *= 0.3 + 1.2 * stepf(-0.5, 0.5, 0.7 * wide.a + 0.6 * fine.r);
     point.opaque = SOOT_OPAQUE * soot;
     point.soot = flameColour(clamp(hot, 0.0, 1.0)) * SOOT_DENSE * soot;

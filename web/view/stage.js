@@ -39,10 +39,12 @@ vec3 lit(vec3 p, vec3 n, float through, float seen) {
     float facing = dot(n, sunTo);
     vec3 sum = sunLight * seen * (max(facing, 0.0) + through * vec3(1.35, 1.12, 0.80) * max(-facing, 0.0));
     sum += skyLight(n) + through * skyLight(-n);
+    // sheets are wrapped, as flames have an extent; what lies below them is not, in place of the shadow that sheets cast
+    float wrap = through > 0.0 ? 0.2 : 0.0;
     for (int k = 0; k < lampCount; k++) {
         vec3 f = lampPlace[k].xyz - p;
         float d2 = dot(f, f) + lampPlace[k].w, c = dot(n, f) * inversesqrt(d2);
-        sum += lampStrength[k].rgb * (max(max((c + 0.2) / 1.2, -through * c), 0.0) / d2);
+        sum += lampStrength[k].rgb * (max(max((c + wrap) / (1.0 + wrap), -through * c), 0.0) / d2);
     }
     return sum;
 }
