@@ -615,7 +615,8 @@ class Blanket(Example):
 
 
 class Branches(Case):
-    """Small runs of four examples, branched at ten random frames with nothing changed, give the bytes of the whole."""
+    """Small runs of four examples, branched at ten random frames with nothing changed, give the bytes of the whole, also
+    if the branch is killed on its way."""
 
     FRAMES = 14
     SETS = {"letter": ("sheets.0.grid.cells=[21, 30]",), "note": (), "title": ("sheets.0.grid.cells=[44, 20]",),
@@ -636,6 +637,20 @@ class Branches(Case):
                                "--threads", threads, *more, timeout=800)
                     self.assertEqual(self.plys(name), self.plys(name + "-b"))
                     self.assertEqual(self.numbers(name), self.numbers(name + "-b"))
+
+            # killed once it has written a frame of its own
+            frame = chosen.randrange(1, self.FRAMES - 2)
+            with self.subTest(name, seed=seed, killed=frame):
+                out = self.path(name + "-k")
+                run = self.start("run", scene, "-o", out, "--from", f"{self.path(name)}:{frame}", *more)
+                self.addCleanup(run.stderr.close)
+                while not os.path.exists(os.path.join(out, "ply", f"{name}.{frame + 1:04d}.ply")) and run.poll() is None:
+                    time.sleep(0.002)
+                run.kill()
+                run.wait()
+                self.singe("run", scene, "-o", out, "--resume", "--threads", "2", *more, timeout=800)
+                self.assertEqual(self.plys(name), self.plys(name + "-k"))
+                self.assertEqual(self.numbers(name), self.numbers(name + "-k"))
 
 
 class SameBytes(Example):
