@@ -579,6 +579,11 @@ def refused():
     broken(set_value("points", [(0, 0, float("nan"))] * len(POINTS)), "/World/Leaf: point 0 is not finite")
     broken(set_value("points", []), "/World/Leaf: 0 points")
 
+    def endless(stage, mesh):
+        wet = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("wet", Sdf.ValueTypeNames.FloatArray, UsdGeom.Tokens.vertex)
+        wet.Set([float("inf")] * len(POINTS))
+    broken(endless, "/World/Leaf: primvars:wet has a value that is not finite")
+
     def unfitting(stage, mesh):
         paint(stage, mesh, "./page.png")
         mesh.GetPrim().GetAttribute("primvars:st").Set([(0, 0)])
@@ -610,13 +615,17 @@ def refused():
         stage.SetStartTimeCode(5)
         stage.SetEndTimeCode(1)
     broken(backwards, "endTimeCode 1 comes before startTimeCode 5")
-    for name, text in (("garbage.usda", "#usda 1.0\ndef Mesh {"), ("garbage.usdc", "PXR-USDC"), ("none.usda", None)):
+    head = '#usda 1.0\n(\nmetersPerUnit = 1\nupAxis = "Z"\n)\ndef Mesh "World" {\n'
+    for name, text, named in (("garbage.usda", "#usda 1.0\ndef Mesh {", ""), ("garbage.usdc", "PXR-USDC", ""),
+                              ("none.usda", None, ""),
+                              ("word.usda", head + 'string points = "x"\n}', "/World.points: its values are no points"),
+                              ("words.usda", head + 'string[] faceVertexCounts = ["x"]\n}', "its values are no numbers")):
         if text:
             (FOLDER / name).write_text(text)
         try:
             usd.scene(FOLDER / name, FOLDER / "none", ["/World"])
         except errors.FormatError as error:
-            assert name in str(error), error
+            assert (named or name) in str(error), error
         else:
             raise AssertionError(name)
 
@@ -631,7 +640,7 @@ def main():
         stage()
         print(f"{stage.__name__}: as in the stage")
     refused()
-    print(f"{len(stages)} stages; {broken.count + 3} broken ones refused")
+    print(f"{len(stages)} stages; {broken.count + 5} broken ones refused")
 
 
 if __name__ == "__main__":

@@ -290,11 +290,19 @@ class _Reader:
 
     # ---- meshes
 
+    @staticmethod
+    def _numbers_of(attribute: Any, time: Any, kind: Any, shape: Tuple[int, ...] = (-1,)) -> np.ndarray:
+        try:
+            return np.array(attribute.Get(time) or [], kind).reshape(shape)
+        except (TypeError, ValueError) as error:
+            what = "points" if shape != (-1,) else "numbers"
+            raise _fault(attribute.GetPath(), f"its values are no {what}") from error
+
     def mesh(self, prim: Any, time: Any, uv_name: Optional[str] = None) -> _Mesh:
         path, mesh = prim.GetPath(), self.pxr.UsdGeom.Mesh(prim)
-        points = np.array(mesh.GetPointsAttr().Get(time) or [], float).reshape(-1, 3)
-        counts = np.array(mesh.GetFaceVertexCountsAttr().Get(time) or [], np.int64)
-        corners = np.array(mesh.GetFaceVertexIndicesAttr().Get(time) or [], np.int64)
+        points = self._numbers_of(mesh.GetPointsAttr(), time, float, (-1, 3))
+        counts = self._numbers_of(mesh.GetFaceVertexCountsAttr(), time, np.int64)
+        corners = self._numbers_of(mesh.GetFaceVertexIndicesAttr(), time, np.int64)
         if not len(points) or not len(counts):
             raise _fault(path, f"{len(points)} points and {len(counts)} faces at time code {time.GetValue():g}")
         if not np.isfinite(points).all():
@@ -315,7 +323,7 @@ class _Reader:
         order = np.arange(len(corners))
         if left != (np.linalg.det(columns) < 0):
             order = (ends - counts)[face] + ends[face] - 1 - order
-        holes = np.array(mesh.GetHoleIndicesAttr().Get(time) or [], np.int64)
+        holes = self._numbers_of(mesh.GetHoleIndicesAttr(), time, np.int64)
         kept = np.ones(len(counts), bool)
         kept[holes[(holes >= 0) & (holes < len(counts))]] = False
         order = order[kept[face]]
@@ -330,15 +338,15 @@ class _Reader:
         found += [one for one in variables.GetPrimvars() if one.GetTypeName().role == "TextureCoordinate"]
         for variable in found:
             values = variable.ComputeFlattened(time) if variable and variable.HasValue() else None
-            flat = np.array(values if values is not None else [], float)
-            if flat.ndim != 2 or flat.shape[1] < 2:
+            flat = np.array(values if values is not None else [])
+            if flat.dtype.kind not in "fiu" or flat.ndim != 2 or flat.shape[1] < 2:
                 continue
             at = {"constant": np.zeros(len(corners), np.int64), "uniform": np.repeat(np.arange(len(counts)), counts),
                   "faceVarying": np.arange(len(corners))}.get(str(variable.GetInterpolation()), corners)
             wanted = {"constant": 1, "uniform": len(counts),
                       "faceVarying": len(corners)}.get(str(variable.GetInterpolation()), points)
             if len(flat) == wanted:
-                return flat[at, :2]
+                return flat[at, :2].astype(float)
             fault = f"{variable.GetName()} has {len(flat)} values, expected {wanted} ({variable.GetInterpolation()})"
             if name:
                 raise _fault(prim.GetPath(), fault)
@@ -354,8 +362,10 @@ class _Reader:
             if str(variable.GetInterpolation()) not in ("vertex", "varying") or name in _RESERVED:
                 continue
             values = np.array(variable.ComputeFlattened(time))
-            named = re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", name)
+            named = re.fullmatch("[A-Za-z_][A-Za-z0-9_]{0,99}", name)
             if values.shape == (points,) and values.dtype.kind in "fiu" and named:
+                if not np.isfinite(values).all():
+                    raise _fault(prim.GetPath(), f"primvars:{name} has a value that is not finite")
                 made[name] = values
         return made
 
