@@ -15,7 +15,7 @@ HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 .PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        site check-clients check-godot check-unity check-unreal check-blender check-farm check-packages check-platforms web web-serve check-web check-web-core torture mutations coverage fuzz-long soak pictures bench-peers clean
+        site check-clients check-godot check-unity check-unreal check-blender check-farm check-packages check-platforms web web-serve web-pictures check-web check-web-core torture mutations coverage fuzz-long soak pictures bench-peers clean
 
 all: build
 
@@ -137,6 +137,13 @@ check-web: web
 	cd web && npm test
 	cd web && SINGE_PROGRAM=../build/singe SINGE_LIBRARY=$(CURDIR)/build/python/singe/libsinge.so \
 	    PYTHONPATH=../bindings/python node tests/notebook.mjs ../build/notebook/bin/python ../build/notebook/run
+
+# pictures of the page for docs/web.md, its first minute among them, into build/web-pictures
+web-pictures: web
+	cd web && ONLY="first minute|letter burns by itself|hangs|axe" node tests/check.mjs --pictures ../build/web-pictures
+	cd build/web-pictures && ffmpeg -y -loglevel error -i minute-1-page.png -i minute-2-match.png -i minute-3-hole.png \
+	    -i minute-4-torn.png -i minute-5-link.png -filter_complex "[0]scale=640:400[a];[1]scale=640:400[b];[2]scale=640:400[c]; \
+	    [a][b][c]hstack=3[u];[3][4]hstack[v];[u][v]vstack" -quality 82 web-minute.webp
 
 # the documentation as a site in build/site/html, with references made from the headers and the docstrings: needs doxygen;
 # Sphinx is installed into build/site. Warnings and dead links are errors. Where `make web` was run, its page is inside
