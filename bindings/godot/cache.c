@@ -1,10 +1,12 @@
 // The PLY files of a cache: a header in text, then vertices of 4-byte values, then triangles.
 #include "cache.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { COLUMNS_MAX = 64, COUNT_MAX = 100000000 };
 
@@ -41,7 +43,9 @@ static bool cache_path(const char *pattern, int64_t number, char *path, size_t s
 }
 
 static bool cache_load(const char *path, CacheFrame *frame, size_t *size, char *why, size_t why_size) {
-    FILE *file = fopen(path, "rb");
+    struct stat found; // a pipe would halt the game
+    const bool plain = stat(path, &found) == 0 && S_ISREG(found.st_mode);
+    FILE *file = plain ? fopen(path, "rb") : NULL;
     if (!file) return fail(why, why_size, "%s: cannot read", path);
     bool good = !fseek(file, 0, SEEK_END);
     const long length = good ? ftell(file) : -1;
@@ -106,8 +110,11 @@ bool cache_read(const char *pattern, int64_t number, CacheFrame *frame, char *wh
         return fail(why, why_size, "%s: out of memory", path);
     for (size_t i = 0; i < (size_t)header.vertices; i++) {
         float value[WANTED] = {0};
-        for (int c = 0; c < WANTED; c++)
+        for (int c = 0; c < WANTED; c++) {
             if (header.at[c] >= 0) memcpy(&value[c], header.body + i * row + 4 * (size_t)header.at[c], 4);
+            if (!isfinite(value[c]))
+                return fail(why, why_size, "%s: vertex %zu has a %s that is not finite", path, i, wanted[c]);
+        }
         // z up becomes y up
         frame->vertices[i] = (SheetVertex){{value[0], value[2], -value[1]},
                                            {value[3], value[5], -value[4]},
