@@ -178,7 +178,6 @@ TEST(the_umbrella_keeps_to_its_range) {
         for (int k = 0; k < 2; k++) check_range(&meshes[m], &material, k ? 10 : 1e-2f, (uint32_t)m);
 }
 
-/// Steps that end within their range by force are the same for any number of threads.
 /// Where one particle is very hot, a coarse tolerance of the range would reach below 0 K for all others.
 TEST(no_tolerance_lets_a_particle_reach_0_K) {
     static const float steps[] = {1e-2f, 1, 100};
@@ -201,6 +200,7 @@ TEST(no_tolerance_lets_a_particle_reach_0_K) {
     }
 }
 
+/// Steps that end within their range by force are the same for any number of threads.
 TEST(threads_do_not_matter) {
     enum { THREADS = 3 };
     RigDef def = rig_default(120, 90, 0.002f, 0.002f);
