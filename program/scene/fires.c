@@ -281,10 +281,13 @@ void scene_warn_of_fires(const Scene *scene, const SceneAssets *assets, const Si
         }
     }
 
-    if (any && scene->source_count == 0 && !lit)
-        message_warn(log, scene->text, (SceneLocation){0},
-                     "nothing lights the sheets: there is no source, no collider that is hot enough, and no sheet that "
-                     "begins hot");
+    uint32_t heaters = 0;
+    for (uint32_t i = 0; i < scene->source_count; i++) heaters += !source_wets_or_blows(&scene->sources[i].def);
+    if (any && heaters == 0 && !lit)
+        message_warn(
+            log, scene->text, (SceneLocation){0},
+            "nothing lights the sheets: there is no source of heat, no collider that is hot enough, and no sheet "
+            "that begins hot");
 
     // sources that miss, and those that are too weak if nothing else is strong enough
     for (int pass = 0; pass < 2 && any; pass++) {

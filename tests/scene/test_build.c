@@ -303,7 +303,8 @@ TEST(fires_that_miss_are_warned_of) {
         {SOURCES, SPOT("position: [-3 cm, 0, -5], power: 100, conductance: 0") "\ngas: yes",
          "the source misses the sheets"},
         // no fire at all, or too cold a one
-        {SOURCES, "", "t.yaml: nothing lights the sheets: there is no source"},
+        {SOURCES, "", "t.yaml: nothing lights the sheets: there is no source of heat"},
+        {SOURCES, "sources: [{kind: turbulence, speed: 1}]", "nothing lights the sheets: there is no source of heat"},
         {SOURCES, SPOT("position: [-3 cm, 0, 5 cm], temperature: 120 C"), "at most, which ignites at 240 C"},
         // what comes to the fire, or the fire to it
         {SHEETS, GRID("[10 cm, 10 cm]", "translate: [0, 0, 2 m]"), NULL},
