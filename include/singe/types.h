@@ -391,7 +391,7 @@ typedef struct SingeSimDef {
     float gravity[3]; ///< m/s2, -1e4 to 1e4; z is up
     float ambient_temperature; ///< K, 1 to 1e4; temperature of the air and the surroundings
     float air_density;         ///< kg/m3, 0 to 1000; for drag and wind
-    /// 1e-9 to 1; relative tolerance of the heat equation; a step stops after 200 iterations and warns once
+    /// 1e-9 to 1; relative tolerance of each sheet's heat equation; a step stops after 200 iterations and warns once
     float heat_tolerance;
     /// m, 0 to 1000; resolution of the drawn mesh near the front: distance of the sample points, at least 1/23 of a
     /// cell's side. Bent cells are drawn on a smooth surface. 0: flat cells, sampled at their corners and centres, as

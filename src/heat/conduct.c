@@ -10,7 +10,8 @@
 // preconditioner (Hestenes & Stiefel 1952): floats, sums in double by fixed blocks. Temperature differences are formed
 // before summation, so that the size of absolute temperatures costs no digits. Stops when the residual, in the norm of
 // the inverse diagonal, is below `tolerance` times that of D (T* - T_amb), or after 200 iterations; then the step is
-// counted as unconverged.
+// counted as unconverged. Nothing flows between sheets, so that the equations of each may be scaled: with several they
+// are, by the norm of its own right-hand side. So a sheet is as exact beside a hot and heavy one as alone.
 //
 // The new temperature is then T = T* - dt D^-1 L (T* + e). The flow from i to j is minus that from j to i to the last
 // bit, so sum D T is conserved whatever the tolerance. An increment below a float's last digit would be lost, always in
@@ -56,6 +57,10 @@ static inline HeatLanes conduct_inflow(const HeatMatrix *matrix, const float *x,
 /// The end of the slice that begins at particle i, in a group that ends at `last`.
 static inline uint32_t conduct_slice_end(uint32_t i, uint32_t last) {
     return last - i < HEAT_ROWS ? last : i + HEAT_ROWS;
+}
+
+static inline double conduct_weight(const HeatPass *pass, uint32_t i) {
+    return pass->plan->weight[pass->shell->matter.sheet[i]];
 }
 
 /// Residual and norm of the right-hand side at the start, and the range of T*.
@@ -129,7 +134,7 @@ static void conduct_product(void *context, int begin, int end) {
                 HeatLanes inflow = conduct_inflow(&plan->matrix, plan->search, i);
                 for (uint32_t row = 0; i < next; i++, row++) {
                     plan->product[i] = plan->measure[i] * plan->search[i] - pass->dt * inflow[row];
-                    sum += (double)plan->product[i] * plan->search[i];
+                    sum += conduct_weight(pass, i) * plan->product[i] * plan->search[i];
                 }
             }
         }
@@ -150,12 +155,32 @@ static void conduct_advance(void *context, int begin, int end) {
             for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) {
                 plan->correction[i] += pass->step_length * plan->search[i];
                 float r = plan->residual[i] -= pass->step_length * plan->product[i];
-                sum += (double)r * r * plan->matrix.inverse[i];
+                sum += conduct_weight(pass, i) * r * r * plan->matrix.inverse[i];
             }
         }
 
         plan->partial[block][0] = sum;
     }
+}
+
+/// Weighs several sheets by the norms of their right-hand sides. Returns the residual of all at the start.
+static double conduct_weigh(const HeatPass *pass) {
+    HeatPlan *plan = pass->plan;
+    const uint16_t *sheet = pass->shell->matter.sheet;
+    const float ambient = plan->settings.ambient_temperature;
+    double residual = 0;
+    for (uint32_t s = 0; s < plan->sheets; s++) plan->weight[s] = 0;
+    for (uint32_t g = 0; g < plan->rest.groups; g++)
+        for (uint32_t i = g * HEAT_GROUP; plan->rest.awake[0][g] && i < heat_group_last(plan, g); i++) {
+            const double b = (double)(plan->measure[i] * (plan->star[i] - ambient));
+            plan->weight[sheet[i]] += b * b * (double)plan->matrix.inverse[i];
+        }
+
+    for (uint32_t s = 0; s < plan->sheets; s++) plan->weight[s] = plan->weight[s] > 1e-300 ? 1 / plan->weight[s] : 0;
+    for (uint32_t g = 0; g < plan->rest.groups; g++)
+        for (uint32_t i = g * HEAT_GROUP; plan->rest.awake[0][g] && i < heat_group_last(plan, g); i++)
+            residual += conduct_weight(pass, i) * plan->residual[i] * plan->residual[i] * plan->matrix.inverse[i];
+    return residual;
 }
 
 static void conduct_settle(void *context, int begin, int end) {
@@ -212,6 +237,7 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
     HeatPlan *plan = pass->plan;
     heat_blocks(pass, conduct_start);
     double residual = heat_sum(plan, 0), whole = heat_sum(plan, 1), tolerance = plan->settings.tolerance;
+    plan->weight[0] = 1;
 
     // range of T*; a value that is not finite fails the step
     double min = INFINITY, max = 0;
@@ -232,6 +258,11 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
     pass->slack = tolerance * fmax(max - min, 0) + 1e-6 * max; // the tolerance, and rounding
 
     // conjugate gradients for the correction
+    if (plan->sheets > 1) {
+        residual = conduct_weigh(pass);
+        whole = 1;
+    }
+
     double enough = tolerance * tolerance * whole;
     pass->direction = 0;
     pass->turn = 0;

@@ -76,7 +76,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
     if (!NEW(memory, plan->thickening, plan->sheets) || !NEW(memory, plan->measure, n) ||
         !NEW(memory, plan->conductance, plan->springs) || !NEW(memory, plan->spring_alive, plan->springs) ||
         !NEW(memory, plan->alive, n) || !(plan->scratch = memory_new(memory, plan->scratch_size, 1)) ||
-        !NEW(memory, plan->partial, (size_t)plan->blocks)) {
+        !NEW(memory, plan->partial, (size_t)plan->blocks) || !NEW(memory, plan->weight, plan->sheets)) {
         heat_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
@@ -191,6 +191,7 @@ void heat_plan_free(Memory *memory, HeatPlan *plan) {
     FREE(memory, plan->alive, n);
     memory_free(memory, (void *)&plan->scratch, plan->scratch_size, 1);
     FREE(memory, plan->partial, (size_t)plan->blocks);
+    FREE(memory, plan->weight, plan->sheets);
     FREE(memory, plan, 1);
 }
 

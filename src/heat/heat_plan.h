@@ -103,6 +103,7 @@ struct HeatPlan {
     float *residual, *search, *product;
     float *next;          ///< the new temperature, K
     double (*partial)[4]; ///< [blocks]
+    double *weight;       ///< [sheets] of their residuals in the sum of all
 };
 
 #define HEAT_SMOTHERED 2.0f

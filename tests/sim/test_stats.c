@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 TEST(ledgers_close) {
     Scene scene = scene_make(NULL, 20);
@@ -77,6 +78,53 @@ TEST(energies_are_accounted_for) {
     print_message("a strip: weight gave %.3g J, springs held %.3g J, lost %.3g J\n", passed, elastic, lost);
     assert_true(elastic > 0.98 * passed && lost < 0.01 * passed);
     singe_sim_destroy(sim);
+}
+
+/// A light sheet's heat spreads beside a heavy one of 10,000 K as it does alone.
+TEST(a_hot_sheet_does_not_blur_another) {
+    enum { PACES = 2, CELLS = 24 };
+    static const float paces[PACES] = {50, 200};
+    float *alone[PACES] = {NULL};
+    for (int run = 0; run < 2 * PACES; run++) {
+        SingeSimDef def = singe_default_sim();
+        def.pace = paces[run % PACES];
+        SingeMaterialDef light = singe_default_material(), heavy = singe_default_material();
+        light.mass_rate = heavy.mass_rate = singe_param(0);
+        light.grammage = singe_param(0.02f), heavy.grammage = singe_param(2);
+        light.temperature =
+            singe_param_field(293.15f, 443.15f, &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.02f, 2, 3}});
+        heavy.temperature =
+            singe_param_field(5000, 10000, &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.02f, 2, 4}});
+
+        SingeSim *sim;
+        SingeSheetId id;
+        assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+        for (int sheet = 0; sheet < (run < PACES ? 1 : 2); sheet++) {
+            TestMesh mesh = test_grid(CELLS, CELLS, 0.0025f, 0.0025f);
+            test_mesh_move(&mesh, 0, 0, (float)sheet);
+            SingeSheetDef added = test_sheet(&mesh);
+            added.material = sheet ? heavy : light;
+            test_ok(sim, singe_sim_add_sheet(sim, &added, &id));
+            test_mesh_free(&mesh);
+        }
+        test_ok(sim, singe_sim_commit(sim));
+        test_steps(sim, 10);
+
+        const SingeView view = singe_sim_view(sim);
+        const uint32_t count = (CELLS + 1) * (CELLS + 1);
+        if (run < PACES) {
+            alone[run] = malloc(count * sizeof *alone[run]);
+            memcpy(alone[run], view.temperature, count * sizeof *alone[run]);
+        } else {
+            double worst = 0;
+            for (uint32_t v = 0; v < count; v++)
+                worst = fmax(worst, (double)fabsf(view.temperature[v] - alone[run % PACES][v]));
+            print_message("pace %g: off by %.2g K\n", (double)def.pace, worst);
+            assert_true(worst < 5e-3);
+            free(alone[run % PACES]);
+        }
+        singe_sim_destroy(sim);
+    }
 }
 
 /// Cells as bad as they come burn away, and nothing is ever colder than the air.

@@ -198,7 +198,8 @@ export interface SimOptions {
     ambient_temperature?: number;
     /** kg/m3, 0 to 1000; for drag and wind */
     air_density?: number;
-    /** 1e-9 to 1; relative tolerance of the heat equation; a step stops after 200 iterations and warns once */
+    /** 1e-9 to 1; relative tolerance of each sheet's heat equation; a step stops after 200 iterations and warns
+     *  once */
     heat_tolerance?: number;
     /** m, 0 to 1000; resolution of the drawn mesh near the front: distance of the sample points, at least 1/23 of a
      *  cell's side. Bent cells are drawn on a smooth surface. 0: flat cells, sampled at their corners and centres,
