@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Runs the samples: each must print what its first comment says, and be short. With --python those in Python, whose first
-comments are those of their twins in C; with --scenes the scenes, a frame of each, without a warning.
+"""Runs the samples: each must print what its first comment says, and be short. With --python those in Python, whose
+first comments are those of their twins in C; with --scenes the scenes, a frame of each, without a warning.
 
 usage: check.py FOLDER_OF_PROGRAMS NAME...
        check.py --python            needs numpy; the environment names the package and its library

@@ -94,7 +94,8 @@ class Convert(Case):
             header, body = file.read().split(b"end_header\n", 1)
         names = re.findall(r"property (float|int) (\w+)", header.decode())
         count = int(re.search(rb"element vertex (\d+)", header).group(1))
-        rows = list(struct.iter_unpack("<" + "".join(kind[0] for kind, _ in names), body[: 100 * count]))
+        row = struct.Struct("<" + "".join(kind[0] for kind, _ in names))
+        rows = list(row.iter_unpack(body[: row.size * count]))
         return header, count, {name: [row[i] for row in rows] for i, (_, name) in enumerate(names)}
 
     def test_glb_holds_the_cache(self):

@@ -5,9 +5,10 @@ In Houdini's Python Shell, with this package installed for Houdini's Python (`hy
     import singe.houdini
     singe.houdini.make_asset("singe_burn.hda")
 
-makes and installs the asset *Singe Burn*. Its first input is the sheet, polygons of any number of corners; the point group
-`match` is lit, and `held` stays where it is. The second input is what sheets rest on, a closed mesh. docs/houdini.md has the
-parameters. Only what SideFX documents of `hou` is called, and tests/python/test_houdini.py holds it against a stand-in.
+makes and installs the asset *Singe Burn*. Its first input is the sheet, polygons of any number of corners; the point
+group `match` is lit, and `held` stays where it is. The second input is what sheets rest on, a closed mesh.
+docs/houdini.md has the parameters. Only what SideFX documents of `hou` is called, and tests/python/test_houdini.py
+holds it against a stand-in.
 """
 
 from __future__ import annotations

@@ -172,7 +172,7 @@ class _Reader:
         raise _fault(path, f"a {kind}, and nothing at or below it is {what}")
 
     def _expand_instancers(self, path: str) -> None:
-        """Point instancers at or below a path get a prim for each copy, in the session layer: the file stays as it is."""
+        """Point instancers at or below a path get a prim for each copy, in the session layer, not in the file."""
         kind = self.pxr.UsdGeom.PointInstancer
         done: List[str] = []
         while True:
@@ -580,9 +580,10 @@ def scene(stage: Path, folder: Path, sheets: Sequence[str], *, colliders: Sequen
           fire: Sequence[str] = (), also: Optional[Path] = None) -> pathlib.Path:
     """Writes a scene of a stage into a folder, and returns the path of its file: NAME.yaml for NAME.usda.
 
-    sheets, colliders: paths of prims; every mesh at or below one is a sheet or a collider of its own, as is each copy of
-    a point instancer, and a Sphere, Cube, Capsule or Plane is a collider. fire: paths of prims that are hot balls of 1200 K, as a null that stands where
-    the match is. also: a file with further keys of the scene, such as `pace` or `pins`, which is copied behind.
+    sheets, colliders: paths of prims; every mesh at or below one is a sheet or a collider of its own, as is each copy
+    of a point instancer, and a Sphere, Cube, Capsule or Plane is a collider. fire: paths of prims that are hot balls of
+    1200 K, as a null that stands where the match is. also: a file with further keys of the scene, such as `pace` or
+    `pins`, which is copied behind.
 
     FormatError has the path of the prim. What was read otherwise than it looks in the stage is logged as a warning.
     """

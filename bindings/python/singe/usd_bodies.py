@@ -1,9 +1,9 @@
-"""Sheets as deformable bodies of OpenUSD, by the proposed schema: OpenUSD-proposals, pull request 111, at commit 63c74d79.
+"""Sheets as deformable bodies of OpenUSD, by a proposed schema: OpenUSD-proposals, pull request 111, commit 63c74d79.
 
     python3 -m singe.usd_bodies out/letter --frame 24 -o letter.usda
 
-writes the sheets of a frame as bodies that another simulator takes on, such as Newton 1.8. `singe.usd` reads such bodies
-as sheets. OpenUSD does not have these schemas yet, so they are read and written by name. Needs PyPI's usd-core.
+writes the sheets of a frame as bodies that another simulator takes on, such as Newton 1.8. `singe.usd` reads such
+bodies as sheets. OpenUSD does not have these schemas yet, so they are read and written by name. Needs PyPI's usd-core.
 """
 
 from __future__ import annotations
@@ -161,8 +161,8 @@ def write(cache: Cache, path: Path, frame: int = -1) -> None:
     """Writes the sheets of a cache's frame as deformable bodies: a .usda in metres, kilograms and z up.
 
     Each sheet is a mesh of triangles with positions, velocities, its shape at rest, the mass that the fire has left of
-    each vertex, and the bending stiffness of its material. Its thickness is the distance that contact keeps. Its stretch
-    is left to the simulator: our sheets do not stretch.
+    each vertex, and the bending stiffness of its material. Its thickness is the distance that contact keeps. Its
+    stretch is left to the simulator: our sheets do not stretch.
     """
     shot = cache[frame]
     scene = cache.scene
