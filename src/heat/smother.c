@@ -104,9 +104,10 @@ static void smother_particles(void *context, int begin, int end) {
 
 void heat_smother(HeatPass *pass) {
     HeatSmother *smother = &pass->plan->smother;
+    if (smother->count == 0) return;
     bool burns = false;
     for (uint32_t i = 0; i < pass->plan->particles && !burns; i++) burns = pass->state->burn->release[i] > 0;
-    if (smother->count == 0 || !burns) return;
+    if (!burns) return;
 
     pool_for(pass->pool, (int)smother->count, POOL_BLOCK, smother_balls, pass);
     smother->cube = 0;
