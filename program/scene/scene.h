@@ -442,7 +442,7 @@ bool scene_looks_alike(SceneWhole scene, SceneWhole before);
 /// The camera at a time: it follows its path smoothly.
 void scene_camera(const Scene *scene, double time, PreviewCamera *camera);
 
-/// Places a camera that is not given so that all sheets, at their start, fill the picture. If that is more than 10 km
+/// Places a camera that is not given so that all sheets, at their start, and their flames fill the picture. If that is more than 10 km
 /// from the origin, the camera keeps its default position.
 void scene_frame(Scene *scene, const SceneAssets *assets);
 

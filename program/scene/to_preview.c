@@ -147,14 +147,20 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
             box.low[v % 3] = fmin(box.low[v % 3], x);
             box.high[v % 3] = fmax(box.high[v % 3], x);
         }
-    double size = 0;
+    double size = 0, longest = 0;
 
-    for (int i = 0; i < 3; i++) size += box.high[i] - box.low[i];
+    for (int i = 0; i < 3; i++) {
+        size += box.high[i] - box.low[i];
+        longest = fmax(longest, box.high[i] - box.low[i]);
+    }
+
     if (!isfinite(size) || !(size > 0)) return;
 
-    // as far back as the corners of the box need, with a margin of 15 %
     double back[3], right[3], top[3], distance = 0;
     camera_look(&box, camera->up, back, right, top);
+    if (scene->source_count) box.high[2] += 0.3 * longest; // for flames
+
+    // as far back as the corners of the box need, with a margin of 15 %
     double half = tan(0.5 * (double)camera->fov), aspect = (double)scene->preview.size[0] / scene->preview.size[1];
 
     for (int corner = 0; corner < 8; corner++) {
