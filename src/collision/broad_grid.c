@@ -185,9 +185,13 @@ static void pair_block(void *context, BlockList *list, int block) {
     block_list_end(&writer);
 }
 
+static void note_first(void *context, const void *item, uint32_t number) {
+    memcpy(&((const Find *)context)->plan->around[number], item, sizeof(uint32_t)); // CollisionPair.a
+}
+
 static void keep_pair(void *context, const void *item, uint32_t number) {
-    const Find *find = context;
-    memcpy(&find->plan->pairs[number], item, sizeof(CollisionPair));
+    CollisionPlan *plan = ((const Find *)context)->plan;
+    memcpy(&plan->pairs[plan->active[number]], item, sizeof(CollisionPair));
 }
 
 static int grid_blocks(const CollisionPlan *plan) {
@@ -244,7 +248,17 @@ SingeResult broad_grid_pairs(Memory *memory, CollisionPlan *plan, const Shell *s
 
 void broad_grid_keep(CollisionPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room) {
     Find find = {plan, shell};
-    int blocks = grid_blocks(plan);
-    plan->pair_count = block_list_settle(&plan->found_pairs, pool, blocks, count, room, pair_block, &find);
-    block_list_read(&plan->found_pairs, pool, blocks, plan->pair_count, keep_pair, &find);
+    const int blocks = grid_blocks(plan);
+    uint32_t *first = plan->around_first;
+    const uint32_t kept = block_list_settle(&plan->found_pairs, pool, blocks, count, room, pair_block, &find);
+    block_list_read(&plan->found_pairs, pool, blocks, kept, note_first, &find);
+
+    // sort them by their first cell
+    memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
+    for (uint32_t k = 0; k < kept; k++) first[plan->around[k] + 2]++;
+    for (uint32_t c = 0; c < plan->cell_count; c++) first[c + 2] += first[c + 1];
+    for (uint32_t k = 0; k < kept; k++) plan->active[k] = first[plan->around[k] + 1]++;
+    block_list_read(&plan->found_pairs, pool, blocks, kept, keep_pair, &find);
+    plan->around_search = UINT64_MAX;
+    plan->pair_count = kept;
 }
