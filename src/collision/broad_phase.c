@@ -100,7 +100,6 @@ static void sweep_boxes(void *task, int begin, int end) {
 // ---- the search
 
 SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool) {
-    enum { TRIALS = 5 };
     Find find = {plan, shell};
     plan->listed_count = plan->pair_count = plan->repulsion_count = 0; // repulsions name pairs
     plan->restless = 0;
@@ -125,6 +124,10 @@ SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell
 
     // a step that is not finite, as with positions that overflow, gets the fewest
     plan->steps = step * COLLISION_STEPS < max ? COLLISION_STEPS : step * 2 <= max ? (uint32_t)(max / step) : 2;
+
+    // and at most twice as many as the last search has served: where layers land on each other, boxes for more list pairs
+    // that nothing comes of
+    if (plan->lasted < plan->steps / 2) plan->steps = plan->lasted > 0 ? 2 * plan->lasted : 1;
     if (plan->h < plan->time_step) plan->steps = 1; // a part of a step
 
     // boxes; a vertex is owned by its lowest cell
@@ -134,14 +137,12 @@ SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell
 
     // pairs whose swept boxes meet; where they are too crowded, search less far
     uint64_t count;
-    plan->slack = plan->slack_max;
-
-    for (int trial = 1;; trial++) {
+    for (;; plan->narrowed++) {
+        plan->slack = plan->slack_max / (float)(1 << plan->narrowed);
         plan->reach = plan->thickness + plan->slack;
         pool_for(pool, (int)plan->cell_count, 512, sweep_boxes, &find);
         TRY(broad_grid_pairs(memory, plan, shell, pool, &count));
-        if (count + plan->cell_count <= plan->sizes.pair_budget || trial == TRIALS) break;
-        plan->slack *= 0.5f;
+        if (count + plan->cell_count <= plan->sizes.pair_budget || plan->narrowed + 1 == COLLISION_TRIALS) break;
     }
 
     if (!collision_grow_pairs(memory, plan, count + plan->cell_count)) return SINGE_ERROR_MEMORY;

@@ -160,7 +160,7 @@ static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float
         }
 
         for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = ccd->cell_flags[c] & SINGE_ALIVE;
-        plan->step = state->step;
+        collision_search_again(plan, state->step);
         ccd->time = h;
         TRY(broad_search(ccd->memory, plan, ccd->shell, pool));
         plan->work += plan->pair_count;

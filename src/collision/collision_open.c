@@ -8,6 +8,7 @@
 #include "collision/narrow_phase.h"
 #include "collision/feature_distance.h"
 
+#include <math.h>
 #include <string.h>
 
 /// m/s at which points that are too near move apart.
@@ -116,6 +117,27 @@ static float target(const Opening *job, const CollisionPair *pair, const Look *l
     return parted < thickness ? parted : thickness;
 }
 
+/// The nearest 16-bit numbers; the largest weight of each cell takes what is left to their sum.
+static void write_repulsion(const CollisionPlan *plan, const CollisionPair *pair, const NearFeatures *near, float keep,
+                            Repulsion *out) {
+    float weight[2][4] = {{0}};
+    collision_weights(near->kind, near->first, near->second, near->u, near->v, weight[0], weight[1]);
+    out->a = pair->a;
+    out->b = pair->b;
+    for (int c = 0; c < 2; c++) {
+        int left = REPULSION_ONE, largest = 0;
+        for (int i = 0; i < 4; i++) {
+            out->weight[c][i] = (uint16_t)(REPULSION_ONE * (weight[c][i] > 0 ? weight[c][i] : 0) + 0.5f);
+            left -= out->weight[c][i];
+            if (weight[c][i] > weight[c][largest]) largest = i;
+        }
+        out->weight[c][largest] = (uint16_t)(out->weight[c][largest] + left);
+    }
+
+    for (int d = 0; d < 3; d++) out->normal[d] = (int16_t)lrintf(REPULSION_UNIT * near->separation[d] / near->distance);
+    out->target = (uint16_t)(REPULSION_FULL * (keep / plan->thickness));
+}
+
 static void node_velocities(const Opening *job, uint32_t cell, Float4 speed[5]) {
     for (int i = 0; i < 4; i++) speed[i] = float4_load(job->dynamics->velocity[job->shell->cells[cell][i]]);
     speed[4] = 0.25f * ((speed[0] + speed[1]) + (speed[2] + speed[3]));
@@ -160,8 +182,7 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
         Repulsion *found = keep > 0 ? block_list_add(writer) : NULL;
         if (!found) continue;
 
-        *found = (Repulsion){k, near[i].kind, near[i].first, near[i].second, near[i].u, near[i].v, {0}, keep};
-        for (int d = 0; d < 3; d++) found->normal[d] = near[i].separation[d] / near[i].distance;
+        write_repulsion(plan, pair, &near[i], keep, found);
     }
 }
 
@@ -205,8 +226,8 @@ static void look_block(void *context, BlockList *list, int block) {
 // ---- repulsions
 
 static void keep_repulsion(void *context, const void *item, uint32_t number) {
-    const Opening *job = context;
-    memcpy(&job->plan->repulsions[number], item, sizeof(Repulsion));
+    CollisionPlan *plan = ((const Opening *)context)->plan;
+    memcpy(&plan->repulsions[plan->stripe_count > 0 ? plan->active[number] : number], item, sizeof(Repulsion));
 }
 
 /// A step has parts from PARTS_FROM on, as many as leave PARTS_MOTION for each, up to COLLISION_PARTS. The numbers are the
@@ -268,7 +289,7 @@ static SingeResult open_step(Memory *memory, CollisionPlan *plan, const Shell *s
         }
 
         for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = state->ablate->cell_flags[c] & SINGE_ALIVE;
-        plan->step = state->step;
+        collision_search_again(plan, state->step);
         TRY(broad_search(memory, plan, shell, pool));
         memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
     }
@@ -287,9 +308,11 @@ static SingeResult open_step(Memory *memory, CollisionPlan *plan, const Shell *s
     job.again = true;
     plan->repulsion_count = block_list_settle(list, pool, blocks, count, plan->repulsion_capacity, look_block, &job);
     plan->counters.dropped += count - plan->repulsion_count;
+    plan->stripe_count = 0;
     block_list_read(list, pool, blocks, plan->repulsion_count, keep_repulsion, &job);
-    plan->counters.pairs += plan->listed_count;
     repulsion_sort(plan, shell, (const float(*)[4])dynamics->position);
+    if (plan->stripe_count > 0) block_list_read(list, pool, blocks, plan->repulsion_count, keep_repulsion, &job);
+    plan->counters.pairs += plan->listed_count;
     return SINGE_OK;
 }
 

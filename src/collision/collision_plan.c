@@ -110,6 +110,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     plan->vertex_count = shell->vertex_count;
     plan->cell_count = shell->cell_count;
     plan->sizes = *sizes;
+    plan->lasted = COLLISION_STEPS;
     plan->pair_capacity = sizes->pairs;
     plan->repulsion_capacity = sizes->repulsions;
     plan->entry_capacity = COLLISION_ENTRIES * plan->cell_count + COLLISION_LIST_BEGIN;
@@ -191,6 +192,8 @@ SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const She
     if (stream->mode == STREAM_READ) plan->kept.current = false;
     STREAM(stream, plan->searched);
     STREAM(stream, plan->restless);
+    STREAM(stream, plan->lasted);
+    STREAM(stream, plan->narrowed);
     STREAM(stream, plan->step);
     stream_data(stream, plan->position, plan->vertex_count * sizeof *plan->position);
     stream_data(stream, plan->speed, plan->vertex_count * sizeof *plan->speed);
@@ -216,7 +219,9 @@ SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const She
     if (stream->mode != STREAM_READ) return SINGE_OK;
 
     // whether the data read back may be that of a search; cells that are alive now were alive then
-    if (plan->searched > 1 || plan->restless > 2 * COLLISION_PARTS) stream->failed = true;
+    if (plan->searched > 1 || plan->restless > 2 * COLLISION_PARTS || plan->lasted > COLLISION_STEPS ||
+        plan->narrowed >= COLLISION_TRIALS)
+        stream->failed = true;
     for (uint32_t v = 0; v < plan->vertex_count; v++)
         for (int k = 0; k < 3; k++)
             if (!isfinite(plan->position[v][k]) || !isfinite(plan->speed[v][k])) stream->failed = true;
@@ -252,6 +257,8 @@ void collision_plan_keep(CollisionPlan *plan) {
     plan->kept.current = true;
     plan->kept.searched = plan->searched;
     plan->kept.restless = plan->restless;
+    plan->kept.lasted = plan->lasted;
+    plan->kept.narrowed = plan->narrowed;
     plan->kept.step = plan->step;
     plan->kept.counters = plan->counters;
 }
@@ -260,6 +267,8 @@ void collision_plan_restore(Memory *memory, CollisionPlan *plan, const Shell *sh
     if (!plan->kept.current) copy_search(plan, true);
     plan->searched = plan->kept.searched;
     plan->restless = plan->kept.restless;
+    plan->lasted = plan->kept.lasted;
+    plan->narrowed = plan->kept.narrowed;
     plan->step = plan->kept.step;
     plan->h = plan->time_step;
     plan->closed = false;
@@ -384,14 +393,12 @@ const char *collision_validate(const CollisionPlan *plan) {
 
     for (uint32_t k = 0; k < plan->repulsion_count; k++) {
         const Repulsion *repulsion = &plan->repulsions[k];
-        const bool edges = repulsion->kind == COLLISION_EDGES;
-        if (repulsion->pair >= plan->listed_count) return "a repulsion is of a pair";
-        if (repulsion->kind > COLLISION_EDGES || repulsion->first >= (edges ? 8 : 5) ||
-            repulsion->second >= (edges ? 8 : 4))
-            return "a repulsion is of features";
-        if (!(repulsion->u >= -1e-4f && repulsion->v >= -1e-4f && repulsion->u <= 1.0001f && repulsion->v <= 1.0001f))
-            return "a repulsion's points are on its features";
-        if (!isfinite(repulsion->target)) return "a repulsion has a target";
+        if (repulsion->a >= repulsion->b || repulsion->b >= plan->cell_count) return "a repulsion is of cells in order";
+        for (int c = 0; c < 2; c++) {
+            const uint16_t *weight = repulsion->weight[c];
+            if (weight[0] + weight[1] + weight[2] + weight[3] != REPULSION_ONE)
+                return "a repulsion's points are on its cells";
+        }
     }
 
     return NULL;

@@ -9,6 +9,8 @@
 
 /// Max steps that a search is valid for; it is repeated earlier if cells move differently.
 enum { COLLISION_STEPS = 10 };
+/// Max slacks that a search tries.
+enum { COLLISION_TRIALS = 5 };
 /// Buckets, pairs or cells in one work item of a thread.
 enum { COLLISION_BUCKETS = 128, COLLISION_BLOCK = 256, COLLISION_OUTSIDE = 16 };
 /// The bound of CCD's work in a step: COLLISION_WORK per cell and COLLISION_WORK_MIN. A second or so for a few thousand
@@ -76,14 +78,15 @@ typedef struct CollisionPair {
 
 _Static_assert(sizeof(CollisionPair) == 24, "five words and three bytes a pair");
 
-/// Two points of a pair, near as a step opens, that are to be at least `target` apart along `normal`.
+/// Two points of two cells, near as a step opens, that are to be at least `target` apart along `normal`, in 16 bits a
+/// number: lists are long, and every pass of a substep reads them.
 typedef struct Repulsion {
-    uint32_t pair;
-    uint8_t kind, first, second; ///< as in a CollisionPair
-    float u, v;                  ///< weights of the triangle's second and third node, or shares of the edges
-    float normal[3];             ///< from the point of b to that of a
-    float target;                ///< m
+    uint32_t a, b;
+    uint16_t weight[2][4]; ///< of the corners of a and of b, whose sums are REPULSION_ONE
+    int16_t normal[3];     ///< from the point of b to that of a, REPULSION_UNIT long
+    uint16_t target;       ///< of plan->thickness, REPULSION_FULL
 } Repulsion;
+enum { REPULSION_ONE = 1 << 15, REPULSION_UNIT = 32767, REPULSION_FULL = 65535 };
 
 _Static_assert(sizeof(Repulsion) == 32, "lists are long");
 
@@ -135,6 +138,8 @@ struct CollisionPlan {
     /// 1: many cells have left their boxes since: search as the next step opens. More, up to 2 COLLISION_PARTS: so too,
     /// by velocities, and that step has half as many parts at least
     uint32_t restless;
+    uint32_t lasted;      ///< steps for which the search before it has served, at most COLLISION_STEPS
+    uint32_t narrowed;    ///< how often it has halved the slack, less than COLLISION_TRIALS
     uint64_t step;        ///< it was for displacements from this step's start
     float (*position)[4]; ///< [vertices] m
     float (*speed)[4];    ///< [vertices] m/s
@@ -148,7 +153,7 @@ struct CollisionPlan {
     // the same as it was before the step, for one that fails; arrays are copied after a search alone
     struct {
         bool current; ///< the arrays are those of the last search
-        uint32_t searched, restless;
+        uint32_t searched, restless, lasted, narrowed;
         uint64_t step;
         float (*position)[4], (*speed)[4];
         uint8_t *alive;
@@ -175,7 +180,7 @@ struct CollisionPlan {
     uint32_t *bucket_first;  ///< [bucket_count + 2]
     CollisionPair *pairs;    ///< [pair_capacity]
     Repulsion *repulsions;   ///< [repulsion_capacity]
-    /// a crowd's stripes, or 0: repulsions active[stripe_first[s]] to active[stripe_first[s + 1]] are those of stripe s
+    /// a crowd's stripes, or 0: repulsions stripe_first[s] to stripe_first[s + 1] are those of stripe s
     uint32_t stripe_count, stripe_first[COLLISION_STRIPES + 2];
     uint32_t stripe_pushed[COLLISION_STRIPES]; ///< how many of them a pass has pushed apart
     BlockList found_pairs;                     ///< CollisionPair, as they are found
@@ -197,7 +202,7 @@ struct CollisionPlan {
     uint32_t *changed_list; ///< [changed_count] of them
     uint32_t changed_count;
     uint64_t work, work_max; ///< of CCD in this step: pairs checked, and features swept; and its bound
-    uint32_t *active;        ///< [hit_count] pairs that collide; before CCD, repulsions by stripes
+    uint32_t *active;        ///< [hit_count] pairs that collide; before CCD, places in lists that are sorted
     uint32_t hit_count;
     uint32_t *around_first; ///< [cells + 2] a cell's pairs are around[around_first[c]] to around[around_first[c + 1]]
     uint32_t *around;       ///< [2 pair_capacity]
@@ -211,8 +216,18 @@ struct CollisionPlan {
     CollisionCounters counters;
 };
 
-/// Sorts the repulsions of a crowd, whose vertices are at x, into stripes that threads can share.
+/// Divides a crowd, whose vertices are at x, into stripes that threads can share: plan->active says where each repulsion
+/// goes.
 void repulsion_sort(CollisionPlan *plan, const Shell *shell, const float (*x)[4]);
+
+/// Before a search for displacements from the start of this step: it follows from how the last one has served.
+static inline void collision_search_again(CollisionPlan *plan, uint64_t step) {
+    const bool known = plan->searched && step >= plan->step;
+    plan->lasted = known && step - plan->step < COLLISION_STEPS ? (uint32_t)(step - plan->step) : COLLISION_STEPS;
+    if (!known) plan->narrowed = 0;
+    else if (plan->narrowed > 0 && plan->listed_count < plan->sizes.pair_budget / 2) plan->narrowed--;
+    plan->step = step;
+}
 
 /// Finds the pairs for plan->position, speed, alive. Their distances are those at plan->position. SINGE_ERROR_MEMORY:
 /// then there are none.

@@ -25,27 +25,6 @@
 /// 2 to 5.
 enum { CROWD_FROM = 1, CROWD_PASSES = 8 };
 
-/// The vector between two points: the sum of weight x over `count` vertices.
-typedef struct Points {
-    uint32_t node[8], count;
-    float weight[8];
-} Points;
-
-/// Adds the corners of a cell; cells that are connected have some in common.
-static void points_add(Points *points, const uint32_t corner[4], const float weight[4], float sign) {
-    for (int i = 0; i < 4; i++) {
-        if (weight[i] == 0) continue;
-        uint32_t k = 0;
-        while (k < points->count && points->node[k] != corner[i]) k++;
-        if (k == points->count) {
-            points->node[points->count] = corner[i];
-            points->weight[points->count++] = 0;
-        }
-
-        points->weight[k] += sign * weight[i];
-    }
-}
-
 typedef struct Push {
     CollisionPlan *plan;
     const Shell *shell;
@@ -56,65 +35,76 @@ typedef struct Push {
     int odd;   ///< stripes
 } Push;
 
+static inline Float4 repulsion_weights(const uint16_t weight[4]) {
+    const Float4Mask whole = {weight[0], weight[1], weight[2], weight[3]};
+    return __builtin_convertvector(whole, Float4) * (1.0f / REPULSION_ONE);
+}
+
+/// The sum of weight x over the corners of two cells. Of cells that are connected, those in common count once.
+typedef struct Points {
+    uint32_t node[8];
+    float weight[8];
+} Points;
+
+/// Moves the points by `shift`, each corner according to its weight and inverse mass.
+static inline void points_move(const Points *points, float (*x)[4], Float4 shift) {
+    for (int i = 0; i < 8; i++) {
+        if (points->weight[i] == 0) continue;
+        const Float4 position = float4_load(x[points->node[i]]);
+        float4_store(x[points->node[i]], position + position[3] * points->weight[i] * shift);
+    }
+}
+
 /// Returns whether the points were too near.
 static inline bool repulsion_push(const Push *push, const Repulsion *repulsion) {
     const CollisionPlan *plan = push->plan;
     const DynamicsState *dynamics = push->dynamics;
-    float(*x)[4] = dynamics->position, wa[4] = {0}, wb[4] = {0};
-    const Float4 normal = {repulsion->normal[0], repulsion->normal[1], repulsion->normal[2], 0};
-    const CollisionPair *pair = &plan->pairs[repulsion->pair];
-    collision_weights(repulsion->kind, repulsion->first, repulsion->second, repulsion->u, repulsion->v, wa, wb);
+    float(*x)[4] = dynamics->position;
+    const Float4Mask whole = {repulsion->normal[0], repulsion->normal[1], repulsion->normal[2], 0};
+    const Float4 normal = __builtin_convertvector(whole, Float4) * (1.0f / REPULSION_UNIT);
+    const float target = (float)repulsion->target * (plan->thickness / REPULSION_FULL);
+    const uint32_t *a = push->shell->cells[repulsion->a], *b = push->shell->cells[repulsion->b];
+    const Float4 wa = repulsion_weights(repulsion->weight[0]), wb = repulsion_weights(repulsion->weight[1]);
 
-    // most points are far enough apart: by more than what rounding leaves, if the cells have corners in common
-    const uint32_t *a = push->shell->cells[pair->a], *b = push->shell->cells[pair->b];
+    // most points are far enough apart
     Float4 apart = {0};
     for (int i = 0; i < 4; i++) apart += wa[i] * float4_load(x[a[i]]);
     for (int i = 0; i < 4; i++) apart -= wb[i] * float4_load(x[b[i]]);
-    if (float4_dot(apart, normal) > 1.01f * repulsion->target) return false;
-
-    Points points;
-    points.count = 0;
-    points_add(&points, a, wa, 1);
-    points_add(&points, b, wb, -1);
-
-    // how much too near the two points are
-    Float4 separation = {0};
-    for (uint32_t i = 0; i < points.count; i++) separation += points.weight[i] * float4_load(x[points.node[i]]);
-    float height = float4_dot(separation, normal) - repulsion->target, weight = 0;
+    const float height = float4_dot(apart, normal) - target;
     if (height >= 0) return false;
 
-    for (uint32_t i = 0; i < points.count; i++) weight += points.weight[i] * points.weight[i] * x[points.node[i]][3];
-    if (weight <= 0) return false;
-
-    // move them apart along the normal
-    Float4 away = -height / weight * normal;
-    for (uint32_t i = 0; i < points.count; i++) {
-        Float4 position = float4_load(x[points.node[i]]);
-        float4_store(x[points.node[i]], position + position[3] * points.weight[i] * away);
+    Points points;
+    memcpy(points.node, a, 4 * sizeof *a), memcpy(points.node + 4, b, 4 * sizeof *b);
+    float4_store(points.weight, wa), float4_store(points.weight + 4, -wb);
+    unsigned same[4];
+    collision_same(a, b, same);
+    for (int i = 0; i < 4; i++) {
+        if (!same[i]) continue;
+        const int twin = 4 + __builtin_ctz(same[i]);
+        points.weight[i] += points.weight[twin];
+        points.weight[twin] = 0;
     }
 
+    // move them apart along the normal
+    float weight = 0;
+    for (int i = 0; i < 8; i++) weight += points.weight[i] * points.weight[i] * x[points.node[i]][3];
+    if (weight <= 0) return false;
+    points_move(&points, x, -height / weight * normal);
     if (!(plan->def.friction > 0)) return true;
 
-    // friction: take back slip across the normal, at most `max`
+    // friction: take back slip across the normal since the substep began, at most `max`
     const float max = -plan->def.friction * height;
     Float4 slip = {0};
-    for (uint32_t i = 0; i < points.count; i++) {
-        uint32_t at = points.node[i];
-        Float4 before = float4_load(push->predicted[at]) - push->h * float4_load(dynamics->velocity[at]);
+    for (int i = 0; i < 8; i++) {
+        const uint32_t at = points.node[i];
+        const Float4 before = float4_load(push->predicted[at]) - push->h * float4_load(dynamics->velocity[at]);
         slip += points.weight[i] * (float4_load(x[at]) - before);
     }
 
     slip[3] = 0;
     slip -= float4_dot(slip, normal) * normal;
-    float length = sqrtf(float4_dot(slip, slip));
-    if (!(length > 0)) return true;
-
-    Float4 back = (length <= max ? 1 : max / length) / weight * slip;
-    for (uint32_t i = 0; i < points.count; i++) {
-        Float4 position = float4_load(x[points.node[i]]);
-        float4_store(x[points.node[i]], position - position[3] * points.weight[i] * back);
-    }
-
+    const float length = sqrtf(float4_dot(slip, slip));
+    if (length > 0) points_move(&points, x, -(length <= max ? 1 : max / length) / weight * slip);
     return true;
 }
 
@@ -126,7 +116,7 @@ static void push_stripes(void *task, int begin, int end) {
         const uint32_t first = plan->stripe_first[s], last = plan->stripe_first[s + 1];
         uint32_t pushed = 0;
         for (uint32_t i = first; i < last; i++)
-            pushed += repulsion_push(push, &plan->repulsions[plan->active[push->back ? first + last - 1 - i : i]]);
+            pushed += repulsion_push(push, &plan->repulsions[push->back ? first + last - 1 - i : i]);
         plan->stripe_pushed[s] = pushed;
     }
 }
@@ -139,12 +129,12 @@ void repulsion_sort(CollisionPlan *plan, const Shell *shell, const float (*x)[4]
     // where pairs are, and how far their corners reach
     Float4 low = float4_all(INFINITY), high = -low, reach = {0};
     for (uint32_t k = 0; k < count; k++) {
-        const CollisionPair *pair = &plan->pairs[plan->repulsions[k].pair];
-        const Float4 here = float4_load(x[shell->cells[pair->a][0]]);
+        const uint32_t *a = shell->cells[plan->repulsions[k].a], *b = shell->cells[plan->repulsions[k].b];
+        const Float4 here = float4_load(x[a[0]]);
         low = float4_min(low, here);
         high = float4_max(high, here);
         for (int i = 0; i < 8; i++) {
-            const Float4 off = float4_load(x[shell->cells[i < 4 ? pair->a : pair->b][i & 3]]) - here;
+            const Float4 off = float4_load(x[i < 4 ? a[i] : b[i - 4]]) - here;
             reach = float4_max(reach, float4_max(off, -off));
         }
     }
@@ -162,10 +152,10 @@ void repulsion_sort(CollisionPlan *plan, const Shell *shell, const float (*x)[4]
     memset(first, 0, sizeof plan->stripe_first);
     for (int turn = 0; turn < 2; turn++) {
         for (uint32_t k = 0; k < count; k++) {
-            const float at = x[shell->cells[plan->pairs[plan->repulsions[k].pair].a][0]][axis];
+            const float at = x[shell->cells[plan->repulsions[k].a][0]][axis];
             const uint32_t s = (uint32_t)((at - low[axis]) / width);
             if (turn == 0) first[s + 2]++;
-            else plan->active[first[s + 1]++] = k;
+            else plan->active[k] = first[s + 1]++;
         }
         for (uint32_t s = 0; turn == 0 && s < plan->stripe_count; s++) first[s + 2] += first[s + 1];
     }

@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-enum { SNAPSHOT_VERSION = 12 };
+enum { SNAPSHOT_VERSION = 13 };
 
 typedef struct SnapshotHeader {
     char magic[8];           ///< "SINGESIM"

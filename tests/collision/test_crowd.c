@@ -206,7 +206,6 @@ TEST(stripes_share_no_vertex) {
 
     CollisionPlan *plan = sims[0]->dynamics->collision;
     const Shell *shell = &sims[0]->shell;
-    repulsion_sort(plan, shell, (const float(*)[4])sims[0]->state.dynamics.position);
     print_message("%u repulsions in %u stripes\n", plan->repulsion_count, plan->stripe_count);
     assert_true(plan->stripe_count > 4);
     assert_int_equal(plan->stripe_first[plan->stripe_count], plan->repulsion_count);
@@ -214,9 +213,9 @@ TEST(stripes_share_no_vertex) {
     memset(lowest, 0xff, shell->vertex_count * sizeof *lowest);
     for (uint32_t s = 0; s < plan->stripe_count; s++)
         for (uint32_t k = plan->stripe_first[s]; k < plan->stripe_first[s + 1]; k++) {
-            const CollisionPair *pair = &plan->pairs[plan->repulsions[plan->active[k]].pair];
+            const Repulsion *repulsion = &plan->repulsions[k];
             for (int i = 0; i < 8; i++) {
-                uint32_t *low = &lowest[shell->cells[i < 4 ? pair->a : pair->b][i & 3]];
+                uint32_t *low = &lowest[shell->cells[i < 4 ? repulsion->a : repulsion->b][i & 3]];
                 if (*low == UINT32_MAX) *low = s;
                 assert_true(s - *low <= 1);
             }
