@@ -10,6 +10,7 @@
 
 #include "cli/folder.h"
 #include "cli/text.h"
+#include "common/printable.h"
 #include "formats/formats.h"
 #include "sweep/sweep.h"
 
@@ -90,6 +91,14 @@ static char *write_job(const Sweep *sweep, JobKind kind, const char *rows, Singe
 }
 
 ExitCode sweep_submit(Sweep *sweep) {
+    // in the name of a log Slurm takes a backslash for an order to replace nothing, and then finds no such file: its jobs
+    // would fail without a word
+    if (strpbrk(sweep->folder, "\\\r\n")) {
+        console_error(sweep->console, "--slurm: expected a folder without backslashes and line breaks, got '%s'",
+                      shown_path(sweep->folder).text);
+        return EXIT_INPUT;
+    }
+
     char *rows = sweep_due_rows(sweep);
     SingeError error = {0};
     char *folder = text_format("%s/slurm", sweep->folder), id[ID_SIZE] = "";

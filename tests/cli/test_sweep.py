@@ -500,6 +500,13 @@ class Sweep(Case):
         self.assertIn("--slurm-option: expected one line", err)
         self.assertFalse(os.path.exists(self.path("s")))
 
+    def test_folders_in_which_slurm_writes_no_log_are_refused(self):
+        self.write_plan("parameters:\n  pace: [1, 2]\n")
+        for name in "back\\slash", "two\nlines":
+            _, err = self.sweep("--slurm", out=name, expect=2, env=self.fake_sbatch())
+            self.assertIn("--slurm: expected a folder without backslashes and line breaks, got", err)
+        self.assertFalse(os.path.exists(self.path("asked")))
+
     def test_slurm_refuses(self):
         self.write_plan("parameters:\n  pace: [1, 2]\n")
         self.assertIn("sbatch refused the job", self.sweep("--slurm", expect=1, env=self.fake_sbatch(1))[1])
