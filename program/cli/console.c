@@ -52,7 +52,6 @@ void console_error(Console *console, const char *format, ...) {
 }
 
 void console_warn(Console *console, const char *format, ...) {
-    if (console->quiet) return;
     va_list list;
     va_start(list, format);
     say(console, "warning", "\033[1;33m", format, list);

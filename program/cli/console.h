@@ -10,7 +10,7 @@
 #include "singe/base.h"
 
 typedef struct Console {
-    bool quiet;    ///< errors only
+    bool quiet;    ///< warnings and errors only
     bool terminal; ///< standard error is a terminal
     bool colour;
     bool line_open; ///< a progress line is on the screen

@@ -17,7 +17,7 @@ static const ArgOption convert_options[OPT_COUNT] = {
     [OPT_PLAIN] = {"plain", 0, NULL, "does not pack a single GLB: for readers without EXT_meshopt_compression"},
     [OPT_SET] = {"set", 0, "PATH=VALUE",
                  "sets a value of the scene (output.texture_size, gas.detail); may be repeated"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only warnings and errors"},
 };
 
 const ArgCommand convert_command = {

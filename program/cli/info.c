@@ -189,7 +189,7 @@ enum { OPT_KEEP_EVERY, OPT_QUIET, OPT_COUNT };
 
 static const ArgOption clean_options[OPT_COUNT] = {
     [OPT_KEEP_EVERY] = {"keep-every", 0, "N", "keeps frames N, 2N, 3N, ..., the first and the last"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only warnings and errors"},
 };
 
 const ArgCommand clean_command = {

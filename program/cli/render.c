@@ -35,7 +35,7 @@ static const ArgOption render_options[OPT_COUNT] = {
     [OPT_EXR] = {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
     [OPT_GIF] = {"gif", 0, NULL, "also writes DIR/preview.gif, of the frames that are drawn"},
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only warnings and errors"},
 };
 
 const ArgCommand render_command = {"render",

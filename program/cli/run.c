@@ -38,7 +38,7 @@ static const ArgOption run_options[OPT_COUNT] = {
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no video"},
     [OPT_EXR] = {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
     [OPT_RECORD] = {"record", 0, "FILE", "also writes a recording, which `singe replay` repeats and compares"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only warnings and errors"},
 };
 
 const ArgCommand run_command = {

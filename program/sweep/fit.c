@@ -29,7 +29,7 @@ enum { OPT_OUTPUT, OPT_THREADS, OPT_QUIET, OPT_COUNT };
 static const ArgOption fit_options[OPT_COUNT] = {
     [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the fit [out/NAME]"},
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]; the result does not depend on them"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors and the result"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only warnings, errors and the result"},
 };
 
 const ArgCommand fit_command = {"fit",

@@ -42,7 +42,7 @@ static const ArgOption sweep_options[OPT_COUNT] = {
     [OPT_MAX_RUNNING] = {"max-running", 0, "N", "with --slurm: rows at a time [no limit]"},
     [OPT_SLURM_OPTION] = {"slurm-option", 0, "TEXT", "with --slurm: an option of sbatch; may be repeated"},
     [OPT_RENDER_FRAMES] = {"render-frames", 0, "N", "with --slurm: frames that one job draws [24]"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only errors"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only warnings and errors"},
 };
 
 const ArgCommand sweep_command = {

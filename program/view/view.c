@@ -18,7 +18,7 @@ static const ArgOption view_options[OPT_COUNT] = {
     [OPT_FRAMES] = {"frames", 0, "N", "frames of the scene"},
     [OPT_THREADS] = {"threads", 0, "N", "threads of the burn [all]"},
     [OPT_PORT] = {"port", 0, "N", "port on this machine [a free one]"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only the address and errors"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only the address, warnings and errors"},
 };
 
 const ArgCommand view_command = {
