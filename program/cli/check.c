@@ -221,7 +221,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
 
     // the needs are printed before anything is built, and again when meshes have been read
     if (!code) {
-        const double pictures = pictures_available() ? scene_picture_memory(job.scene) : 0;
+        const double pictures = pictures_available() ? scene_picture_memory(job.scene, false) : 0;
         const bool unread = scene_size(job.scene, NULL).unread > 0;
         report_size(&job, NULL, pictures);
         code = job_load(&job, console, pictures);

@@ -192,6 +192,13 @@ ExitCode job_load(Job *job, Console *console, double pictures) {
     return job_tell(job, console, result, &messages);
 }
 
+ExitCode job_fits(Job *job, Console *console, double pictures) {
+    SceneMessages messages = {0};
+    const double wanted = scene_size(job->scene, &job->assets).memory + pictures;
+    const bool fits = scene_fits(job->scene, &job->assets, wanted, machine_memory(), &messages);
+    return job_tell(job, console, fits ? SINGE_OK : SINGE_ERROR_LIMIT, &messages);
+}
+
 ExitCode job_open(Job *job, Console *console, const char *scene_path, const SetList *sets, int threads) {
     ExitCode code = job_read(job, console, scene_path, sets, threads);
     return code ? code : job_load(job, console, 0);

@@ -48,7 +48,10 @@ char *job_recorded_path(const char *folder);
 /// Says that FOLDER/run.json, at `path`, is damaged or something else.
 void job_refuse_record(Console *console, const char *path);
 
-/// Reads the scene in a run's record, FOLDER/run.json.
+/// Refuses a job that has been read, and closes it, if the machine has too little memory to draw it as well.
+ExitCode job_fits(Job *job, Console *console, double pictures);
+
+/// Reads the scene in a run's record, FOLDER/run.json, and its files, without the memory of pictures.
 ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads);
 
 /// Prints which meshes were read and how they were repaired.

@@ -229,6 +229,7 @@ int command_render(int argc, char **argv) {
         Console console = console_make(options.quiet);
         Render render = {.console = &console, .options = &options, .lock = LOCK_NONE};
         code = job_reopen(&render.job, &console, options.folder, &options.sets, options.threads);
+        if (!code) code = job_fits(&render.job, &console, scene_picture_memory(render.job.scene, options.exr));
         if (!code) {
             render.folder = folder_name(options.folder, render.job.scene->name);
             render.drawn = folder_name(options.output ? options.output : options.folder, render.job.scene->name);

@@ -311,8 +311,9 @@ int command_run(int argc, char **argv) {
         code = EXIT_INPUT;
         if (recorded) code = job_reopen(&run.job, &console, folder, &options.sets, options.threads);
         else if (scene) code = job_read(&run.job, &console, scene, &options.sets, options.threads);
-        const bool drawn = !options.no_preview && pictures_available();
-        if (!code && !recorded) code = job_load(&run.job, &console, drawn ? scene_picture_memory(run.job.scene) : 0);
+        const bool drawn = !code && !options.no_preview && pictures_available();
+        const double pictures = drawn ? scene_picture_memory(run.job.scene, options.exr) : 0;
+        if (!code) code = (recorded ? job_fits : job_load)(&run.job, &console, pictures);
         if (!code && options.record) code = recording_open(&run.recording, options.record, &console);
         run.job.hooks.record = recording_hook(&run.recording);
         if (!code) code = run_scene(&run, &options);

@@ -14,9 +14,11 @@
 static const double cell_bytes = 3.6e3, contact_bytes = 3.2e3;
 /// Gas: bytes per cell, default and max number of cells, and the margin around and below the sheets, m.
 static const double gas_bytes = 160, gas_cells_usual = 200e3, gas_cells_max = 2e6, gas_margin = 0.045;
-/// Bytes per pixel: of the drawn picture, of a sheet's picture, of a parameter's texture while it is read, and of a
-/// heightfield, simulated and drawn (measured with 1 and 9 million pixels: 42 to 45 and 300 to 330).
-static const double pixel_bytes = 80, picture_bytes = 3, texture_bytes = 7, height_bytes = 45, drawn_height_bytes = 300;
+/// Bytes per pixel: of the drawn picture and of its layers while they are written (measured with 4 and 17 million pixels:
+/// 153 to 160 and 158 to 165), of a sheet's picture, of a parameter's texture while it is read, and of a heightfield,
+/// simulated and drawn (measured with 1 and 9 million pixels: 42 to 45 and 300 to 330).
+static const double pixel_bytes = 160, layer_bytes = 165, picture_bytes = 3, texture_bytes = 7, height_bytes = 45,
+                    drawn_height_bytes = 300;
 /// Of a triangle of a mesh that is drawn in place of a sheet.
 static const double render_bytes = 600;
 static const double program_bytes = 40e6;
@@ -117,8 +119,9 @@ SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
     return size;
 }
 
-double scene_picture_memory(const Scene *scene) {
-    double memory = pixel_bytes * (double)scene->preview.size[0] * (double)scene->preview.size[1];
+double scene_picture_memory(const Scene *scene, bool layers) {
+    const double pixels = (double)scene->preview.size[0] * (double)scene->preview.size[1];
+    double memory = (pixel_bytes + (layers ? layer_bytes : 0)) * pixels;
     for (uint32_t i = 0; i < scene->collider_count; i++)
         if (scene->colliders[i].visible) memory += drawn_height_bytes * height_pixels(&scene->colliders[i]);
     return memory;
@@ -158,7 +161,7 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
     if (wanted > 2 * scene_size(scene, assets).memory) {
         message_add(messages, scene->text, (SceneLocation){0},
                     "the scene needs about %s of memory, and there are %s: give its pictures fewer pixels than %d x %d "
-                    "(preview.size), or run it with --no-preview",
+                    "(preview.size), or leave out --exr, or all pictures (--no-preview)",
                     bytes_text(wanted, needs), bytes_text(room, has), size[0], size[1]);
         return false;
     }

@@ -395,8 +395,8 @@ typedef struct SceneSize {
 /// `assets` is NULL before scene_load.
 SceneSize scene_size(const Scene *scene, const SceneAssets *assets);
 
-/// Approximate bytes of its pictures.
-double scene_picture_memory(const Scene *scene);
+/// Approximate bytes of its pictures, also while their layers are written.
+double scene_picture_memory(const Scene *scene, bool layers);
 
 /// Whether `wanted` bytes fit into `room` (0: unknown, they do); otherwise there is a message about what needs most: a
 /// heightfield, the pictures or the largest sheet. `assets` is NULL before scene_load.

@@ -3,12 +3,14 @@
 import hashlib
 import json
 import os
+import resource
 import shutil
 import struct
+import subprocess
 import unittest
 
 import exr
-from support import HAS_EXR, HAS_FFMPEG, HAS_PREVIEW, Case
+from support import HAS_EXR, HAS_FFMPEG, HAS_PREVIEW, SANITIZED, SINGE, Case
 
 
 def png_size(path):
@@ -91,6 +93,24 @@ class Render(Case):
         self.assertNotEqual([digest(self.png(i)) for i in range(1, 7)], before)
         self.run_scene("o", "--quiet", preview=True)  # an earlier run's layers go with it
         self.assertFalse(os.path.exists(self.path("o", "exr")))
+
+    @unittest.skipUnless(HAS_EXR and not SANITIZED, "no limit of memory under sanitizers")
+    def test_memory_of_layers_is_foreseen(self):
+        """17 million pixels take 2.7 GB, and 5.4 with their layers."""
+        def limited():
+            resource.setrlimit(resource.RLIMIT_DATA, (4 << 30, 4 << 30))
+
+        wide = ("--set", "preview.size=[4096, 4096]", "--set", "preview.samples=1")
+        for command in (["render", self.path("o"), *wide], ["run", self.path("o"), "-o", self.path("p"), *wide]):
+            _, err = self.singe(*command, "--exr", expect=2, preexec_fn=limited)
+            self.assertIn("needs about 5.5 GB of memory, and there are 4.3 GB: give its pictures fewer pixels than 4096 x "
+                          "4096 (preview.size), or leave out --exr", err)
+        self.assertFalse(os.path.exists(self.path("o", "exr")) or os.path.exists(self.path("p")))
+        command = [SINGE, "render", self.path("o"), *wide, "--frames", "1", "-o", self.path("p")]
+        with subprocess.Popen(command, preexec_fn=limited, stderr=subprocess.PIPE, text=True) as drawing:
+            with self.assertRaises(subprocess.TimeoutExpired):  # it draws
+                drawing.wait(1)
+            drawing.kill()
 
     @unittest.skipUnless(HAS_EXR, "built without EXR")
     def test_mattes(self):
