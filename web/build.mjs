@@ -11,10 +11,11 @@ await build({
     target: "es2022", alias: { singe: "../bindings/web/src/index.ts" }, logLevel: "warning", legalComments: "none",
 });
 for (const name of ["singe.wasm", "singe-files.wasm"]) await cp(`${here}../bindings/web/dist/${name}`, `${here}dist/${name}`);
-await cp(`${here}../examples/letter/letter.png`, `${here}dist/letter.png`);
+for (const name of ["letter/letter.png", "curtain/curtain.jpg", "newspaper/newspaper.jpg", "title/title.png"])
+    await cp(`${here}../examples/${name}`, `${here}dist/${name.split("/")[1]}`);
 for (const name of ["index.html", "style.css", "how.html", "how.css"]) await cp(here + name, `${here}dist/${name}`);
 
-// what a visitor loads, but for the letter's picture
+// what a visitor loads, but for the scenes' pictures
 let total = 0, core = 0;
 for (const name of ["index.html", "style.css", "main.js", "worker.js", "singe.wasm"]) {
     const bytes = await readFile(`${here}dist/${name}`), size = gzipSync(bytes, { level: 9 }).length;

@@ -8,7 +8,8 @@ import type { Frame, FromWorker, Shape, ToWorker } from "./messages.js";
 import { Renderer } from "./renderer.js";
 import { placed } from "./shape.js";
 import { FireSound } from "./sound.js";
-import { fromLink, MATERIALS, PLACES, RANGES, SHEET, TIME_STEP, toLink, toYaml, type Place, type Point, type Settings, type Slider } from "./scene.js";
+import { PLACES, placeOf, type Place, type Point } from "./places.js";
+import { fromLink, MATERIALS, RANGES, standardOf, TIME_STEP, toLink, toYaml, type Settings, type Slider } from "./scene.js";
 
 type Tool = "match" | "breath" | "hand" | "pin";
 const LIVE: Slider[] = ["pace", "wind", "gravity"];
@@ -20,17 +21,11 @@ const HINTS: Record<Tool, string> = {
     match: "Drag the match over the paper", breath: "Hold to blow the fire out", hand: "Take the paper, pull, and tear it",
     pin: "Click to pin the paper to the table; click a pin to take it out",
 };
-/** Where the camera stands and looks, m. */
-const VIEWS: Record<Place, { at: Point; from: Point }> = {
-    table: { at: [0, -0.012, 0.022], from: [0.085, -0.47, 0.178] },
-    hung: { at: [0, 0, 0.2], from: [0.17, -0.88, 0.31] },
-    ball: { at: [0, -0.01, 0.05], from: [0.11, -0.5, 0.26] },
-};
 const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 const element = <Kind extends HTMLElement>(query: string) => document.querySelector<Kind>(query)!;
 const canvas = element<HTMLCanvasElement>("#view"), hint = element("#hint"), facts = element("#facts");
-const form = element<HTMLFormElement>("#settings");
+const form = element<HTMLFormElement>("#settings"), menu = element<HTMLSelectElement>("header select");
 
 let { settings, strokes: linkedStrokes, pins: linkedPins } = fromLink(location.hash.slice(1));
 let shape: Shape | null = null, shapeName: string | null = null, picture: CanvasImageSource | null = null;
@@ -88,11 +83,7 @@ function start(): void {
     worker.onmessage = ({ data }: MessageEvent<FromWorker>) => hear(data);
     worker.onerror = () => stop("The simulation could not be loaded.", "Its worker failed to start. A reload may help; so may a browser of 2023 or later.");
     send({ kind: "load", wasm: new URL("./singe.wasm", import.meta.url).href });
-    const letter = new Image();
-    letter.onload = () => {
-        if (!picture && !shape) renderer.print((picture = letter));
-    };
-    letter.src = "letter.png";
+    printOwn();
     writeSettings();
     chooseTool("match", true);
     showPaused();
@@ -103,11 +94,12 @@ function send(message: ToWorker): void { worker.postMessage(message); }
 
 /** A view of the whole sheet: on portrait screens from further away, until its corners are on them. */
 function place(): void {
-    const where = shape ? "table" : settings.place, { at, from } = VIEWS[where], { camera } = renderer;
-    const corners = [-1, 1].flatMap((x) => [-1, 1].map((y) => (where === "hung" ? [x * SHEET.width, 0, 0.38 + y * SHEET.height] : [x * SHEET.width, y * SHEET.height, 0])));
+    const name = shape ? "table" : settings.place, { view: { at, from }, sheets, upright, key } = placeOf(name), { camera } = renderer;
+    const { size: [width, height], translate: [, , z] } = sheets[0]!;
+    const corners = [-1, 1].flatMap((x) => [-1, 1].map((y) => (upright ? [x * width, 0, 2 * z + y * height] : [x * width, y * height, 0])));
     controls.target.set(...at);
     camera.aspect = innerWidth / innerHeight;
-    const up = where === "hung" ? 1 : Math.max(1, 2.6 - 2 * camera.aspect); // a tall screen has room for a look from higher up
+    const up = upright ? 1 : Math.max(1, 2.6 - 2 * camera.aspect); // a tall screen has room for a look from higher up
     camera.updateProjectionMatrix();
     for (let away = 1; away < 3; away *= 1.04) {
         camera.position.set(from[0], from[1], up * from[2]).sub(controls.target).multiplyScalar(away).add(controls.target);
@@ -116,21 +108,43 @@ function place(): void {
         if (corners.every((corner) => Math.abs(new Vector3(...corner).multiplyScalar(0.5).project(camera).x) < 0.97)) break;
     }
     controls.maxDistance = Math.max(1.1, 1.2 * camera.position.distanceTo(controls.target));
-    renderer.setPlace(shape ? "table" : settings.place);
-    keyAt = settings.place === "hung" ? [0, -0.002, 0.1] : [0, -0.02, settings.place === "ball" ? 0.118 : 0.002];
+    renderer.setPlace(name);
+    keyAt = [...key];
     controls.update();
 }
+
+/** Whether what burns hangs in the plane of x and z. */
+const upright = () => placeOf(shape ? "table" : settings.place).upright;
 
 function resize(): void {
     renderer.resize(innerWidth, innerHeight);
     draw();
 }
 
+// ---- what is printed
+
+let own = true; // the scene's own picture, not one that was dropped
+
+/** Prints what the scene has. */
+function printOwn(): void {
+    own = true;
+    const { picture: name } = placeOf(settings.place);
+    renderer.print((picture = null));
+    if (!name) return;
+    const loaded = new Image();
+    loaded.onload = () => {
+        if (!own || shape || placeOf(settings.place).picture !== name) return;
+        renderer.print((picture = loaded));
+        draw();
+    };
+    loaded.src = name;
+}
+
 // ---- frames
 
 function restart(): void {
     busy = true;
-    send({ kind: "begin", settings, shape, strokes: linkedStrokes, pins: linkedPins });
+    send({ kind: "begin", settings: shape ? { ...settings, place: "table" } : settings, shape, strokes: linkedStrokes, pins: linkedPins });
 }
 
 function hear(message: FromWorker): void {
@@ -251,7 +265,7 @@ function target(): Point | null {
 
 function breathDirection(at: Point): Point {
     const ahead = new Vector3(...at).sub(renderer.camera.position).setZ(0).normalize();
-    return ahead.setZ(settings.place === "hung" ? -0.1 : -0.7).normalize().toArray() as Point; // onto the table
+    return ahead.setZ(upright() ? -0.1 : -0.7).normalize().toArray() as Point; // onto the table
 }
 
 function beginUse(hit: Hit | null): void {
@@ -357,7 +371,7 @@ function turn(aside: number, up: number): void {
 
 function moveKey(x: number, y: number): void {
     const within = (value: number, least: number, most: number) => Math.max(least, Math.min(most, value)), across = within(keyAt[0] + x, -0.2, 0.2);
-    keyAt = settings.place === "hung" ? [across, keyAt[1], within(keyAt[2] + y, 0, 0.4)] : [across, within(keyAt[1] + y, -0.2, 0.2), keyAt[2]];
+    keyAt = upright() ? [across, keyAt[1], within(keyAt[2] + y, 0, 0.4)] : [across, within(keyAt[1] + y, -0.2, 0.2), keyAt[2]];
     if (grabbed) grabbed.to = [grabbed.to[0] + x, grabbed.to[1] + y, grabbed.to[2] + Math.abs(y)];
     say(`${tool} at ${Math.round(1000 * keyAt[0])}, ${Math.round(1000 * keyAt[1])} mm: Enter ${keyHeld ? "ends" : "begins"}`);
 }
@@ -436,6 +450,8 @@ function say(text: string): void {
 // ---- settings
 
 function writeSettings(): void {
+    element("#live").querySelectorAll("label").forEach((row) => row.remove());
+    element("#fresh").querySelectorAll("label").forEach((row) => row.remove());
     const choices = { material: Object.entries(MATERIALS), place: Object.entries(PLACES).map(([value, { label }]) => [value, label] as const) };
     for (const [name, options] of Object.entries(choices)) {
         const select = form.elements.namedItem(name) as HTMLSelectElement;
@@ -452,21 +468,37 @@ function writeSettings(): void {
     (form.elements.namedItem("gas") as HTMLInputElement).checked = settings.gas;
 }
 
-form.addEventListener("input", ({ target }) => {
+function takeInput({ target }: Event): void {
     const input = target as HTMLInputElement, key = input.name as keyof Settings;
     if (!(key in settings)) return;
     const value = target instanceof HTMLSelectElement ? input.value : key === "gas" ? input.checked : Number(input.value);
     settings = { ...settings, [key]: value };
     if (key in RANGES) input.closest("label")!.querySelector("output")!.textContent = RANGES[key as Slider].text(Number(value));
     if (LIVE.includes(key as Slider) && !(key === "gravity" && settings.gas)) send({ kind: "set", settings });
-});
-form.addEventListener("change", ({ target }) => {
+}
+
+function takeChange({ target }: Event): void {
     const key = (target as HTMLInputElement).name;
     if (!(key in settings)) return;
-    if (key === "place") place();
+    if (key === "place") changePlace(settings.place);
     if (!LIVE.includes(key as Slider) || (key === "gravity" && settings.gas)) restart(); // gravity is the gas's, too
     writeLink();
-});
+}
+
+/** A scene begins as it is meant: what it sets, and what the one before set, is not kept. */
+function changePlace(next: Place): void {
+    const standard = standardOf(next);
+    shape = shapeName = null;
+    settings = { ...standard, cells: settings.cells, seed: settings.seed, gravity: settings.gravity, gas: settings.gas };
+    writeSettings();
+    place();
+    if (own) printOwn();
+}
+
+for (const from of [form, menu]) {
+    from.addEventListener("input", takeInput);
+    from.addEventListener("change", takeChange);
+}
 form.addEventListener("submit", (event) => event.preventDefault());
 
 function writeLink(): void {
@@ -503,6 +535,7 @@ async function takeFile(file: File): Promise<void> {
             shapeName = file.name;
             renderer.print((picture = null));
             settings = { ...settings, begin: false };
+            menu.selectedIndex = -1; // any scene can be chosen next
             place();
             restart();
             say(`${file.name}: ${shape.positions.length / 3} vertices. Strike a match`);
@@ -510,6 +543,7 @@ async function takeFile(file: File): Promise<void> {
             picture = await createImageBitmap(file, { imageOrientation: "flipY" }).catch(() => {
                 throw new Error("it is neither a picture that this browser reads, nor a mesh (OBJ, PLY, STL, GLB)");
             });
+            own = false;
             renderer.print(picture);
             say(`${file.name} is printed`);
             draw();
@@ -550,7 +584,7 @@ const SAVES: Record<string, () => void> = {
     usdc: () => {
         void files().then(() => send({ kind: "surface" }), () => say("The writer of USD could not be loaded"));
     },
-    yaml: () => frame && save(new Blob([toYaml(settings, frame.strokes, frame.pinRests, frame.time, shapeName, frame.skipped)], { type: "text/yaml" }), "singe.yaml"),
+    yaml: () => frame && save(new Blob([toYaml(shape ? { ...settings, place: "table" } : settings, frame.strokes, frame.pinRests, frame.time, shapeName, frame.skipped)], { type: "text/yaml" }), "singe.yaml"),
     link: () => {
         writeLink();
         navigator.clipboard?.writeText(location.href).then(() => say("The link is copied: settings, pins, match and breath are in it"), () => say("The link is in the address bar"));

@@ -1,7 +1,8 @@
 // Between the page and its worker.
 import type { FileQuads, Surface } from "singe";
 import type { Fire, Lights } from "./fields.js";
-import type { Point, Settings, Stroke } from "./scene.js";
+import type { Point } from "./places.js";
+import type { Settings, Stroke } from "./scene.js";
 
 export type Shape = FileQuads;
 

@@ -8,7 +8,7 @@ import {
 } from "three";
 import { ATTRIBUTES, FLOATS } from "./fields.js";
 import type { Frame } from "./messages.js";
-import { BALL, type Place, type Point } from "./scene.js";
+import { BALL, placeOf, type Place, type Point, type Where } from "./places.js";
 import { glowBytes, noiseBytes } from "../view/tables.js";
 import * as glsl from "../view/shaders.js";
 
@@ -21,6 +21,8 @@ const SHADOW = 1024;
 const FIRE_LIGHT = 3.6e-5; // strength of a cell that burns fully
 const FULL_PAPER = 0.22; // light that comes through (preview.h)
 
+const EMBER: Point = [0.62, 0.12, 0.012], EMBER_LIGHT = 0.0012; // a ball of 1300 K
+
 type Uniforms = Record<string, IUniform>;
 
 export class Renderer {
@@ -31,6 +33,8 @@ export class Renderer {
     private shadowScene = new Scene();
     private lampView = new Matrix4();
     private ball: Mesh;
+    private ember: Mesh<SphereGeometry, RawShaderMaterial>;
+    private where: Where = placeOf("table");
     private lamp = new PerspectiveCamera(70, 1, 0.08, 1.2);
     private shared: Uniforms;
     private sceneTarget: WebGLRenderTarget;
@@ -94,7 +98,9 @@ export class Renderer {
             part.rotation.set(-0.45, 0.0, -0.75); // held from the right, upwards
         }
         this.ball = new Mesh(new SphereGeometry(BALL.radius, 64, 40).translate(...BALL.at), this.solid([0.16, 0.15, 0.14], 0.12));
-        this.scene.add(table, this.paper, this.ball, ...this.match);
+        this.ember = new Mesh(new SphereGeometry(1, 48, 32), this.solid([0.02, 0.02, 0.02], 0.02));
+        (this.ember.material.uniforms.emission!.value as Vector3).set(...EMBER);
+        this.scene.add(table, this.paper, this.ball, this.ember, ...this.match);
         this.setPlace("table");
 
         this.passes = {
@@ -157,6 +163,7 @@ export class Renderer {
             const flicker = 1 + 0.16 * Math.sin(41 * frame.time + 2.4 * i) + 0.12 * Math.sin(67 * frame.time + i * i);
             light.set(x, y, z, weight * FIRE_LIGHT * flicker);
         });
+        this.moveEmber(frame.time);
         while (this.pins.length < frame.pins.length) {
             const pin = new Mesh(tack(), this.solid([0.55, 0.36, 0.10], 0.5));
             this.pins.push(pin);
@@ -168,15 +175,29 @@ export class Renderer {
         });
     }
 
-    /** Sets the lamp, and the ball if there is one. */
+    /** Sets the lamp, and what else the scene has. */
     setPlace(place: Place): void {
-        this.ball.visible = place === "ball";
-        LAMP.at.copy(place === "hung" ? LAMPS.hanging : LAMPS.lying);
-        LAMP.to.setZ(place === "hung" ? 0.17 : 0);
+        this.where = placeOf(place);
+        this.ball.visible = !!this.where.ball;
+        this.moveEmber(0);
+        LAMP.at.copy(this.where.upright ? LAMPS.hanging : LAMPS.lying);
+        LAMP.to.setZ(this.where.upright ? 0.17 : 0);
         this.lamp.position.copy(LAMP.at);
         this.lamp.lookAt(LAMP.to);
         this.lamp.updateMatrixWorld();
         this.lampView.multiplyMatrices(this.lamp.projectionMatrix, this.lamp.matrixWorldInverse);
+    }
+
+    /** The glowing ball of a scene, which lights the sheet. */
+    private moveEmber(time: number): void {
+        const { ember } = this.where;
+        this.ember.visible = !!ember;
+        if (!ember) return;
+        const { path, radius } = ember, next = Math.max(1, path.findIndex((key) => key.time > time)), [from, to] = [path[next - 1]!, path[next]!];
+        const share = Math.min((time - from.time) / (to.time - from.time), 1);
+        this.ember.position.set(...from.position as Point).lerp(new Vector3(...to.position as Point), share);
+        this.ember.scale.setScalar(radius);
+        (this.shared.fireLights!.value as Vector4[])[4]!.set(...this.ember.position.toArray(), EMBER_LIGHT);
     }
 
     /** Where a match burns, or null. */

@@ -1,8 +1,9 @@
 // The simulation, away from the page's own thread. The page asks for one frame at a time, so nothing queues up.
-import { load, type Handle, type Simulation, type Singe } from "singe";
+import { load, type Handle, type Simulation, type Singe, type Texture } from "singe";
 import { fireOf, lightsOf, meshOf, refined } from "./fields.js";
 import type { FromWorker, Shape, ToWorker } from "./messages.js";
-import { BALL, BREATH, gridOf, MATCH, materialOptions, MOUTH, PLACES, simulationOptions, sourceOf, TIME_STEP, type Point, type Settings, type Stroke } from "./scene.js";
+import { BALL, placeOf, type Point, type Where } from "./places.js";
+import { BREATH, gridOf, MATCH, materialOptions, MOUTH, PIN_RADIUS, simulationOptions, sourceOf, TIME_STEP, type Settings, type Stroke } from "./scene.js";
 
 const FAR: Point = [0, 0, 50]; // where an unused match waits
 const MARKS = 6;
@@ -13,7 +14,7 @@ interface Mark { bytes: Uint8Array; strokes: Stroke[]; pins: { rest: Point; hand
 let singe: Singe;
 let sim: Simulation | null = null;
 let settings: Settings;
-let sheet: Handle;
+let sheets: Handle[];
 let match: Handle;
 let jet: { handle: Handle; stroke: Stroke } | null = null;
 let hand: { handle: Handle; at: Point } | null = null;
@@ -26,12 +27,10 @@ let matchAt: Point = FAR, skipped = false;
 const tell = (message: FromWorker, transfer: Transferable[] = []) => self.postMessage(message, { transfer });
 const still = (position: Point) => [{ time: 0, position }];
 
-self.onmessage = async ({ data }: MessageEvent<ToWorker>) => {
-    try {
-        await hear(data);
-    } catch (error) {
-        tell({ kind: "failed", message: error instanceof Error ? error.message : String(error) });
-    }
+/** One message after another, also where one waits for a file. */
+let before = Promise.resolve();
+self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
+    before = before.then(() => hear(data)).catch((error: unknown) => tell({ kind: "failed", message: error instanceof Error ? error.message : String(error) }));
 };
 
 async function hear(message: ToWorker): Promise<void> {
@@ -46,7 +45,7 @@ async function hear(message: ToWorker): Promise<void> {
     case "set": return change(message.settings);
     case "grab": return grab(message.rest, message.at);
     case "release": return release();
-    case "pin": pins.push({ rest: message.rest, handle: sim.addPin({ sheet, points: message.rest, radius: 0.005 }) }); return;
+    case "pin": pins.push(pinAt(message.rest)); return;
     case "unpin": sim.removePin(pins.splice(message.index, 1)[0]!.handle); return;
     case "mark": return mark();
     case "undo": return undo();
@@ -54,36 +53,68 @@ async function hear(message: ToWorker): Promise<void> {
     }
 }
 
-function begin(wanted: Settings, shape: Shape | null, linked: Stroke[], pinned: Point[]): void {
-    const made = singe.create(simulationOptions(wanted)), where = PLACES[shape ? "table" : wanted.place];
+async function begin(wanted: Settings, shape: Shape | null, linked: Stroke[], pinned: Point[]): Promise<void> {
+    const where = placeOf(wanted.place), arrival = where.arrival && await greys(where.arrival.picture);
+    const made = singe.create(simulationOptions(wanted));
     try {
-        const material = materialOptions(wanted), place = { rotate: where.rotate, translate: where.translate, drop_pieces_below: 4e-6 };
-        const added = shape ? made.addSheet(shape, material, place) : made.addSheet(gridOf(wanted), material, place);
+        const material = materialOptions(wanted), quads = shape ?? where.mesh?.quads;
+        const added = where.sheets.map((one, i) => made.addSheet(quads ?? gridOf(wanted, one, i), material, {
+            rotate: one.rotate.map((angle) => (angle * Math.PI) / 180) as Point, translate: one.translate, drop_pieces_below: 4e-6,
+        }));
         made.commit();
         sim?.destroy();
         sim = made;
-        sheet = added;
+        sheets = added;
     } catch (error) {
         made.destroy(); // the burn before goes on
         throw error;
     }
     settings = wanted;
     sim.addCollider({ kind: "plane", friction: 0.4, offset: 0.0005 });
-    if (!shape && wanted.place === "ball") sim.addCollider({ kind: "sphere", position: BALL.at, radius: BALL.radius, friction: 0.4, offset: 0.0005 });
+    if (where.ball) sim.addCollider({ kind: "sphere", position: BALL.at, radius: BALL.radius, friction: 0.4, offset: 0.0005 });
+    if (where.ember) sim.addSource({ kind: "ball", ...where.ember });
+    if (arrival) sim.addSource({ kind: "arrival", texture: arrival, arrival_from: where.arrival!.from, arrival_to: where.arrival!.to });
     match = sim.addSource({ kind: "ball", path: still(FAR), ...MATCH });
     hand = jet = null;
     marks = [];
     matchAt = FAR;
     skipped = false;
     stroke = null;
-    const first: Stroke = { start: 0, end: 1.25, path: [{ time: 0, position: where.match }] };
-    strokes = linked.length ? [...linked] : wanted.begin && !shape ? [first] : [];
+    strokes = linked.length ? [...linked] : wanted.begin && !shape ? firstOf(where) : [];
     planned = [...strokes];
     for (const one of planned) sim.addSource(sourceOf(one));
-    pins = (pinned.length ? pinned : where.pins).map((rest) => ({ rest, handle: sim!.addPin({ sheet, points: rest, radius: 0.005 }) }));
+    for (const { points, path } of where.hooks ?? []) sim.addPin({ sheet: sheets[0]!, points: points.flat(), radius: PIN_RADIUS, path });
+    pins = (pinned.length ? pinned : where.pins).map(pinAt);
     tell({ kind: "begun", springs: sim.view().spring_count.reduce((a, b) => a + b) });
     frame(0, 0);
 }
+
+/** The match that the page strikes. */
+const firstOf = ({ match: first }: Where): Stroke[] =>
+    first ? [{ start: first.start, end: first.end, path: [{ time: first.start, position: first.at }] }] : [];
+
+/** A picture beside the page, its top row first. */
+async function greys(name: string): Promise<Texture> {
+    const picture = await createImageBitmap(await (await fetch(new URL(name, self.location.href))).blob()), { width, height } = picture;
+    const context = new OffscreenCanvas(width, height).getContext("2d")!;
+    context.drawImage(picture, 0, 0);
+    const { data } = context.getImageData(0, 0, width, height);
+    return { width, height, values: Float32Array.from({ length: width * height }, (_, i) => data[4 * i]! / 255) };
+}
+
+/** The sheet that was at this place at rest. */
+function sheetAt(rest: Point): Handle {
+    if (sheets.length === 1) return sheets[0]!;
+    const { rest_position: places, sheet } = sim!.draw();
+    let nearest = Infinity, found = 0;
+    for (let i = 0; i < sheet.length; i++) {
+        const away = Math.hypot(places[3 * i]! - rest[0], places[3 * i + 1]! - rest[1], places[3 * i + 2]! - rest[2]);
+        if (away < nearest) [nearest, found] = [away, sheet[i]!];
+    }
+    return sheets[found]!;
+}
+
+const pinAt = (rest: Point) => ({ rest, handle: sim!.addPin({ sheet: sheetAt(rest), points: rest, radius: PIN_RADIUS }) });
 
 function change(wanted: Settings): void {
     settings = { ...settings, pace: wanted.pace, wind: wanted.wind, gravity: wanted.gravity };
@@ -129,7 +160,7 @@ function blow(wanted: { at: Point; direction: Point } | null, now: number, then:
 
 function grab(rest: Point, at: Point): void {
     release();
-    hand = { handle: sim!.addPin({ sheet, points: rest, radius: 0.009, path: still(at) }), at };
+    hand = { handle: sim!.addPin({ sheet: sheetAt(rest), points: rest, radius: 0.009, path: still(at) }), at };
     skipped = true;
 }
 
@@ -147,12 +178,12 @@ function mark(): void {
 }
 
 function undo(): void {
-    const before = marks.pop();
-    if (!before) return;
-    const restored = singe.restore(before.bytes);
+    const last = marks.pop();
+    if (!last) return;
+    const restored = singe.restore(last.bytes);
     sim!.destroy();
     sim = restored;
-    ({ strokes, pins, skipped } = before);
+    ({ strokes, pins, skipped } = last);
     stroke = hand = jet = null;
     moveMatch(null, 0, 0);
     frame(0, 0);

@@ -175,6 +175,28 @@ const CASES = {
         assert.ok(ball.burnt > 0.002 && ball.pins.length === 0, `burnt ${ball.burnt}`);
         await picture("ball");
     },
+    async "each scene of the menu burns, and its link brings it back"() {
+        await open(QUICK);
+        const names = await page.$$eval("[name=place] option", (options) => options.map(({ value }) => value));
+        assert.ok(names.length >= 8, `${names}`);
+        for (const name of names.filter((one) => new RegExp(process.env.SCENES ?? "").test(one))) {
+            await open(folder ? `place=${name}` : `cells=20&gas=false&place=${name}`, 0.1);
+            assert.equal(await page.inputValue("[name=place]"), name);
+            const before = await step(0.5), after = await step(1.3);
+            assert.ok(after.burnt > before.burnt && after.burnt > 0.001, `${name}: burnt ${before.burnt}, then ${after.burnt}`);
+            if (!folder) continue;
+            console.log(`${name}: ${(100 * after.burnt).toFixed(1)} % burnt, ${after.springs} springs, ${(after.ms / after.steps).toFixed(2)} ms a step`);
+            await page.evaluate(() => globalThis.page.quality(1));
+            await picture(`scene-${name}`);
+        }
+        await page.click("summary");
+        await page.selectOption("[name=place]", "curtain");
+        assert.equal(await page.inputValue("[name=material]"), "cotton");
+        assert.match(new URL(page.url()).hash, /^#place=curtain/);
+        assert.doesNotMatch(new URL(page.url()).hash, /cotton/); // it is the scene's
+        const [download] = await Promise.all([page.waitForEvent("download"), page.click("[data-save=yaml]")]);
+        assert.match(await readFile(await download.path(), "utf8"), /base: cotton[^]*points: \[\[-0.147, 0, 0.408\]\], path: /);
+    },
     async "the sound of the fire grows with it"() {
         await open(QUICK);
         const loud = await page.evaluate(() => Promise.all([0, 20, 400].map((burning) => globalThis.page.loudness(burning))));
@@ -212,7 +234,7 @@ const CASES = {
         for (const [width, height] of [[360, 740], [1280, 720], [740, 360]]) {
             await page.setViewportSize({ width, height });
             await page.waitForTimeout(150);
-            const out = await page.evaluate(() => [...document.querySelectorAll("h1, .tools, .panel")].filter((e) => {
+            const out = await page.evaluate(() => [...document.querySelectorAll("header, .tools, .panel")].filter((e) => {
                 const box = e.getBoundingClientRect();
                 return box.left < -1 || box.right > innerWidth + 1 || box.bottom > innerHeight + 1;
             }).map((e) => e.className || e.tagName));

@@ -1,8 +1,8 @@
 // Singe in JavaScript: the public functions of libsinge (include/singe) as classes. One module holds many simulations.
 import { Memory, type Exports, type Numbers } from "./memory.js";
 import type {
-    ColliderOptions, ContactOptions, GasOptions, Key, MaterialOptions, PinOptions, SheetOptions, SimOptions, SolverOptions, SourceOptions, Vector,
-    WindOptions,
+    ColliderOptions, ContactOptions, GasOptions, Key, MaterialOptions, PinOptions, SheetOptions, SimOptions, SolverOptions, SourceOptions, Texture,
+    Vector, WindOptions,
 } from "./options.js";
 
 export * from "./options.js";
@@ -55,7 +55,12 @@ export interface Faces {
     corner_uv?: ArrayLike<number>;
 }
 
-export interface Source extends SourceOptions { position?: Vector; path?: readonly Key[] }
+export interface Source extends SourceOptions {
+    position?: Vector;
+    path?: readonly Key[];
+    /** of the kinds texture, arrival and water */
+    texture?: Texture;
+}
 export interface Collider extends ColliderOptions {
     position?: Vector;
     rotation?: readonly [number, number, number, number];
@@ -190,10 +195,11 @@ export class Simulation {
 
     addSource(source: Source): Handle {
         return this.memory.during(() => {
-            const def = this.def("source"), { path, ...options } = source;
-            this.memory.write(def, "source", options);
-            if (path) this.memory.write(def, "source", { path: keys(this.memory, path), path_count: path.length });
-            return this.handle((id) => this.memory.call.singe_sim_add_source(this.sim, def, id));
+            const def = this.def("source"), { path, texture, ...options } = source, { memory } = this;
+            memory.write(def, "source", options);
+            if (path) memory.write(def, "source", { path: keys(memory, path), path_count: path.length });
+            if (texture) memory.putTexture(memory.at(def, "source", "texture"), "source", texture);
+            return this.handle((id) => memory.call.singe_sim_add_source(this.sim, def, id));
         });
     }
 

@@ -69,6 +69,11 @@ export class Memory {
         return at;
     }
 
+    putTexture(at: number, where: string, { width, height, values }: { width: number; height: number; values: Float32Array }): void {
+        if (values.length !== width * height) throw new TypeError(`${where}: ${width * height} values were expected`);
+        this.write(at, "texture", { width, height, values: this.put(values) });
+    }
+
     // ---- structs
 
     size(name: string): number { return this.struct(name).size; }
@@ -163,9 +168,7 @@ export class Memory {
             throw new TypeError(`${where}: a number, or {from, to, noise} or {from, to, texture}, was expected`);
         const field = this.take(this.size("field"));
         if (param.texture) {
-            const texture = this.at(field, "field", "texture"), { width, height, values } = param.texture;
-            if (values.length !== width * height) throw new TypeError(`${where}: ${width * height} values were expected`);
-            this.write(texture, "texture", { width, height, values: this.put(values) });
+            this.putTexture(this.at(field, "field", "texture"), where, param.texture);
             this.set(field, "field", "kind", 1);
         } else {
             const noise = { octaves: 1, seed: 1, ...param.noise };
