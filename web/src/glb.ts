@@ -1,8 +1,9 @@
-// The sheet as it is, as a binary glTF 2.0 with its temperature and its burn (docs/formats.md has the same names).
+// The sheet as it is, as a binary glTF 2.0 with its print, its temperature and its burn (docs/formats.md has the same names).
 import { FLOATS } from "./fields.js";
 import type { Frame } from "./messages.js";
 
-export function glbOf({ vertices, triangles }: Pick<Frame, "vertices" | "triangles">): Uint8Array<ArrayBuffer> {
+/** @param print a PNG over uv */
+export function glbOf({ vertices, triangles }: Pick<Frame, "vertices" | "triangles">, print: Uint8Array): Uint8Array<ArrayBuffer> {
     const count = vertices.length / FLOATS;
     const parts: { name: string; type: string; width: number; array: Float32Array | Uint32Array }[] = [];
     const pick = (name: string, type: string, width: number, value: (vertex: number, k: number) => number) => {
@@ -23,11 +24,16 @@ export function glbOf({ vertices, triangles }: Pick<Frame, "vertices" | "triangl
     parts.push({ name: "", type: "SCALAR", width: 1, array: triangles });
 
     let length = 0;
-    const views = parts.map(({ name, array }) => {
+    const begins: number[] = [];
+    const views: object[] = parts.map(({ name, array }) => {
+        begins.push(length);
         const view = { buffer: 0, byteOffset: length, byteLength: array.byteLength, target: name ? 34962 : 34963 };
         length += array.byteLength;
         return view;
     });
+    views.push({ buffer: 0, byteOffset: length, byteLength: print.length });
+    const printAt = length;
+    length += Math.ceil(print.length / 4) * 4;
     const accessors = parts.map(({ name, type, width, array }, i) => ({
         bufferView: i, componentType: name ? 5126 : 5125, count: array.length / width, type, ...(name === "POSITION" ? boundsOf(array as Float32Array) : {}),
     }));
@@ -35,7 +41,8 @@ export function glbOf({ vertices, triangles }: Pick<Frame, "vertices" | "triangl
     const json = {
         asset: { version: "2.0", generator: "Singe" }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0, name: "sheet" }],
         meshes: [{ primitives: [{ attributes, indices: parts.length - 1, material: 0 }] }],
-        materials: [{ name: "paper", doubleSided: true, pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 0.9 } }],
+        materials: [{ name: "paper", doubleSided: true, pbrMetallicRoughness: { baseColorTexture: { index: 0 }, metallicFactor: 0, roughnessFactor: 0.9 } }],
+        images: [{ bufferView: parts.length, mimeType: "image/png" }], samplers: [{}], textures: [{ source: 0, sampler: 0 }],
         buffers: [{ byteLength: length }], bufferViews: views, accessors,
     };
     let text = new TextEncoder().encode(JSON.stringify(json));
@@ -45,7 +52,8 @@ export function glbOf({ vertices, triangles }: Pick<Frame, "vertices" | "triangl
     out.set(text, 20);
     header.setUint32(20 + text.length, length, true);
     header.setUint32(24 + text.length, 0x004e4942, true);
-    parts.forEach(({ array }, i) => out.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), 28 + text.length + views[i]!.byteOffset));
+    parts.forEach(({ array }, i) => out.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), 28 + text.length + begins[i]!));
+    out.set(print, 28 + text.length + printAt);
     return out;
 }
 

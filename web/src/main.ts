@@ -4,34 +4,41 @@ import { loadFiles, type Files } from "singe";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { FLOATS } from "./fields.js";
 import { glbOf } from "./glb.js";
-import type { Frame, FromWorker, Shape, ToWorker } from "./messages.js";
+import { MARKS, type Frame, type FromWorker, type Shape, type ToWorker } from "./messages.js";
+import { Print } from "./print.js";
 import { Renderer } from "./renderer.js";
 import { placed } from "./shape.js";
 import { FireSound } from "./sound.js";
 import { PLACES, placeOf, type Place, type Point } from "./places.js";
 import { fromLink, MATERIALS, RANGES, standardOf, TIME_STEP, toLink, toYaml, type Settings, type Slider } from "./scene.js";
 
-type Tool = "match" | "breath" | "hand" | "pin";
+const TOOLS = ["match", "breath", "hand", "pin", "pen"] as const; // in the order of their keys
+type Tool = (typeof TOOLS)[number];
 const LIVE: Slider[] = ["pace", "wind", "gravity"];
 const LONGEST_FRAME = 1 / 10; // s of motion in a frame
 const BUDGET = { least: 45, most: 250 }; // ms of computing in a frame, more where drawing takes long
 const FILE_MOST = 30e6; // bytes
+const MESH_SIZE: [number, number] = [0.25, 0.25]; // m, of all that is dropped
 const PAPER: Point = [0.86, 0.852, 0.832]; // linear, as in shaders.js
 const HINTS: Record<Tool, string> = {
     match: "Drag the match over the paper", breath: "Hold to blow the fire out", hand: "Take the paper, pull, and tear it",
     pin: "Click to pin the paper to the table; click a pin to take it out",
+    pen: "Write on the paper",
 };
 const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 const element = <Kind extends HTMLElement>(query: string) => document.querySelector<Kind>(query)!;
-const canvas = element<HTMLCanvasElement>("#view"), hint = element("#hint"), facts = element("#facts");
+const canvas = element<HTMLCanvasElement>("#view"), hint = element("#hint"), ring = element("#at"), facts = element("#facts");
 const form = element<HTMLFormElement>("#settings"), menu = element<HTMLSelectElement>("header select");
+const print = new Print();
 
 let { settings, strokes: linkedStrokes, pins: linkedPins } = fromLink(location.hash.slice(1));
-let shape: Shape | null = null, shapeName: string | null = null, picture: CanvasImageSource | null = null;
+let shape: Shape | null = null, shapeName: string | null = null;
 let tool: Tool = "match", paused = still, busy = true, begun = false;
 let frame: Frame | null = null;
 let pointer: { id: number; x: number; y: number } | null = null, applying = false;
+let own = true; // what is printed is the scene's own picture, not one that was dropped
+let marked: number[] = []; // lines written, at each mark of the worker
 let grabbed: { plane: Plane; to: Point } | null = null;
 let keyAt: Point = [0, -0.02, 0.002], keyHeld = false;
 let last = performance.now(), costOfStep = 4, speed = 1, motion = 0; // motion: s, of the last frame
@@ -85,7 +92,7 @@ function start(): void {
     send({ kind: "load", wasm: new URL("./singe.wasm", import.meta.url).href });
     printOwn();
     writeSettings();
-    chooseTool("match", true);
+    chooseTool(settings.place === "blank" ? "pen" : "match", true);
     showPaused();
     requestAnimationFrame(tick);
 }
@@ -123,19 +130,38 @@ function resize(): void {
 
 // ---- what is printed
 
-let own = true; // the scene's own picture, not one that was dropped
+
+function printNow(picture: HTMLImageElement | ImageBitmap | null): void {
+    print.set(picture, shape ? MESH_SIZE : placeOf(settings.place).sheets[0]!.size);
+    renderer.print(print.canvas);
+    draw();
+}
+
+/** The pen goes on to what is under a place of the screen. */
+function write(x: number, y: number, pressure: number): void {
+    const hit = pick(x, y);
+    if (!hit?.uv) return;
+    print.to(...hit.uv, pressure);
+    renderer.reprint();
+    stale = true;
+}
+
+/** Undo comes back to here: the burn by the worker, the writing here. */
+function mark(): void {
+    send({ kind: "mark" });
+    marked.push(print.count);
+    if (marked.length > MARKS) marked.shift();
+}
 
 /** Prints what the scene has. */
 function printOwn(): void {
     own = true;
     const { picture: name } = placeOf(settings.place);
-    renderer.print((picture = null));
-    if (!name) return;
+    printNow(null);
+    if (!name || shape) return;
     const loaded = new Image();
     loaded.onload = () => {
-        if (!own || shape || placeOf(settings.place).picture !== name) return;
-        renderer.print((picture = loaded));
-        draw();
+        if (own && !shape && placeOf(settings.place).picture === name && !print.count) printNow(loaded);
     };
     loaded.src = name;
 }
@@ -144,6 +170,7 @@ function printOwn(): void {
 
 function restart(): void {
     busy = true;
+    marked = [];
     send({ kind: "begin", settings: shape ? { ...settings, place: "table" } : settings, shape, strokes: linkedStrokes, pins: linkedPins });
 }
 
@@ -230,7 +257,7 @@ function rayAt(x: number, y: number): void {
     caster.setFromCamera(new Vector2((2 * x) / innerWidth - 1, 1 - (2 * y) / innerHeight), renderer.camera);
 }
 
-interface Hit { at: Point; rest: Point | null }
+interface Hit { at: Point; rest: Point | null; uv?: [number, number] }
 
 /** The sheet under a place of the screen, or else the table. */
 function pick(x: number, y: number): Hit | null {
@@ -246,8 +273,8 @@ function pick(x: number, y: number): Hit | null {
             if (distance < nearest) {
                 nearest = distance;
                 const share = Triangle.getBarycoord(at, a, b, c, new Vector3()) ?? new Vector3(1, 0, 0);
-                const rest = [6, 7, 8].map((r) => share.x * vertices[i + r]! + share.y * vertices[j + r]! + share.z * vertices[k + r]!);
-                found = { at: at.toArray() as Point, rest: rest as Point };
+                const here = (r: number) => share.x * vertices[i + r]! + share.y * vertices[j + r]! + share.z * vertices[k + r]!;
+                found = { at: at.toArray() as Point, rest: [here(6), here(7), here(8)], uv: [here(9), here(10)] };
             }
         }
         if (found) return found;
@@ -273,16 +300,17 @@ function beginUse(hit: Hit | null): void {
     say("");
     const near = frame.pins.findIndex((pin) => Math.hypot(pin[0] - hit.at[0], pin[1] - hit.at[1], pin[2] - hit.at[2]) < 0.009);
     if (tool === "pin") {
-        send({ kind: "mark" });
+        mark();
         if (near >= 0) send({ kind: "unpin", index: near });
         else if (hit.rest) send({ kind: "pin", rest: hit.rest });
         else say("A pin needs paper under it");
         refresh();
         return;
     }
-    if (tool === "hand" && !hit.rest) return say("The hand needs paper under it");
-    send({ kind: "mark" });
+    if ((tool === "hand" || tool === "pen") && !hit.rest) return say(`The ${tool} needs paper under it`);
+    mark();
     applying = true;
+    if (tool === "pen") return print.begin();
     if (tool === "hand") {
         const normal = renderer.camera.getWorldDirection(new Vector3()).negate();
         grabbed = { plane: new Plane().setFromNormalAndCoplanarPoint(normal, new Vector3(...hit.at)), to: hit.at };
@@ -310,9 +338,13 @@ function endUse(): void {
 /** Shows a change that comes without motion. */
 function refresh(): void { if (!busy) advance(0, 0); }
 
+const writing = () => applying && tool === "pen";
+const pressureOf = ({ pointerType, pressure }: PointerEvent) => (pointerType === "pen" ? pressure : 0.5);
+
 const down = new Set<number>();
 canvas.addEventListener("pointerdown", (event) => {
     canvas.focus({ preventScroll: true });
+    ring.hidden = true;
     down.add(event.pointerId);
     if (event.button !== 0 || down.size > 1) { // two fingers turn the view
         if (applying) endUse();
@@ -322,11 +354,13 @@ canvas.addEventListener("pointerdown", (event) => {
     pointer = { id: event.pointerId, x: event.clientX, y: event.clientY };
     canvas.setPointerCapture(event.pointerId);
     beginUse(pick(event.clientX, event.clientY));
+    if (writing()) write(event.clientX, event.clientY, pressureOf(event));
 });
 canvas.addEventListener("pointermove", (event) => {
     if (pointer?.id !== event.pointerId) return;
     pointer = { id: event.pointerId, x: event.clientX, y: event.clientY };
     stale = applying;
+    if (writing()) for (const one of event.getCoalescedEvents?.() ?? [event]) write(one.clientX, one.clientY, pressureOf(one));
     moveUse();
 });
 for (const name of ["pointerup", "pointercancel"] as const)
@@ -336,6 +370,7 @@ for (const name of ["pointerup", "pointercancel"] as const)
         if (applying) endUse();
         pointer = null;
     });
+canvas.addEventListener("blur", () => { ring.hidden = true; });
 canvas.addEventListener("contextmenu", (event) => event.preventDefault());
 
 // ---- keys
@@ -352,7 +387,7 @@ addEventListener("keydown", (event) => {
     else if (event.key === "Enter" && onView && !event.repeat) useKey();
     else if (event.key === " " && onView) pause(!paused);
     else if (event.key === "Escape") { keyHeld = false; if (applying) endUse(); }
-    else if ("1234".includes(event.key)) chooseTool((["match", "breath", "hand", "pin"] as const)[Number(event.key) - 1]!);
+    else if ("12345".includes(event.key)) chooseTool(TOOLS[Number(event.key) - 1]!);
     else if (event.key === "z") undo();
     else if (event.key === "r") again();
     else if (event.key === "s") element<HTMLDetailsElement>(".panel").toggleAttribute("open");
@@ -366,6 +401,7 @@ function turn(aside: number, up: number): void {
     offset.applyAxisAngle(new Vector3(0, 0, 1).cross(offset).normalize(), -up);
     if (offset.z > 0.02 && Math.hypot(offset.x, offset.y) > 0.05) camera.position.copy(controls.target).add(offset);
     camera.lookAt(controls.target);
+    if (!ring.hidden) showKey();
     draw();
 }
 
@@ -373,7 +409,21 @@ function moveKey(x: number, y: number): void {
     const within = (value: number, least: number, most: number) => Math.max(least, Math.min(most, value)), across = within(keyAt[0] + x, -0.2, 0.2);
     keyAt = upright() ? [across, keyAt[1], within(keyAt[2] + y, 0, 0.4)] : [across, within(keyAt[1] + y, -0.2, 0.2), keyAt[2]];
     if (grabbed) grabbed.to = [grabbed.to[0] + x, grabbed.to[1] + y, grabbed.to[2] + Math.abs(y)];
+    if (writing()) write(...keyOnScreen(), 0.5);
+    showKey();
     say(`${tool} at ${Math.round(1000 * keyAt[0])}, ${Math.round(1000 * keyAt[1])} mm: Enter ${keyHeld ? "ends" : "begins"}`);
+}
+
+function keyOnScreen(): [number, number] {
+    const screen = new Vector3(...keyAt).project(renderer.camera);
+    return [((screen.x + 1) / 2) * innerWidth, ((1 - screen.y) / 2) * innerHeight];
+}
+
+/** A ring where the keyboard's tool is. */
+function showKey(): void {
+    const [x, y] = keyOnScreen();
+    ring.hidden = false;
+    ring.style.translate = `${x}px ${y}px`;
 }
 
 /** Enter begins what the tool does at the keyboard's place, and ends it. */
@@ -382,10 +432,11 @@ function useKey(): void {
         keyHeld = false;
         return endUse();
     }
-    const screen = new Vector3(...keyAt).project(renderer.camera);
     keyHeld = tool !== "pin";
-    beginUse(pick(((screen.x + 1) / 2) * innerWidth, ((1 - screen.y) / 2) * innerHeight));
+    beginUse(pick(...keyOnScreen()));
     keyHeld &&= applying;
+    if (writing()) write(...keyOnScreen(), 0.5);
+    showKey();
 }
 
 // ---- buttons
@@ -394,8 +445,8 @@ function chooseTool(wanted: Tool, quiet = false): void {
     tool = wanted;
     document.querySelectorAll<HTMLElement>("[data-tool]").forEach((button) => button.setAttribute("aria-pressed", String(button.dataset.tool === wanted)));
     canvas.className = `${canvas.classList.contains("ready") ? "ready " : ""}${wanted}`;
-    if (!quiet) say(HINTS[wanted]);
-    else say("Drag the match over the paper. The right button, or two fingers, turn the view");
+    const more = quiet ? ". The right button, or two fingers, turn the view" : wanted === "pen" && frame?.burnt ? ". New brings one that does not burn" : "";
+    say(HINTS[wanted] + more);
 }
 
 let sound: { context: AudioContext; fire: FireSound } | null = null;
@@ -425,12 +476,18 @@ function undo(): void {
     if (!frame?.marks || busy && !begun) return;
     endUse();
     send({ kind: "undo" });
+    const lines = marked.pop();
+    if (lines === undefined) return;
+    print.keep(lines);
+    renderer.reprint();
 }
 
 function again(): void {
     endUse();
     settings = { ...settings, begin: false };
     restart();
+    print.keep(0);
+    renderer.reprint();
     say("A new sheet. Strike a match");
     writeLink();
 }
@@ -493,6 +550,8 @@ function changePlace(next: Place): void {
     writeSettings();
     place();
     if (own) printOwn();
+    else printNow(print.picture);
+    chooseTool(next === "blank" ? "pen" : tool === "pen" ? "match" : tool);
 }
 
 for (const from of [form, menu]) {
@@ -533,20 +592,19 @@ async function takeFile(file: File): Promise<void> {
             const reader = await files().catch(() => { throw new Error("the reader of meshes could not be loaded"); });
             shape = reader.quads(placed(reader.readMesh(file.name, new Uint8Array(await file.arrayBuffer())), file.name));
             shapeName = file.name;
-            renderer.print((picture = null));
+            printNow(null);
             settings = { ...settings, begin: false };
             menu.selectedIndex = -1; // any scene can be chosen next
             place();
             restart();
             say(`${file.name}: ${shape.positions.length / 3} vertices. Strike a match`);
         } else {
-            picture = await createImageBitmap(file, { imageOrientation: "flipY" }).catch(() => {
+            const picture = await createImageBitmap(file).catch(() => {
                 throw new Error("it is neither a picture that this browser reads, nor a mesh (OBJ, PLY, STL, GLB)");
             });
             own = false;
-            renderer.print(picture);
+            printNow(picture);
             say(`${file.name} is printed`);
-            draw();
         }
     } catch (error) {
         const { message } = error as Error;
@@ -580,7 +638,9 @@ function save(blob: Blob, name: string): void {
 let recorder: MediaRecorder | null = null;
 const SAVES: Record<string, () => void> = {
     png: () => { draw(); canvas.toBlob((blob) => blob && save(blob, "singe.png")); },
-    glb: () => frame && save(new Blob([glbOf(frame)], { type: "model/gltf-binary" }), "singe.glb"),
+    glb: () => print.canvas.toBlob(async (blob) => {
+        if (frame && blob) save(new Blob([glbOf(frame, new Uint8Array(await blob.arrayBuffer()))], { type: "model/gltf-binary" }), "singe.glb");
+    }),
     usdc: () => {
         void files().then(() => send({ kind: "surface" }), () => say("The writer of USD could not be loaded"));
     },

@@ -6,6 +6,9 @@ import type { Settings, Stroke } from "./scene.js";
 
 export type Shape = FileQuads;
 
+/** How often undo goes back. */
+export const MARKS = 6;
+
 export type ToWorker =
     | { kind: "load"; wasm: string }
     | { kind: "begin"; settings: Settings; shape: Shape | null; strokes: Stroke[]; pins: Point[] }

@@ -80,6 +80,10 @@ export const PLACES = {
         label: "A letter on the table", sheets: one(A4, FLAT, [0, 0, 0.0005]), picture: "letter.png", sets: {}, pins: [],
         match: { at: [0.03, -0.045, 0], ...AT_ONCE }, upright: false, view: { at: [0, -0.012, 0.022], from: [0.085, -0.47, 0.178] }, key: [0, -0.02, 0.002],
     },
+    blank: {
+        label: "A blank sheet, to write on", sheets: one(A4, FLAT, [0, 0, 0.0005]), picture: null, sets: {}, pins: [], match: null, upright: false,
+        view: { at: [0, -0.03, 0], from: [0.03, -0.36, 0.4] }, key: [0, -0.02, 0.002],
+    },
     hung: {
         label: "A letter, hung up", sheets: one(A4, UP, [0, 0, HUNG]), picture: "letter.png", sets: {}, pins: [-0.1, 0, 0.1].map((x) => [x, 0, HUNG + 0.148]),
         match: { at: [0.02, 0, HUNG - 0.148], ...AT_ONCE }, ...HANGING,

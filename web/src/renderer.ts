@@ -138,18 +138,17 @@ export class Renderer {
         (this.passes.film.uniforms.resolution!.value as Vector2).set(w, h);
     }
 
-    /** What is printed on the sheet; null is nothing. */
-    print(picture: CanvasImageSource | null): void {
-        const uniforms = this.paper.material.uniforms, old = uniforms.printMap!.value as Texture;
-        let texture: Texture = white();
-        if (picture) {
-            texture = new CanvasTexture(picture as HTMLCanvasElement);
-            texture.colorSpace = SRGBColorSpace;
-            texture.anisotropy = 8;
-        }
+    /** What is printed on the sheet. */
+    print(picture: HTMLCanvasElement): void {
+        const uniforms = this.paper.material.uniforms, old = uniforms.printMap!.value as Texture, texture = new CanvasTexture(picture);
+        texture.colorSpace = SRGBColorSpace;
+        texture.anisotropy = 8;
         uniforms.printMap!.value = texture;
         old.dispose();
     }
+
+    /** The print has changed. */
+    reprint(): void { (this.paper.material.uniforms.printMap!.value as Texture).needsUpdate = true; }
 
     // ---- a frame's data
 

@@ -1,12 +1,11 @@
 // The simulation, away from the page's own thread. The page asks for one frame at a time, so nothing queues up.
 import { load, type Handle, type Simulation, type Singe, type Texture } from "singe";
 import { fireOf, lightsOf, meshOf, refined } from "./fields.js";
-import type { FromWorker, Shape, ToWorker } from "./messages.js";
+import { MARKS, type FromWorker, type Shape, type ToWorker } from "./messages.js";
 import { BALL, placeOf, type Point, type Where } from "./places.js";
 import { BREATH, gridOf, MATCH, materialOptions, MOUTH, PIN_RADIUS, simulationOptions, sourceOf, TIME_STEP, type Settings, type Stroke } from "./scene.js";
 
 const FAR: Point = [0, 0, 50]; // where an unused match waits
-const MARKS = 6;
 
 /** What a mark brings back; the bytes are the simulation's. */
 interface Mark { bytes: Uint8Array; strokes: Stroke[]; pins: { rest: Point; handle: Handle }[]; skipped: boolean }

@@ -182,6 +182,7 @@ const CASES = {
         for (const name of names.filter((one) => new RegExp(process.env.SCENES ?? "").test(one))) {
             await open(folder ? `place=${name}` : `cells=20&gas=false&place=${name}`, 0.1);
             assert.equal(await page.inputValue("[name=place]"), name);
+            if (name === "blank") continue; // has no match of its own
             const before = await step(0.5), after = await step(1.3);
             assert.ok(after.burnt > before.burnt && after.burnt > 0.001, `${name}: burnt ${before.burnt}, then ${after.burnt}`);
             if (!folder) continue;
@@ -196,6 +197,47 @@ const CASES = {
         assert.doesNotMatch(new URL(page.url()).hash, /cotton/); // it is the scene's
         const [download] = await Promise.all([page.waitForEvent("download"), page.click("[data-save=yaml]")]);
         assert.match(await readFile(await download.path(), "utf8"), /base: cotton[^]*points: \[\[-0.147, 0, 0.408\]\], path: /);
+    },
+    async "the pen writes by pointer and by keys; undo and a new sheet take it back"() {
+        await open("cells=20&gas=false&place=blank", 0.4);
+        assert.equal(await page.getAttribute("[data-tool=pen]", "aria-pressed"), "true");
+        /** The darkest light, 0 to 765, beside three places of the line, summed. */
+        const along = [-0.02, 0, 0.02].map((x) => [x, 0, 0.0005]), light = async () => {
+            const places = await Promise.all(along.map(place));
+            return page.evaluate((places) => {
+                const view = document.querySelector("#view"), copy = Object.assign(document.createElement("canvas"), { width: view.width, height: view.height }), context = copy.getContext("2d");
+                context.drawImage(view, 0, 0);
+                const scale = view.width / innerWidth;
+                return places.reduce((sum, [x, y]) => {
+                    const { data } = context.getImageData(scale * x - 2, scale * y - 2, 4, 4);
+                    return sum + Math.min(...Array.from({ length: 16 }, (_, i) => data[4 * i] + data[4 * i + 1] + data[4 * i + 2]));
+                }, 0);
+            }, places);
+        };
+        const blank = await light(), [from, to] = await Promise.all([[-0.04, 0, 0.0005], [0.04, 0, 0.0005]].map(place));
+        await page.mouse.move(...from);
+        await page.mouse.down();
+        await page.mouse.move(...to, { steps: 12 });
+        await page.mouse.up();
+        await step(0.05);
+        const written = await light();
+        assert.ok(written < 0.9 * blank, `${written} of ${blank}`);
+        await picture("pen");
+        await page.keyboard.press("z");
+        await page.waitForFunction(() => document.querySelector("#undo").disabled);
+        await step(0.05);
+        assert.ok((await light()) > 0.95 * blank, "undo leaves ink");
+
+        await page.focus("#view"); // from x = 0 to the right, 5 mm a key
+        for (const key of ["ArrowUp", "ArrowUp", "ArrowUp", "ArrowUp", "ArrowLeft", "ArrowLeft", "ArrowLeft", "ArrowLeft", "Enter", ...Array(9).fill("ArrowRight"), "Enter"]) await page.keyboard.press(key);
+        assert.equal(await page.isVisible("#at"), true);
+        await step(0.05);
+        const keyed = await light();
+        assert.ok(keyed < 0.9 * blank, `${keyed} of ${blank} by keys`);
+        assert.ok((await use("match", [0, 0, 0], [0.01, 0, 0], 0.6)).burnt > 0.0005);
+        await page.click("#again");
+        await step(0.05);
+        assert.ok((await light()) > 0.95 * blank, "a new sheet has ink");
     },
     async "the sound of the fire grows with it"() {
         await open(QUICK);
