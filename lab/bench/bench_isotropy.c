@@ -19,23 +19,6 @@
 
 enum { MOMENTS = 6 };
 
-enum { OUTLINE, CELL, THICKNESS, LIMIT, CREASES, RED, SEED, STRAIGHT, TURNED, EFFECT, MEAN, BEND, COLUMNS };
-
-static const BenchColumn columns[COLUMNS] = {
-    [OUTLINE] = {"outline", NULL, 8, NULL},
-    [CELL] = {"cell_mm", "%.3g", 8, NULL},
-    [THICKNESS] = {"thickness_mm", "%.3g", 13, NULL},
-    [LIMIT] = {"curvature_max", "%.0f", 14, NULL},
-    [CREASES] = {"creases", NULL, 8, NULL},
-    [RED] = {"red_m_n", "%.3g", 8, NULL}, // compliance, the solver's own softness included
-    [SEED] = {"seed", "%.0f", 5, NULL},
-    [STRAIGHT] = {"r_0", "%.3f", 7, NULL},
-    [TURNED] = {"r_45", "%.3f", 7, NULL},
-    [EFFECT] = {"effect", "%.3f", 7, NULL},
-    [MEAN] = {"mean", "%.3f", 7, NULL}, // of the seeds so far
-    [BEND] = {"bend_per_m", "%.2f", 11, NULL},
-};
-
 static const double size = 0.14; // m
 
 typedef struct Burn {
@@ -171,21 +154,19 @@ static SingeResult isotropy_compare(const Burn *burn, int index, BenchTable *tab
     const double cell = size / burn->cells, mass = cell * cell * (double)usual.grammage.value / 2;
     const double lean = (cell * cell / 2 + pow(burn->thickness, 2)) / pow(burn->thickness, 2);
     const double own = (2.5 + (double)solver.regularisation[SINGE_RED]) * h * h / mass * lean;
-    BenchValue row[COLUMNS] = {
-        [OUTLINE] = bench_text(burn->disc ? "disc" : "square"),
-        [CELL] = bench_number(1e3 * size / burn->cells),
-        [THICKNESS] = bench_number(1e3 * burn->thickness),
-        [LIMIT] = bench_number(burn->limit),
-        [CREASES] = bench_text(burn->creases ? "yes" : "no"),
-        [RED] = bench_number(fmax(red, own)),
-        [SEED] = bench_number(burn->seed),
-        [STRAIGHT] = bench_number(r_0),
-        [TURNED] = bench_number(r_45),
-        [EFFECT] = bench_number(sqrt(r_0 / r_45)),
-        [MEAN] = bench_number(exp(*sum / (index + 1))),
-        [BEND] = bench_number(bend / (2 * MOMENTS * size * size)),
-    };
-    return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
+    table_text(table, "outline", 8, burn->disc ? "disc" : "square");
+    table_number(table, "cell_mm", "%.3g", 8, 1e3 * size / burn->cells);
+    table_number(table, "thickness_mm", "%.3g", 13, 1e3 * burn->thickness);
+    table_number(table, "curvature_max", "%.0f", 14, burn->limit);
+    table_text(table, "creases", 8, burn->creases ? "yes" : "no");
+    table_number(table, "red_m_n", "%.3g", 8, fmax(red, own)); // compliance, the solver's own softness included
+    table_number(table, "seed", "%.0f", 5, burn->seed);
+    table_number(table, "r_0", "%.3f", 7, r_0);
+    table_number(table, "r_45", "%.3f", 7, r_45);
+    table_number(table, "effect", "%.3f", 7, sqrt(r_0 / r_45));
+    table_number(table, "mean", "%.3f", 7, exp(*sum / (index + 1))); // of the seeds so far
+    table_number(table, "bend_per_m", "%.2f", 11, bend / (2 * MOMENTS * size * size));
+    return table_end_row(table);
 }
 
 SingeResult bench_isotropy(const BenchOptions *options, BenchTable *table, SingeError *error) {
@@ -196,7 +177,7 @@ SingeResult bench_isotropy(const BenchOptions *options, BenchTable *table, Singe
     const BenchList limits = bench_list(&options->curvature, 1, &limit);
     Burn burn = {.options = options, .creases = options->creases};
     SingeResult result = SINGE_OK;
-    *table = table_begin("isotropy", columns, COLUMNS, table->text);
+    table_begin(table, "isotropy");
     for (int c = 0; c < cells.count; c++)
         for (int t = 0; t < thickness.count; t++)
             for (int l = 0; l < limits.count && !result; l++) {

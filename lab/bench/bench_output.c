@@ -16,15 +16,6 @@
 #include "common/store.h"
 #include "formats/output.h"
 
-enum { FORMAT, VERTICES, USER, SYSTEM, BOTH, WALL, BYTES, OF_PLY, COLUMNS };
-
-static const BenchColumn columns[COLUMNS] = {
-    [FORMAT] = {"format", NULL, 9, NULL},  [VERTICES] = {"vertices", "%.0f", 9, NULL},
-    [USER] = {"user_ms", "%.2f", 8, NULL}, [SYSTEM] = {"system_ms", "%.2f", 10, NULL},
-    [BOTH] = {"both_ms", "%.2f", 8, NULL}, [WALL] = {"wall_ms", "%.2f", 8, NULL},
-    [BYTES] = {"bytes", "%.0f", 9, NULL},  [OF_PLY] = {"of_ply_pct", "%.0f", 11, NULL},
-};
-
 enum { SIDE = 158, COUNT = SIDE * SIDE, FACES = 2 * (SIDE - 1) * (SIDE - 1), FRAMES = 20, REPEATS = 5 };
 
 typedef struct OutputBench {
@@ -136,15 +127,15 @@ static SingeResult output_row(OutputBench *b, BenchTable *table, double *ply, Si
     *error = b->error;
     if (b->result) return b->result;
     if (b->format == OUTPUT_ply) *ply = size;
-    BenchValue row[COLUMNS] = {[FORMAT] = bench_text(output_formats[b->format].name),
-                               [VERTICES] = bench_number(COUNT),
-                               [USER] = bench_number(1e3 * min[0]),
-                               [SYSTEM] = bench_number(1e3 * min[1]),
-                               [BOTH] = bench_number(1e3 * (min[0] + min[1])),
-                               [WALL] = bench_number(1e3 * min[2]),
-                               [BYTES] = bench_number(size),
-                               [OF_PLY] = bench_number(100 * size / *ply)};
-    return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
+    table_text(table, "format", 9, output_formats[b->format].name);
+    table_number(table, "vertices", "%.0f", 9, COUNT);
+    table_number(table, "user_ms", "%.2f", 8, 1e3 * min[0]);
+    table_number(table, "system_ms", "%.2f", 10, 1e3 * min[1]);
+    table_number(table, "both_ms", "%.2f", 8, 1e3 * (min[0] + min[1]));
+    table_number(table, "wall_ms", "%.2f", 8, 1e3 * min[2]);
+    table_number(table, "bytes", "%.0f", 9, size);
+    table_number(table, "of_ply_pct", "%.0f", 11, 100 * size / *ply);
+    return table_end_row(table);
 }
 
 SingeResult bench_output(const BenchOptions *options, BenchTable *table, SingeError *error) {
@@ -156,7 +147,7 @@ SingeResult bench_output(const BenchOptions *options, BenchTable *table, SingeEr
         .colour = {1, 1, 1},
         .mesh = {.vertex_count = 4, .cell_count = 1, .positions = corners, .uv = uv, .cells = cell}};
     const OutputScene scene = {.name = "bench", .fps = 24, .texture_size = 1024, .sheet_count = 1, .sheets = &sheet};
-    *table = table_begin("output", columns, COLUMNS, table->text);
+    table_begin(table, "output");
     char folder[] = "/dev/shm/singe-bench-XXXXXX"; // of a name that nobody can know beforehand
     OutputBench *b = calloc(1, sizeof *b);
     double ply = 0;

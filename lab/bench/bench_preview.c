@@ -10,26 +10,6 @@
 #include "analysis/numbers.h"
 #include "preview/preview.h"
 
-enum { PICTURE, TRIANGLES, SAMPLES, SECONDS, MIN, WALL, COLUMNS };
-
-static const BenchColumn columns[COLUMNS] = {
-    [PICTURE] = {"picture", NULL, 8, NULL},   [TRIANGLES] = {"triangles", "%.0f", 10, NULL},
-    [SAMPLES] = {"samples", "%.0f", 8, NULL}, [SECONDS] = {"cpu_s", "%.3f", 8, NULL},
-    [MIN] = {"min_cpu_s", "%.3f", 12, NULL},  [WALL] = {"wall_s", "%.3f", 8, NULL},
-};
-
-enum { NAME, PIXELS, TAKEN, PICTURE_SECONDS, PICTURE_WALL, PICTURE_ERROR, PICTURE_BOIL, PICTURE_COLUMNS };
-
-static const BenchColumn picture_columns[PICTURE_COLUMNS] = {
-    [NAME] = {"picture", NULL, 8, NULL},
-    [PIXELS] = {"pixels", "%.0f", 8, NULL},
-    [TAKEN] = {"samples", "%.0f", 8, NULL},
-    [PICTURE_SECONDS] = {"cpu_s", "%.3f", 8, NULL},
-    [PICTURE_WALL] = {"wall_s", "%.3f", 8, NULL},
-    [PICTURE_ERROR] = {"rms_error", "%.2f", 10, NULL},
-    [PICTURE_BOIL] = {"rms_boil", "%.2f", 10, NULL},
-};
-
 enum { CELLS_X = 198, CELLS_Y = 280, ACROSS = CELLS_X + 1, REPEATS = 5 };
 static const float sheet_width = 0.210f, sheet_length = 0.297f, hole_radius = 0.04f, front = 0.009f;
 
@@ -235,10 +215,13 @@ static SingeResult preview_bench_measure(const BenchOptions *options, const Shot
     if (!result) result = easel_time(&easel, surface, &cpu, &min, &wall, error);
     easel_end(&easel);
     if (result) return result;
-    BenchValue row[COLUMNS] = {[PICTURE] = bench_text(shot->name), [TRIANGLES] = bench_number(surface->triangle_count),
-                               [SAMPLES] = bench_number(16),       [SECONDS] = bench_number(cpu),
-                               [MIN] = bench_number(min),          [WALL] = bench_number(wall)};
-    return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
+    table_text(table, "picture", 8, shot->name);
+    table_number(table, "triangles", "%.0f", 10, surface->triangle_count);
+    table_number(table, "samples", "%.0f", 8, 16);
+    table_number(table, "cpu_s", "%.3f", 8, cpu);
+    table_number(table, "min_cpu_s", "%.3f", 12, min);
+    table_number(table, "wall_s", "%.3f", 8, wall);
+    return table_end_row(table);
 }
 
 // ---- the error
@@ -294,14 +277,14 @@ static SingeResult picture_measure(const BenchOptions *options, const Shot *shot
     free(whole);
     if (!good) return error->code ? error->code : SINGE_ERROR_MEMORY;
 
-    BenchValue row[PICTURE_COLUMNS] = {[NAME] = bench_text(shot->name),
-                                       [PIXELS] = bench_number(PICTURE_WIDTH * (PICTURE_WIDTH * 9 / 16)),
-                                       [TAKEN] = bench_number(16),
-                                       [PICTURE_SECONDS] = bench_number(cpu),
-                                       [PICTURE_WALL] = bench_number(wall),
-                                       [PICTURE_ERROR] = bench_number(sqrt(squares / (double)bytes)),
-                                       [PICTURE_BOIL] = bench_number(sqrt(changes / (double)bytes))};
-    return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
+    table_text(table, "picture", 8, shot->name);
+    table_number(table, "pixels", "%.0f", 8, PICTURE_WIDTH * (PICTURE_WIDTH * 9 / 16));
+    table_number(table, "samples", "%.0f", 8, 16);
+    table_number(table, "cpu_s", "%.3f", 8, cpu);
+    table_number(table, "wall_s", "%.3f", 8, wall);
+    table_number(table, "rms_error", "%.2f", 10, sqrt(squares / (double)bytes));
+    table_number(table, "rms_boil", "%.2f", 10, sqrt(changes / (double)bytes));
+    return table_end_row(table);
 }
 
 typedef SingeResult ShotFn(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
@@ -318,7 +301,7 @@ static SingeResult measure_shots(const BenchOptions *options, ShotFn *measure, c
 }
 
 SingeResult bench_preview(const BenchOptions *options, BenchTable *table, SingeError *error) {
-    *table = table_begin("preview", columns, COLUMNS, table->text);
+    table_begin(table, "preview");
     return measure_shots(options, preview_bench_measure, shots, sizeof shots / sizeof *shots, table, error);
 }
 
@@ -328,6 +311,6 @@ SingeResult bench_picture(const BenchOptions *options, BenchTable *table, SingeE
         {"lens", {0.08f, -0.28f, 0.09f}, {0, 0.02f, 0.005f}, 0.52f, 0.003f, 0.02f, false},
         {"flames", {0.08f, -0.28f, 0.09f}, {0, 0.02f, 0.005f}, 0.52f, 0.003f, 0.02f, true},
     };
-    *table = table_begin("picture", picture_columns, PICTURE_COLUMNS, table->text);
+    table_begin(table, "picture");
     return measure_shots(options, picture_measure, near, sizeof near / sizeof *near, table, error);
 }

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "analysis/crossings.h"
+
 static double geometry_distance(const float *a, const float *b) {
     double x = (double)a[0] - (double)b[0], y = (double)a[1] - (double)b[1], z = (double)a[2] - (double)b[2];
     return sqrt(x * x + y * y + z * z);
@@ -9,6 +11,17 @@ static double geometry_distance(const float *a, const float *b) {
 
 static double square(const float *v) {
     return (double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2];
+}
+
+void geometry_grid(uint32_t across, uint32_t along, uint32_t *cells) {
+    for (uint32_t c = 0; c < across * along; c++) {
+        const uint32_t row = across + 1, v = c / across * row + c % across;
+        uint32_t *cell = cells + (size_t)4 * c;
+        cell[0] = v;
+        cell[1] = v + 1;
+        cell[2] = v + row + 1;
+        cell[3] = v + row;
+    }
 }
 
 double geometry_energy(const SingeView *view, double gravity) {
@@ -97,6 +110,16 @@ double geometry_inverted(const SingeView *view) {
     }
 
     return count;
+}
+
+SingeResult geometry_crossings(SingeSim *sim, uint64_t *count, SingeError *error) {
+    SingeSurface surface = {0};
+    float at[3];
+    SingeResult result = singe_sim_surface(sim, &surface);
+    if (result) *error = *singe_sim_error(sim);
+    else if (!crossings_count(&surface, count, at)) result = SINGE_ERROR_MEMORY;
+    singe_surface_free(&surface);
+    return result;
 }
 
 double geometry_reach(const SingeView *view, const float *position) {

@@ -4,6 +4,9 @@
 
 #include "singe/singe.h"
 
+/// The cells of a grid of across x along cells, whose vertices lie in rows of across + 1: cells[4 * across * along].
+void geometry_grid(uint32_t across, uint32_t along, uint32_t *cells);
+
 /// J/kg, kinetic plus potential energy, weighted by particle mass; heights are measured from z = 0.
 double geometry_energy(const SingeView *view, double gravity);
 
@@ -21,6 +24,9 @@ double geometry_folded(const SingeView *view, int cells);
 
 /// Cells whose centre is not in front of their corners; cells without area do not count.
 double geometry_inverted(const SingeView *view);
+
+/// Pairs of triangles of the drawn surface that cross.
+SingeResult geometry_crossings(SingeSim *sim, uint64_t *count, SingeError *error);
 
 /// The max ratio of a particle's distance from a point on the sheet to that at rest, for particles more than 0.2 m from
 /// it at rest.

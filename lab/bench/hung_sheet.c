@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "bench/geometry.h"
+
 static const float size = 1; // m
 
 BenchSetup sheet_setup(const BenchOptions *options, BenchState state, int steps) {
@@ -40,14 +42,7 @@ SingeResult sheet_add_strip(SingeSim *sim, SingeSheetDef *def, const int cells[2
             x[2] = upright ? along : 0;
         }
 
-        for (uint32_t c = 0; c < n * rows; c++) {
-            uint32_t v = c / n * row + c % n, *cell = corners + (size_t)4 * c;
-            cell[0] = v;
-            cell[1] = v + 1;
-            cell[2] = v + row + 1;
-            cell[3] = v + row;
-        }
-
+        geometry_grid(n, rows, corners);
         def->vertex_count = vertices;
         def->positions = positions;
         def->cell_count = n * rows;

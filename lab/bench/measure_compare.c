@@ -14,28 +14,9 @@
 
 enum { STEPS = 20 }; // a frame
 
-enum { KIND, STATE, SPRINGS, SOLVER, SUBSTEPS, PROJECTIONS, FRAMES, MS, BLUE, ALL, FALL, RATIO, LESS, COLUMNS };
-
-static const BenchColumn columns[COLUMNS] = {
-    [KIND] = {"kind", NULL, 10, NULL},
-    [STATE] = {"state", NULL, 6, NULL},
-    [SPRINGS] = {"springs", "%.0f", 8, NULL},
-    [SOLVER] = {"solver", NULL, 11, NULL},
-    [SUBSTEPS] = {"substeps", "%.0f", 8, NULL},
-    [PROJECTIONS] = {"projections", "%.0f", 11, NULL},
-    [FRAMES] = {"frames", "%.0f", 6, NULL},
-    [MS] = {"step_ms", "%.4g", 9, NULL},
-    [BLUE] = {"blue_pct", "%.3g", 20, "max/p99/mean"},
-    [ALL] = {"all_pct", "%.3g", 20, "max/p99/mean"},
-    [FALL] = {"fall_m", "%.3f", 7, NULL},
-    [RATIO] = {"ratio", "%.1f", 8, NULL},
-    [LESS] = {"no_more_error", NULL, 13, NULL},
-};
-
 /// The results of a trajectory.
 typedef struct Outcome {
-    int frames;
-    double step_ms, fall;
+    double frames, step_ms, fall; ///< NAN where nothing was followed
     BenchValue blue, all;
 } Outcome;
 
@@ -68,29 +49,31 @@ static bool no_more(const BenchValue *ours, const BenchValue *theirs) {
     return less && !isnan(ours->number[0]);
 }
 
-static SingeResult compare_add(const Comparison *c, const BenchSetup *setup, double springs, const Outcome *outcome,
-                               const Outcome *paper) {
+static SingeResult compare_add(const Comparison *c, const char *kind, const BenchSetup *setup, double springs,
+                               const Outcome *outcome, const Outcome *paper) {
     const SingeSolverDef *solver = &setup->solver;
 
     // whether p99 and mean are at most the paper's
     bool edges = no_more(&outcome->blue, &paper->blue), all = no_more(&outcome->all, &paper->all);
-    const char *less = outcome == paper ? "-" : edges && all ? "edges and all" : edges ? "edges" : all ? "all" : "no";
-    BenchValue row[COLUMNS] = {
-        [KIND] = bench_text("trajectory"),
-        [STATE] = bench_text(state_name(setup->state)),
-        [SPRINGS] = bench_number(springs),
-        [SOLVER] = bench_text(enum_words.SingeSolverMethod[solver->method]),
-        [SUBSTEPS] = bench_number(solver->substeps),
-        [PROJECTIONS] = bench_number(solver->projections),
-        [FRAMES] = bench_number(outcome->frames),
-        [MS] = bench_number(outcome->step_ms),
-        [BLUE] = outcome->blue,
-        [ALL] = outcome->all,
-        [FALL] = bench_number(outcome->fall),
-        [RATIO] = bench_number(paper->step_ms / outcome->step_ms),
-        [LESS] = bench_text(less),
-    };
-    return table_add(c->table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
+    const char *less = outcome == paper || isnan(outcome->frames) ? "-"
+                       : edges && all                             ? "edges and all"
+                       : edges                                    ? "edges"
+                       : all                                      ? "all"
+                                                                  : "no";
+    table_text(c->table, "kind", 10, kind);
+    table_text(c->table, "state", 6, state_name(setup->state));
+    table_number(c->table, "springs", "%.0f", 8, springs);
+    table_text(c->table, "solver", 11, enum_words.SingeSolverMethod[solver->method]);
+    table_number(c->table, "substeps", "%.0f", 8, solver->substeps);
+    table_number(c->table, "projections", "%.0f", 11, solver->projections);
+    table_number(c->table, "frames", "%.0f", 6, outcome->frames);
+    table_number(c->table, "step_ms", "%.4g", 9, outcome->step_ms);
+    table_parts(c->table, "blue_pct", "%.3g", 20, "max/p99/mean", outcome->blue);
+    table_parts(c->table, "all_pct", "%.3g", 20, "max/p99/mean", outcome->all);
+    table_number(c->table, "fall_m", "%.3f", 7, outcome->fall);
+    table_number(c->table, "ratio", "%.1f", 8, paper->step_ms / outcome->step_ms);
+    table_text(c->table, "no_more_error", 13, less);
+    return table_end_row(c->table);
 }
 
 static BenchSetup method_setup(const Comparison *c, BenchState state, double springs, SingeSolverMethod method) {
@@ -109,13 +92,13 @@ static SingeResult trajectories(const Comparison *c, BenchState state, double sp
     Outcome paper, ours;
     SingeResult result = compare_follow(c, &setup, c->frames, c->budget, &paper);
 
-    if (!result) result = compare_add(c, &setup, springs, &paper, &paper);
+    if (!result) result = compare_add(c, "trajectory", &setup, springs, &paper, &paper);
     double best_edges = 0, best_all = 0;
     setup = method_setup(c, state, springs, SINGE_SOLVER_STRAND);
     for (size_t i = 0; i < sizeof substeps / sizeof *substeps && !result; i++) {
         setup.solver.substeps = substeps[i];
-        result = compare_follow(c, &setup, paper.frames, INFINITY, &ours);
-        if (!result) result = compare_add(c, &setup, springs, &ours, &paper);
+        result = compare_follow(c, &setup, (int)paper.frames, INFINITY, &ours);
+        if (!result) result = compare_add(c, "trajectory", &setup, springs, &ours, &paper);
         if (!result && no_more(&ours.blue, &paper.blue)) best_edges = fmax(best_edges, paper.step_ms / ours.step_ms);
         if (!result && no_more(&ours.all, &paper.all)) best_all = fmax(best_all, paper.step_ms / ours.step_ms);
     }
@@ -148,24 +131,13 @@ static SingeResult full(const Comparison *c, double springs, SingeSolverMethod m
     if (method == SINGE_SOLVER_PAPER) *paper_ms = ms;
     timing_free(&timing);
     singe_sim_destroy(sim);
+    if (result) return result;
+
+    // nothing but the time is compared
     const BenchValue none = {.number = {NAN, NAN, NAN}};
-    BenchValue row[COLUMNS] = {
-        [KIND] = bench_text("full"),
-        [STATE] = bench_text("swing"),
-        [SPRINGS] = bench_number(springs),
-        [SOLVER] = bench_text(enum_words.SingeSolverMethod[method]),
-        [SUBSTEPS] = bench_number(1),
-        [PROJECTIONS] = bench_number(7),
-        [FRAMES] = none,
-        [MS] = bench_number(ms),
-        [BLUE] = none,
-        [ALL] = none,
-        [FALL] = none,
-        [RATIO] = bench_number(*paper_ms / ms),
-        [LESS] = bench_text("-"),
-    };
-    if (!result && !table_add(c->table, row)) result = SINGE_ERROR_MEMORY;
-    return result;
+    const Outcome outcome = {.frames = NAN, .step_ms = ms, .fall = NAN, .blue = none, .all = none};
+    const Outcome paper = {.step_ms = *paper_ms};
+    return compare_add(c, "full", &setup, springs, &outcome, &paper);
 }
 
 SingeResult bench_compare(const BenchOptions *options, BenchTable *table, SingeError *error) {
@@ -177,7 +149,7 @@ SingeResult bench_compare(const BenchOptions *options, BenchTable *table, SingeE
     SingeResult result = SINGE_OK;
 
     c.frames = (int)fmax(1, round(seconds * BENCH_FPS));
-    *table = table_begin("compare", columns, COLUMNS, table->text);
+    table_begin(table, "compare");
     for (int i = 0; i < springs.count && !result; i++) {
         double size = pow(options_cells(springs.values[i]), 2) * 10, paper_ms = 0;
         result = trajectories(&c, BENCH_SWING, size);

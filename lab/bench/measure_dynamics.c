@@ -8,45 +8,6 @@
 #include "bench/strain.h"
 #include "bench/timing.h"
 
-enum {
-    SPRINGS,
-    SOLVER,
-    THREADS,
-    STEP_MEDIAN,
-    STEP_MIN,
-    PROJECTION_MEDIAN,
-    PROJECTION_MIN,
-    SWEEPS,
-    NS,
-    GFLOPS,
-    GFLOPS_SHARE,
-    GB,
-    GB_SHARE,
-    MEMORY,
-    BLUE,
-    ALL,
-    COLUMNS
-};
-
-static const BenchColumn columns[COLUMNS] = {
-    [SPRINGS] = {"springs", "%.0f", 8, NULL},
-    [SOLVER] = {"solver", NULL, 11, NULL},
-    [THREADS] = {"threads", "%.0f", 7, NULL},
-    [STEP_MEDIAN] = {"step_ms", "%.4g", 8, NULL},
-    [STEP_MIN] = {"min_ms", "%.4g", 8, NULL},
-    [PROJECTION_MEDIAN] = {"projection_ms", "%.4g", 13, NULL},
-    [PROJECTION_MIN] = {"min_proj_ms", "%.4g", 13, NULL},
-    [SWEEPS] = {"sweeps", "%.0f", 6, NULL},
-    [NS] = {"ns_spring_sweep", "%.2f", 15, NULL},
-    [GFLOPS] = {"gflops", "%.2f", 7, NULL},
-    [GFLOPS_SHARE] = {"of_peak_pct", "%.1f", 11, NULL},
-    [GB] = {"gb_s", "%.2f", 7, NULL},
-    [GB_SHARE] = {"of_stream_pct", "%.1f", 13, NULL},
-    [MEMORY] = {"bytes_spring", "%.1f", 12, NULL},
-    [BLUE] = {"blue_pct", "%.3g", 20, "max/p99/mean"},
-    [ALL] = {"all_pct", "%.3g", 20, "max/p99/mean"},
-};
-
 static SingeResult dynamics_add_row(BenchTable *table, const BenchSetup *setup, const Peaks *peaks, const SingeSim *sim,
                                     const Timing *timing) {
     Strain *strain = malloc(2 * sizeof *strain);
@@ -64,34 +25,31 @@ static SingeResult dynamics_add_row(BenchTable *table, const BenchSetup *setup, 
     double gflops = 1e-9 * t->projection_flops / seconds, gb_s = 1e-9 * t->projection_bytes / seconds;
     if (t->projection_flops == 0) gflops = NAN;
     if (t->projection_bytes == 0) gb_s = NAN;
-    BenchValue row[COLUMNS] = {
-        [SPRINGS] = bench_number(springs),
-        [SOLVER] = bench_text(enum_words.SingeSolverMethod[setup->solver.method]),
-        [THREADS] = bench_number(setup->threads),
-        [STEP_MEDIAN] = bench_number(timing_median(timing, SINGE_STAGE_DYNAMICS)),
-        [STEP_MIN] = bench_number(timing_min(timing, SINGE_STAGE_DYNAMICS)),
-        [PROJECTION_MEDIAN] = bench_number(timing_median(timing, TIMED_PROJECTION)),
-        [PROJECTION_MIN] = bench_number(timing_min(timing, TIMED_PROJECTION)),
-        [SWEEPS] = bench_number(sweeps / timing->steps),
-        [NS] = bench_number(1e9 * seconds / (sweeps * springs)),
-        [GFLOPS] = bench_number(gflops),
-        [GFLOPS_SHARE] = bench_number(100 * gflops / peaks->gflops),
-        [GB] = bench_number(gb_s),
-        [GB_SHARE] = bench_number(100 * gb_s / peaks_stream(peaks, working_set / setup->threads)),
-        [MEMORY] = bench_number((double)singe_sim_counts(sim).memory / springs),
-        [BLUE] = strain_percent(&strain[0]),
-        [ALL] = strain_percent(&strain[1]),
-    };
-    bool added = table_add(table, row);
+    table_number(table, "springs", "%.0f", 8, springs);
+    table_text(table, "solver", 11, enum_words.SingeSolverMethod[setup->solver.method]);
+    table_number(table, "threads", "%.0f", 7, setup->threads);
+    table_number(table, "step_ms", "%.4g", 8, timing_median(timing, SINGE_STAGE_DYNAMICS));
+    table_number(table, "min_ms", "%.4g", 8, timing_min(timing, SINGE_STAGE_DYNAMICS));
+    table_number(table, "projection_ms", "%.4g", 13, timing_median(timing, TIMED_PROJECTION));
+    table_number(table, "min_proj_ms", "%.4g", 13, timing_min(timing, TIMED_PROJECTION));
+    table_number(table, "sweeps", "%.0f", 6, sweeps / timing->steps);
+    table_number(table, "ns_spring_sweep", "%.2f", 15, 1e9 * seconds / (sweeps * springs));
+    table_number(table, "gflops", "%.2f", 7, gflops);
+    table_number(table, "of_peak_pct", "%.1f", 11, 100 * gflops / peaks->gflops);
+    table_number(table, "gb_s", "%.2f", 7, gb_s);
+    table_number(table, "of_stream_pct", "%.1f", 13, 100 * gb_s / peaks_stream(peaks, working_set / setup->threads));
+    table_number(table, "bytes_spring", "%.1f", 12, (double)singe_sim_counts(sim).memory / springs);
+    table_parts(table, "blue_pct", "%.3g", 20, "max/p99/mean", strain_percent(&strain[0]));
+    table_parts(table, "all_pct", "%.3g", 20, "max/p99/mean", strain_percent(&strain[1]));
     free(strain);
-    return added ? SINGE_OK : SINGE_ERROR_MEMORY;
+    return table_end_row(table);
 }
 
 SingeResult bench_dynamics(const BenchOptions *options, BenchTable *table, SingeError *error) {
     BenchList springs = bench_list(&options->springs, 5, (const double[]){1e3, 4e3, 16e3, 1e5, 1e6});
     BenchSetup setup = sheet_setup(options, options->state, 20);
     Peaks peaks;
-    *table = table_begin("dynamics", columns, COLUMNS, table->text);
+    table_begin(table, "dynamics");
     if (!peaks_measure(&peaks, options->threads, options->quick ? 0.1 : 1)) return SINGE_ERROR_MEMORY;
     peaks_tell(&peaks, table);
     SingeResult result = SINGE_OK;

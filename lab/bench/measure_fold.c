@@ -19,15 +19,6 @@
 static const double length = 0.08, width = 0.0125, arc = 0.015, pi = 3.14159265358979323846;
 static const double fold_time = 0.6, hold_time = 0.3, free_time = 2;
 
-enum { SIDE, BENT, CELL, STEP, LEFT, EXPECTED, ELASTIC, INVERTED, COLUMNS };
-
-static const BenchColumn columns[COLUMNS] = {
-    [SIDE] = {"towards", NULL, 8, NULL},           [BENT] = {"bent_deg", "%.0f", 8, NULL},
-    [CELL] = {"cell_mm", "%.3g", 8, NULL},         [STEP] = {"h_ms", "%.3g", 6, NULL},
-    [LEFT] = {"left_deg", "%.1f", 8, NULL},        [EXPECTED] = {"expected_deg", "%.1f", 12, NULL},
-    [ELASTIC] = {"elastic_deg", "%.1f", 11, NULL}, [INVERTED] = {"inverted", "%.0f", 8, NULL},
-};
-
 typedef struct Fold {
     double angle; ///< rad, positive: up, towards the centres
     double cell, step;
@@ -144,7 +135,7 @@ SingeResult bench_fold(const BenchOptions *options, BenchTable *table, SingeErro
     const SingeMaterialDef material = singe_default_material();
     const double share = (double)material.crease_share.value, radius = (double)material.crease_radius.value;
     SingeResult result = SINGE_OK;
-    *table = table_begin("fold", columns, COLUMNS, table->text);
+    table_begin(table, "fold");
     for (int i = 0; i < 2 * 2 * 4 && !result; i++) {
         const int setting = i % 4, towards = i / 4 % 2, bend = i / 8;
         if (options->quick && setting == 3) continue;
@@ -153,17 +144,18 @@ SingeResult bench_fold(const BenchOptions *options, BenchTable *table, SingeErro
         result = fold_run(options, &fold, false, error);
         double elastic = fold.left;
         if (!result) result = fold_run(options, &fold, true, error);
-        BenchValue row[COLUMNS] = {
-            [SIDE] = bench_text(towards ? "centres" : "corners"),
-            [BENT] = bench_number(bends[bend]),
-            [CELL] = bench_number(1e3 * fold.cell),
-            [STEP] = bench_number(1e3 * fold.step),
-            [LEFT] = bench_number(fold.left),
-            [EXPECTED] = bench_number(180 / pi * fmax(0, share * (fabs(fold.angle) - arc / radius))),
-            [ELASTIC] = bench_number(elastic),
-            [INVERTED] = bench_number(fold.inverted),
-        };
-        if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
+        if (!result) {
+            table_text(table, "towards", 8, towards ? "centres" : "corners");
+            table_number(table, "bent_deg", "%.0f", 8, bends[bend]);
+            table_number(table, "cell_mm", "%.3g", 8, 1e3 * fold.cell);
+            table_number(table, "h_ms", "%.3g", 6, 1e3 * fold.step);
+            table_number(table, "left_deg", "%.1f", 8, fold.left);
+            table_number(table, "expected_deg", "%.1f", 12,
+                         180 / pi * fmax(0, share * (fabs(fold.angle) - arc / radius)));
+            table_number(table, "elastic_deg", "%.1f", 11, elastic);
+            table_number(table, "inverted", "%.0f", 8, fold.inverted);
+            result = table_end_row(table);
+        }
     }
 
     return result;

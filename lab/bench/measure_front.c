@@ -4,37 +4,6 @@
 
 #include <math.h>
 
-enum {
-    MATERIAL,
-    GRAMMAGE,
-    DIRECTION,
-    CELL,
-    STEP,
-    THICKENING,
-    SPEED,
-    CHANGE,
-    HOTTEST,
-    RESIDUE,
-    BASIS,
-    FINDING,
-    FRONT_COLUMNS
-};
-
-static const BenchColumn front_columns[FRONT_COLUMNS] = {
-    [MATERIAL] = {"material", NULL, 13, NULL},
-    [GRAMMAGE] = {"g_m2", "%.0f", 4, NULL},
-    [DIRECTION] = {"direction", NULL, 9, NULL},
-    [CELL] = {"cell_mm", "%.2g", 7, NULL},
-    [STEP] = {"step_ms", "%.2f", 7, NULL},
-    [THICKENING] = {"F", "%.2f", 5, NULL},
-    [SPEED] = {"speed_mm_s", "%.3g", 15, "is/from/to"},
-    [CHANGE] = {"change_pct", "%+.1f", 10, NULL},
-    [HOTTEST] = {"hottest_C", "%.0f", 11, "is/from/to"},
-    [RESIDUE] = {"residue_pct", "%.0f", 11, "is/from/to"},
-    [BASIS] = {"basis", NULL, 10, NULL},
-    [FINDING] = {"finding", NULL, 15, NULL},
-};
-
 /// A measured value, and its range in sources; 0 and 0 if there is none.
 static BenchValue beside(double is, const float range[2], double scale, double zero) {
     bool known = range[1] > 0;
@@ -104,32 +73,34 @@ static SingeResult front_material(const BenchOptions *options, const BenchMateri
         }
 
         StripResult result = {0};
-        BenchValue row[FRONT_COLUMNS];
         SingeResult code = strip_burn(&setup, &result, error);
         if (code) return code;
 
         static const float nothing[2] = {0};
         const bool level = direction == FRONT_STILL || direction == FRONT_LEVEL;
-        row[MATERIAL] = bench_text(material->name);
-        row[GRAMMAGE] = bench_number(1e3 * (double)material->def.grammage.value);
-        row[DIRECTION] = bench_text(direction_names[direction]);
-        row[CELL] = bench_number(1e3 * (double)setup.cell);
-        row[STEP] = bench_number(1e3 * (double)setup.time_step);
-        row[THICKENING] = bench_number(result.thickening);
-        row[SPEED] = beside(result.speed, level ? material->speed : nothing, 1e3, 0);
-        row[CHANGE] = bench_number(known.usual > 0 ? 100 * (result.speed / known.usual - 1) : NAN);
+        table_text(table, "material", 13, material->name);
+        table_number(table, "g_m2", "%.0f", 4, 1e3 * (double)material->def.grammage.value);
+        table_text(table, "direction", 9, direction_names[direction]);
+        table_number(table, "cell_mm", "%.2g", 7, 1e3 * (double)setup.cell);
+        table_number(table, "step_ms", "%.2f", 7, 1e3 * (double)setup.time_step);
+        table_number(table, "F", "%.2f", 5, result.thickening);
+        table_parts(table, "speed_mm_s", "%.3g", 15, "is/from/to",
+                    beside(result.speed, level ? material->speed : nothing, 1e3, 0));
+        table_number(table, "change_pct", "%+.1f", 10, known.usual > 0 ? 100 * (result.speed / known.usual - 1) : NAN);
 
         // the front that has climbed to the end has not burnt through yet
         const bool burnt = direction != FRONT_UP;
-        row[HOTTEST] = beside(burnt ? result.hottest : (double)NAN, level ? material->temperature : nothing, 1, 273.15);
-        row[RESIDUE] = beside(burnt ? result.residue : (double)NAN, level ? material->residue : nothing, 100, 0);
-        row[BASIS] = bench_text(material->calibrated && level ? "calibrated" : "predicted");
-        row[FINDING] = bench_text(finding(material, direction, &result, &known));
+        table_parts(table, "hottest_C", "%.0f", 11, "is/from/to",
+                    beside(burnt ? result.hottest : (double)NAN, level ? material->temperature : nothing, 1, 273.15));
+        table_parts(table, "residue_pct", "%.0f", 11, "is/from/to",
+                    beside(burnt ? result.residue : (double)NAN, level ? material->residue : nothing, 100, 0));
+        table_text(table, "basis", 10, material->calibrated && level ? "calibrated" : "predicted");
+        table_text(table, "finding", 15, finding(material, direction, &result, &known));
 
         if (i == 0) known.usual = result.speed;
         if (direction == FRONT_LEVEL) known.level = result.speed;
         if (direction == FRONT_DOWN) known.down = result.speed;
-        if (!table_add(table, row)) return SINGE_ERROR_MEMORY;
+        if (table_end_row(table)) return SINGE_ERROR_MEMORY;
     }
 
     return SINGE_OK;
@@ -137,7 +108,7 @@ static SingeResult front_material(const BenchOptions *options, const BenchMateri
 
 SingeResult bench_front(const BenchOptions *options, BenchTable *table, SingeError *error) {
     SingeResult result = SINGE_OK;
-    *table = table_begin("front", front_columns, FRONT_COLUMNS, table->text);
+    table_begin(table, "front");
     for (int m = 0; m < options->material_count && !result; m++)
         result = front_material(options, &options->materials[m], table, error);
     return result;

@@ -4,7 +4,9 @@
 #include <stdlib.h>
 
 #include "bench/bench.h"
+#include "bench/geometry.h"
 #include "bench/machine.h"
+#include "bench/strain.h"
 #include "analysis/numbers.h"
 
 enum { STEPS = 20, ROOM = 4096 };
@@ -12,55 +14,6 @@ static const float side = 1;                    // m
 static const float sphere = 0.12f, lift = 0.3f; // m
 static const float ball = 0.1f;                 // m, radius of the closed mesh
 static const double seconds = 3, collapse_seconds = 0.3;
-
-enum {
-    CELLS,
-    SPRINGS,
-    THREADS,
-    FRAME_MEDIAN,
-    FRAME_MAX,
-    STEP_MEAN,
-    HEAT,
-    BURN,
-    ABLATE,
-    DYNAMICS,
-    PROJECTION,
-    CONTACT,
-    CONTACT_STEP,
-    SEARCHES,
-    PAIRS,
-    PUSHES,
-    STOPS,
-    UNRESOLVED,
-    STRAIN,
-    INVERTED,
-    SPEED,
-    COLUMNS
-};
-
-static const BenchColumn columns[COLUMNS] = {
-    [CELLS] = {"cells", "%.0f", 5, NULL},
-    [SPRINGS] = {"springs", "%.0f", 8, NULL},
-    [THREADS] = {"threads", "%.0f", 7, NULL},
-    [FRAME_MEDIAN] = {"frame_ms", "%.4g", 8, NULL},
-    [FRAME_MAX] = {"max_ms", "%.4g", 8, NULL},
-    [STEP_MEAN] = {"step_ms", "%.4g", 8, NULL},
-    [HEAT] = {"heat_ms", "%.3g", 8, NULL},
-    [BURN] = {"burn_ms", "%.3g", 8, NULL},
-    [ABLATE] = {"ablate_ms", "%.3g", 9, NULL},
-    [DYNAMICS] = {"dynamics_ms", "%.4g", 11, NULL},
-    [PROJECTION] = {"projection_ms", "%.4g", 13, NULL},
-    [CONTACT] = {"contact_ms", "%.4g", 10, NULL},
-    [CONTACT_STEP] = {"contact_100k_ms", "%.3g", 15, NULL}, // a step, for 100,000 springs
-    [SEARCHES] = {"searches_step", "%.2f", 13, NULL},
-    [PAIRS] = {"pairs_step", "%.0f", 10, NULL},
-    [PUSHES] = {"repulsions_substep", "%.0f", 14, NULL},
-    [STOPS] = {"stops_step", "%.1f", 10, NULL},
-    [UNRESOLVED] = {"crossing", "%.0f", 8, NULL},
-    [STRAIN] = {"strain_pct", "%.3g", 20, "max/p99/mean"},
-    [INVERTED] = {"inverted", "%.0f", 8, NULL},
-    [SPEED] = {"speed", "%.3f", 8, NULL},
-};
 
 /// A cloth in the x-z plane with slight waves, so that it folds instead of standing.
 static SingeResult add_cloth(SingeSim *sim, int n) {
@@ -76,15 +29,8 @@ static SingeResult add_cloth(SingeSim *sim, int n) {
         x[3 * v + 2] = lift + side * j;
     }
 
-    for (uint32_t c = 0; c < (uint32_t)(n * n) && !result; c++) {
-        uint32_t v = c / (uint32_t)n * row + c % (uint32_t)n;
-        cells[4 * c] = v;
-        cells[4 * c + 1] = v + 1;
-        cells[4 * c + 2] = v + row + 1;
-        cells[4 * c + 3] = v + row;
-    }
-
     if (!result) {
+        geometry_grid((uint32_t)n, (uint32_t)n, cells);
         SingeSheetDef def = singe_default_sheet();
         SingeSheetId id;
         def.vertex_count = row * row;
@@ -189,39 +135,41 @@ static SingeResult heap_measure(const BenchOptions *options, int cells, bool clo
         frame_ms[f] = 1e3 * (machine_clock() - begun);
     }
 
-    BenchValue row[COLUMNS] = {0};
-    if (result) *error = *singe_sim_error(sim);
-    else {
+    if (result) {
+        *error = *singe_sim_error(sim);
+    } else {
         SingeTimers t = singe_sim_timers(sim);
         SingeCounts counts = singe_sim_counts(sim);
         SingeStats stats = singe_sim_stats(sim);
         double springs = 0, a_frame = 1e3 / frames, steps = (double)t.steps;
         for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += counts.springs[c];
         double mean = numbers_mean(frame_ms, frames), median = numbers_median(frame_ms, frames);
-        row[CELLS] = bench_number(cells);
-        row[SPRINGS] = bench_number(springs);
-        row[THREADS] = bench_number(options->threads);
-        row[FRAME_MEDIAN] = bench_number(median);
-        row[FRAME_MAX] = bench_number(frame_ms[frames - 1]);
-        row[STEP_MEAN] = bench_number(mean * frames / steps);
-        row[HEAT] = bench_number(a_frame * t.seconds[SINGE_STAGE_HEAT]);
-        row[BURN] = bench_number(a_frame * t.seconds[SINGE_STAGE_BURN]);
-        row[ABLATE] = bench_number(a_frame * t.seconds[SINGE_STAGE_ABLATE]);
-        row[DYNAMICS] = bench_number(a_frame * t.seconds[SINGE_STAGE_DYNAMICS]);
-        row[PROJECTION] = bench_number(a_frame * t.projection_seconds);
-        row[CONTACT] = bench_number(a_frame * t.contact_seconds);
-        row[CONTACT_STEP] = bench_number(1e3 * t.contact_seconds / steps * 1e5 / springs);
-        row[SEARCHES] = bench_number((double)t.contact_searches / steps);
-        row[PAIRS] = bench_number((double)t.contact_pairs / steps);
-        row[PUSHES] = bench_number((double)t.contact_repulsions / steps / options_substeps(options));
-        row[STOPS] = bench_number((double)t.contact_stops / steps);
-        row[UNRESOLVED] = bench_number((double)(t.contact_unresolved + t.contact_dropped));
-        row[STRAIN] = (BenchValue){.number = {100 * stats.strain_max, 100 * stats.strain_p99, 100 * stats.strain_mean}};
-        row[INVERTED] = bench_number(stats.inverted_cells);
-        row[SPEED] = bench_number(stats.speed_rms_unburnt);
+        table_number(table, "cells", "%.0f", 5, cells);
+        table_number(table, "springs", "%.0f", 8, springs);
+        table_number(table, "threads", "%.0f", 7, options->threads);
+        table_number(table, "frame_ms", "%.4g", 8, median);
+        table_number(table, "max_ms", "%.4g", 8, frame_ms[frames - 1]);
+        table_number(table, "step_ms", "%.4g", 8, mean * frames / steps);
+        table_number(table, "heat_ms", "%.3g", 8, a_frame * t.seconds[SINGE_STAGE_HEAT]);
+        table_number(table, "burn_ms", "%.3g", 8, a_frame * t.seconds[SINGE_STAGE_BURN]);
+        table_number(table, "ablate_ms", "%.3g", 9, a_frame * t.seconds[SINGE_STAGE_ABLATE]);
+        table_number(table, "dynamics_ms", "%.4g", 11, a_frame * t.seconds[SINGE_STAGE_DYNAMICS]);
+        table_number(table, "projection_ms", "%.4g", 13, a_frame * t.projection_seconds);
+        table_number(table, "contact_ms", "%.4g", 10, a_frame * t.contact_seconds);
+        table_number(table, "contact_100k_ms", "%.3g", 15,
+                     1e3 * t.contact_seconds / steps * 1e5 / springs); // a step, for 100,000 springs
+        table_number(table, "searches_step", "%.2f", 13, (double)t.contact_searches / steps);
+        table_number(table, "pairs_step", "%.0f", 10, (double)t.contact_pairs / steps);
+        table_number(table, "repulsions_substep", "%.0f", 14,
+                     (double)t.contact_repulsions / steps / options_substeps(options));
+        table_number(table, "stops_step", "%.1f", 10, (double)t.contact_stops / steps);
+        table_number(table, "crossing", "%.0f", 8, (double)(t.contact_unresolved + t.contact_dropped));
+        table_parts(table, "strain_pct", "%.3g", 20, "max/p99/mean", strain_of(&stats));
+        table_number(table, "inverted", "%.0f", 8, stats.inverted_cells);
+        table_number(table, "speed", "%.3f", 8, stats.speed_rms_unburnt);
+        result = table_end_row(table);
     }
 
-    if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
     singe_sim_destroy(sim);
     return result;
 }
@@ -229,7 +177,7 @@ static SingeResult heap_measure(const BenchOptions *options, int cells, bool clo
 SingeResult bench_heap(const BenchOptions *options, BenchTable *table, SingeError *error) {
     BenchList cells = bench_list(&options->cells, 2, (const double[]){100, 200});
     SingeResult result = SINGE_OK;
-    *table = table_begin("heap", columns, COLUMNS, table->text);
+    table_begin(table, "heap");
     for (int i = 0; i < cells.count && !result; i++)
         result = heap_measure(options, (int)cells.values[i], false, table, error);
     return result;
@@ -238,7 +186,7 @@ SingeResult bench_heap(const BenchOptions *options, BenchTable *table, SingeErro
 SingeResult bench_collapse(const BenchOptions *options, BenchTable *table, SingeError *error) {
     BenchList cells = bench_list(&options->cells, 2, (const double[]){40, 102});
     SingeResult result = SINGE_OK;
-    *table = table_begin("collapse", columns, COLUMNS, table->text);
+    table_begin(table, "collapse");
     for (int i = 0; i < cells.count && !result; i++)
         result = heap_measure(options, (int)cells.values[i], true, table, error);
     return result;

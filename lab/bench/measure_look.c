@@ -22,22 +22,6 @@ enum { SUBSTEPS = 16 };
 
 enum { POINTS = 41, LINES = 24, SAMPLES = 128 };
 
-enum { SETTING, SAG, SAG_CHANGE, DROP, DROP_CHANGE, SHAPE, WAVE, WAVE_CHANGE, MEAN_WAVE, MEAN_CHANGE, HEIGHT, COLUMNS };
-
-static const BenchColumn columns[COLUMNS] = {
-    [SETTING] = {"setting", NULL, 12, NULL},
-    [SAG] = {"sag_m", "%.4f", 7, NULL},
-    [SAG_CHANGE] = {"change_pct", "%+.1f", 10, NULL},
-    [DROP] = {"drop_m", "%.4f", 7, NULL},
-    [DROP_CHANGE] = {"drop_change_pct", "%+.1f", 15, NULL},
-    [SHAPE] = {"shape_mm", "%.1f", 8, NULL},
-    [WAVE] = {"wavelength_mm", "%.0f", 13, NULL},
-    [WAVE_CHANGE] = {"wavelength_change_pct", "%+.1f", 21, NULL},
-    [MEAN_WAVE] = {"mean_wave_mm", "%.0f", 12, NULL},
-    [MEAN_CHANGE] = {"mean_change_pct", "%+.1f", 15, NULL},
-    [HEIGHT] = {"wrinkle_mm", "%.2f", 10, NULL},
-};
-
 typedef struct Look {
     double shape[POINTS * POINTS][3];
     double sag, drop, wavelength, mean_wave, height;
@@ -153,7 +137,7 @@ SingeResult bench_look(const BenchOptions *options, BenchTable *table, SingeErro
     BenchList thickness = bench_list(&options->thickness, 1, (const double[]){2e-3});
     Look *looks = calloc(SETTINGS, sizeof *looks);
     SingeResult result = looks ? SINGE_OK : SINGE_ERROR_MEMORY;
-    *table = table_begin("look", columns, COLUMNS, table->text);
+    table_begin(table, "look");
     for (int i = 0; i < SETTINGS && !result; i++) {
         const Setting *setting = &settings[i];
         BenchSetup setup = sheet_setup(options, BENCH_HANG, 20);
@@ -171,20 +155,20 @@ SingeResult bench_look(const BenchOptions *options, BenchTable *table, SingeErro
         double sum = 0;
         for (int p = 0; p < POINTS * POINTS; p++)
             for (int axis = 0; axis < 3; axis++) sum += pow(look->shape[p][axis] - base->shape[p][axis], 2);
-        BenchValue row[COLUMNS] = {
-            [SETTING] = bench_text(setting->name),
-            [SAG] = bench_number(look->sag),
-            [SAG_CHANGE] = bench_number(change(look->sag, base->sag)),
-            [DROP] = bench_number(look->drop),
-            [DROP_CHANGE] = bench_number(change(look->drop, base->drop)),
-            [SHAPE] = bench_number(1e3 * sqrt(sum / (POINTS * POINTS))),
-            [WAVE] = bench_number(1e3 * look->wavelength),
-            [WAVE_CHANGE] = bench_number(change(look->wavelength, base->wavelength)),
-            [MEAN_WAVE] = bench_number(1e3 * look->mean_wave),
-            [MEAN_CHANGE] = bench_number(change(look->mean_wave, base->mean_wave)),
-            [HEIGHT] = bench_number(1e3 * look->height),
-        };
-        if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
+        if (!result) {
+            table_text(table, "setting", 12, setting->name);
+            table_number(table, "sag_m", "%.4f", 7, look->sag);
+            table_number(table, "change_pct", "%+.1f", 10, change(look->sag, base->sag));
+            table_number(table, "drop_m", "%.4f", 7, look->drop);
+            table_number(table, "drop_change_pct", "%+.1f", 15, change(look->drop, base->drop));
+            table_number(table, "shape_mm", "%.1f", 8, 1e3 * sqrt(sum / (POINTS * POINTS)));
+            table_number(table, "wavelength_mm", "%.0f", 13, 1e3 * look->wavelength);
+            table_number(table, "wavelength_change_pct", "%+.1f", 21, change(look->wavelength, base->wavelength));
+            table_number(table, "mean_wave_mm", "%.0f", 12, 1e3 * look->mean_wave);
+            table_number(table, "mean_change_pct", "%+.1f", 15, change(look->mean_wave, base->mean_wave));
+            table_number(table, "wrinkle_mm", "%.2f", 10, 1e3 * look->height);
+            result = table_end_row(table);
+        }
     }
 
     free(looks);

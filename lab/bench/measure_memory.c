@@ -4,18 +4,6 @@
 #include "bench/machine.h"
 #include "bench/timing.h"
 
-enum { SPRINGS, SIMULATION, CONTACT, BUILDING, SURFACE, TOGETHER, MEGABYTES, COLUMNS };
-
-static const BenchColumn columns[COLUMNS] = {
-    [SPRINGS] = {"springs", "%.0f", 8, NULL},
-    [SIMULATION] = {"bytes_spring", "%.1f", 12, NULL},
-    [CONTACT] = {"contact_bytes_spring", "%.1f", 20, NULL},
-    [BUILDING] = {"building_bytes_spring", "%.1f", 21, NULL},
-    [SURFACE] = {"surface_bytes_spring", "%.1f", 20, NULL},
-    [TOGETHER] = {"all_bytes_spring", "%.1f", 16, NULL},
-    [MEGABYTES] = {"all_mb", "%.2f", 8, NULL},
-};
-
 /// Memory of a simulation with contact, after a step.
 static SingeResult measure_contact(const BenchOptions *options, double springs, size_t *held_bytes, SingeError *error) {
     MachineHeld held = {0};
@@ -34,7 +22,7 @@ static SingeResult measure_contact(const BenchOptions *options, double springs, 
 SingeResult bench_memory(const BenchOptions *options, BenchTable *table, SingeError *error) {
     BenchList springs = bench_list(&options->springs, 5, (const double[]){1e3, 4e3, 16e3, 1e5, 1e6});
     SingeResult result = SINGE_OK;
-    *table = table_begin("memory", columns, COLUMNS, table->text);
+    table_begin(table, "memory");
     for (int i = 0; i < springs.count && !result; i++) {
         MachineHeld held = {0};
         const SingeAllocator counting = {machine_resize, &held};
@@ -49,16 +37,17 @@ SingeResult bench_memory(const BenchOptions *options, BenchTable *table, SingeEr
         if (!result) result = singe_sim_surface(sim, &surface);
         if (result) *error = *singe_sim_error(sim);
         double count = timing_springs(sim);
-        BenchValue row[COLUMNS] = {
-            [SPRINGS] = bench_number(count),
-            [SIMULATION] = bench_number((double)simulation / count),
-            [CONTACT] = bench_number(((double)with_contact - (double)simulation) / count),
-            [BUILDING] = bench_number((double)building / count),
-            [SURFACE] = bench_number((double)(held.now - simulation) / count),
-            [TOGETHER] = bench_number((double)held.now / count),
-            [MEGABYTES] = bench_number(1e-6 * (double)held.now),
-        };
-        if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
+        if (!result) {
+            table_number(table, "springs", "%.0f", 8, count);
+            table_number(table, "bytes_spring", "%.1f", 12, (double)simulation / count);
+            table_number(table, "contact_bytes_spring", "%.1f", 20,
+                         ((double)with_contact - (double)simulation) / count);
+            table_number(table, "building_bytes_spring", "%.1f", 21, (double)building / count);
+            table_number(table, "surface_bytes_spring", "%.1f", 20, (double)(held.now - simulation) / count);
+            table_number(table, "all_bytes_spring", "%.1f", 16, (double)held.now / count);
+            table_number(table, "all_mb", "%.2f", 8, 1e-6 * (double)held.now);
+            result = table_end_row(table);
+        }
         singe_surface_free(&surface);
         singe_sim_destroy(sim);
     }

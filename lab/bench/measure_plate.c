@@ -24,16 +24,6 @@
 
 static const double pi = 3.14159265358979323846;
 
-enum { PART, ISOTROPIC, ANGLE, CELL, SUBSTEPS, STIFFNESS, FIRST, SECOND, ROLLS, COLUMNS };
-
-static const BenchColumn columns[COLUMNS] = {
-    [PART] = {"part", NULL, 6, NULL},           [ISOTROPIC] = {"isotropic", NULL, 10, NULL},
-    [ANGLE] = {"mesh_deg", "%.0f", 9, NULL},    [CELL] = {"cell_mm", "%.3g", 8, NULL},
-    [SUBSTEPS] = {"substeps", "%.0f", 9, NULL}, [STIFFNESS] = {"over_D", "%.3f", 7, NULL},
-    [FIRST] = {"k1_per_m", "%.2f", 9, NULL},    [SECOND] = {"k2_per_m", "%.2f", 9, NULL},
-    [ROLLS] = {"rolls_deg", "%.0f", 10, NULL},
-};
-
 typedef struct Plate {
     const BenchOptions *options;
     bool isotropic;
@@ -210,18 +200,16 @@ static SingeResult plate_row(const Plate *plate, bool disc, BenchTable *table, S
     double ratio = NAN, curvature[2] = {NAN, NAN}, rolls = NAN;
     SingeResult result = disc ? disc_roll(plate, curvature, &rolls, error) : strip_bend(plate, &ratio, error);
     if (result) return result;
-    BenchValue row[COLUMNS] = {
-        [PART] = bench_text(disc ? "disc" : "strip"),
-        [ISOTROPIC] = bench_text(plate->isotropic ? "yes" : "no"),
-        [ANGLE] = bench_number(plate->angle * 180 / pi),
-        [CELL] = bench_number(1e3 * (disc ? disc_diameter : strip_length) / plate->cells),
-        [SUBSTEPS] = bench_number(plate->substeps),
-        [STIFFNESS] = bench_number(ratio),
-        [FIRST] = bench_number(curvature[0]),
-        [SECOND] = bench_number(curvature[1]),
-        [ROLLS] = bench_number(rolls),
-    };
-    return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
+    table_text(table, "part", 6, disc ? "disc" : "strip");
+    table_text(table, "isotropic", 10, plate->isotropic ? "yes" : "no");
+    table_number(table, "mesh_deg", "%.0f", 9, plate->angle * 180 / pi);
+    table_number(table, "cell_mm", "%.3g", 8, 1e3 * (disc ? disc_diameter : strip_length) / plate->cells);
+    table_number(table, "substeps", "%.0f", 9, plate->substeps);
+    table_number(table, "over_D", "%.3f", 7, ratio);
+    table_number(table, "k1_per_m", "%.2f", 9, curvature[0]);
+    table_number(table, "k2_per_m", "%.2f", 9, curvature[1]);
+    table_number(table, "rolls_deg", "%.0f", 10, rolls);
+    return table_end_row(table);
 }
 
 SingeResult bench_plate(const BenchOptions *options, BenchTable *table, SingeError *error) {
@@ -229,7 +217,7 @@ SingeResult bench_plate(const BenchOptions *options, BenchTable *table, SingeErr
     static const int substeps[] = {3, 8, 24, 0};
     const int angle_count = options->quick ? 2 : 4;
     SingeResult result = SINGE_OK;
-    *table = table_begin("plate", columns, COLUMNS, table->text);
+    table_begin(table, "plate");
     if (options->drawing) draw_heads(options->drawing);
 
     for (int isotropic = 0; isotropic < 2; isotropic++) {

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 
 #include "bench/bench.h"
+#include "bench/geometry.h"
 #include "bench/hung_sheet.h"
 
 enum { ACROSS = 144, UP = 32 }; // cells of the base
@@ -21,23 +22,15 @@ enum { SAMPLES = 384, BANDS = 10, SETTINGS = 5, TIMES = 4 };
 
 static const double width = 0.288, shortest = 0.003; // m: the sheet, the first band
 
-enum { WAVE, POWER, COLUMNS = POWER + SETTINGS };
-
-static const BenchColumn columns[COLUMNS] = {
-    [WAVE] = {"wavelength_mm", "%.1f", 13, NULL}, [POWER] = {"base", "%.4f", 8, NULL},
-    [POWER + 1] = {"h_x_2", "%.4f", 8, NULL},     [POWER + 2] = {"h_div_2", "%.4f", 8, NULL},
-    [POWER + 3] = {"s_div_2", "%.4f", 8, NULL},   [POWER + 4] = {"t_x_2", "%.4f", 8, NULL},
-};
-
 static const struct {
-    const char *peak, *change, *mean, *rms;
+    const char *name, *peak, *change, *mean, *rms;
     double step, cells, thickness; ///< factors on the base's
 } settings[SETTINGS] = {
-    {"peak_mm_base", NULL, "mean_mm_base", "rms_deg_base", 1, 1, 1},
-    {"peak_mm_h_x_2", "peak_change_pct_h_x_2", "mean_mm_h_x_2", "rms_deg_h_x_2", 2, 1, 1},
-    {"peak_mm_h_div_2", "peak_change_pct_h_div_2", "mean_mm_h_div_2", "rms_deg_h_div_2", 0.5, 1, 1},
-    {"peak_mm_s_div_2", "peak_change_pct_s_div_2", "mean_mm_s_div_2", "rms_deg_s_div_2", 1, 2, 1},
-    {"peak_mm_t_x_2", "peak_change_pct_t_x_2", "mean_mm_t_x_2", "rms_deg_t_x_2", 1, 1, 2},
+    {"base", "peak_mm_base", NULL, "mean_mm_base", "rms_deg_base", 1, 1, 1},
+    {"h_x_2", "peak_mm_h_x_2", "peak_change_pct_h_x_2", "mean_mm_h_x_2", "rms_deg_h_x_2", 2, 1, 1},
+    {"h_div_2", "peak_mm_h_div_2", "peak_change_pct_h_div_2", "mean_mm_h_div_2", "rms_deg_h_div_2", 0.5, 1, 1},
+    {"s_div_2", "peak_mm_s_div_2", "peak_change_pct_s_div_2", "mean_mm_s_div_2", "rms_deg_s_div_2", 1, 2, 1},
+    {"t_x_2", "peak_mm_t_x_2", "peak_change_pct_t_x_2", "mean_mm_t_x_2", "rms_deg_t_x_2", 1, 1, 2},
 };
 
 typedef struct Spectrum {
@@ -96,7 +89,7 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
 
     const uint32_t row = (uint32_t)strip->across + 1, rows = (uint32_t)strip->up + 1;
     float *positions = malloc((size_t)3 * row * rows * sizeof *positions), *hot = malloc(row * rows * sizeof *hot);
-    uint32_t *cells = malloc((size_t)4 * row * rows * sizeof *cells), count = 0;
+    uint32_t *cells = malloc((size_t)4 * row * rows * sizeof *cells);
     result = SINGE_ERROR_MEMORY;
     if (positions && hot && cells) {
         for (uint32_t v = 0; v < row * rows; v++) {
@@ -106,19 +99,11 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
             hot[v] = (float)fmax(0, 1 - z / 0.004); // K above ignition at the edge, falling to 0 within 4 mm
         }
 
-        for (uint32_t v = 0; v + row < row * rows; v++) {
-            if (v % row + 1 == row) continue;
-            uint32_t *cell = cells + (size_t)4 * count++;
-            cell[0] = v;
-            cell[1] = v + 1;
-            cell[2] = v + row + 1;
-            cell[3] = v + row;
-        }
-
+        geometry_grid(row - 1, rows - 1, cells);
         const SingeAttribute attribute = {"hot", hot};
         sheet.vertex_count = row * rows;
         sheet.positions = positions;
-        sheet.cell_count = count;
+        sheet.cell_count = (row - 1) * (rows - 1);
         sheet.cells = cells;
         sheet.attribute_count = 1;
         sheet.attributes = &attribute;
@@ -249,7 +234,7 @@ SingeResult bench_spectrum(const BenchOptions *options, BenchTable *table, Singe
     Spectrum spectra[SETTINGS] = {0};
     const uint32_t seeds = options->quick ? 1 : 4;
     SingeResult result = SINGE_OK;
-    *table = table_begin("spectrum", columns, COLUMNS, table->text);
+    table_begin(table, "spectrum");
     for (int i = 0; i < SETTINGS && !result; i++)
         for (uint32_t seed = 0; seed < seeds && !result; seed++)
             result = spectrum_observe(options, i, seed, &spectra[i], error);
@@ -264,14 +249,14 @@ SingeResult bench_spectrum(const BenchOptions *options, BenchTable *table, Singe
     }
 
     for (int band = 0; band < BANDS; band++) {
-        BenchValue row[COLUMNS] = {[WAVE] = bench_number(1e3 * band_wave(band))};
+        table_number(table, "wavelength_mm", "%.1f", 13, 1e3 * band_wave(band));
         for (int i = 0; i < SETTINGS; i++) {
             double sum = 0;
             for (int b = 0; b < BANDS; b++) sum += spectra[i].band[b];
-            row[POWER + i] = bench_number(spectra[i].band[band] / sum);
+            table_number(table, settings[i].name, "%.4f", 8, spectra[i].band[band] / sum);
         }
 
-        if (!table_add(table, row)) return SINGE_ERROR_MEMORY;
+        if (table_end_row(table)) return SINGE_ERROR_MEMORY;
     }
 
     return SINGE_OK;

@@ -5,14 +5,6 @@
 
 #include <math.h>
 
-enum { DIRECTION, CELL, GAS_CELL, SPEED, OVER_LEVEL, OVER_DOWN, SPREAD_COLUMNS };
-
-static const BenchColumn spread_columns[SPREAD_COLUMNS] = {
-    [DIRECTION] = {"direction", NULL, 9, NULL},      [CELL] = {"cell_mm", "%.2g", 7, NULL},
-    [GAS_CELL] = {"gas_cell_mm", "%.2g", 11, NULL},  [SPEED] = {"speed_mm_s", "%.3g", 10, NULL},
-    [OVER_LEVEL] = {"over_level", "%.2f", 10, NULL}, [OVER_DOWN] = {"over_down", "%.2f", 9, NULL},
-};
-
 /// In m; a gas cell of 0: without gas.
 typedef struct SpreadCase {
     const char *direction;
@@ -28,10 +20,9 @@ enum { CASES = sizeof cases / sizeof *cases, CASES_QUICK = 7 };
 
 SingeResult bench_spread(const BenchOptions *options, BenchTable *table, SingeError *error) {
     double level = NAN, down = NAN;
-    *table = table_begin("spread", spread_columns, SPREAD_COLUMNS, table->text);
+    table_begin(table, "spread");
     for (int i = 0; i < (options->quick ? CASES_QUICK : CASES); i++) {
         const SpreadCase *it = &cases[i];
-        BenchValue row[SPREAD_COLUMNS];
         double speed;
 
         const int threads = options->threads;
@@ -52,13 +43,13 @@ SingeResult bench_spread(const BenchOptions *options, BenchTable *table, SingeEr
         if (code) return code;
         if (i == 1) level = speed;
         if (i == 2) down = speed;
-        row[DIRECTION] = bench_text(it->direction);
-        row[CELL] = bench_number(1e3 * (double)it->cell);
-        row[GAS_CELL] = bench_number(it->gas_cell > 0 ? 1e3 * (double)it->gas_cell : NAN);
-        row[SPEED] = bench_number(1e3 * speed);
-        row[OVER_LEVEL] = bench_number(speed / level);
-        row[OVER_DOWN] = bench_number(speed / down);
-        if (!table_add(table, row)) return SINGE_ERROR_MEMORY;
+        table_text(table, "direction", 9, it->direction);
+        table_number(table, "cell_mm", "%.2g", 7, 1e3 * (double)it->cell);
+        table_number(table, "gas_cell_mm", "%.2g", 11, it->gas_cell > 0 ? 1e3 * (double)it->gas_cell : NAN);
+        table_number(table, "speed_mm_s", "%.3g", 10, 1e3 * speed);
+        table_number(table, "over_level", "%.2f", 10, speed / level);
+        table_number(table, "over_down", "%.2f", 9, speed / down);
+        if (table_end_row(table)) return SINGE_ERROR_MEMORY;
     }
 
     return SINGE_OK;

@@ -25,18 +25,6 @@
 
 static const double gravity = 9.81, speed_limit = 100, reach_limit = 1.5, gyration_limit = 0.35, folded_limit = 0.25;
 
-enum { STATE, CELLS, RATIO, STEP, RESULT, STRAIN, P99, SPEED, ENERGY, REACH, GYRATION, FOLDED, INVERTED, COLUMNS };
-
-static const BenchColumn columns[COLUMNS] = {
-    [STATE] = {"state", NULL, 6, NULL},           [CELLS] = {"cells", "%.0f", 5, NULL},
-    [RATIO] = {"t_over_s", "%.3g", 8, NULL},      [STEP] = {"h_ms", "%.3g", 5, NULL},
-    [RESULT] = {"result", NULL, 9, NULL},         [STRAIN] = {"max_strain_pct", "%.3g", 14, NULL},
-    [P99] = {"p99_pct", "%.3g", 8, NULL},         [SPEED] = {"speed", "%.3g", 7, NULL},
-    [ENERGY] = {"energy_gain", "%.3g", 11, NULL}, [REACH] = {"reach", "%.3f", 7, NULL},
-    [GYRATION] = {"gyration", "%.2f", 8, NULL},   [FOLDED] = {"folded", "%.2f", 6, NULL},
-    [INVERTED] = {"inverted", "%.0f", 8, NULL},
-};
-
 typedef struct Case {
     BenchSetup setup;
     double t_over_s, seconds;
@@ -107,22 +95,20 @@ static void done(void *context, int i) {
     else if (c->reach > reach_limit) verdict = "stretched";
     else if (c->gyration < gyration_limit || c->folded > folded_limit) verdict = "crumpled";
 
-    BenchValue row[COLUMNS] = {
-        [STATE] = bench_text(c->setup.state == BENCH_SWING ? "swing" : "shrink"),
-        [CELLS] = bench_number(c->setup.cells),
-        [RATIO] = bench_number(c->t_over_s),
-        [STEP] = bench_number(1e3 * (double)c->setup.time_step),
-        [RESULT] = bench_text(verdict),
-        [STRAIN] = bench_number(c->strain.number[0]),
-        [P99] = bench_number(c->strain.number[1]),
-        [SPEED] = bench_number(c->speed),
-        [ENERGY] = bench_number(c->energy_gain),
-        [REACH] = bench_number(c->reach),
-        [GYRATION] = bench_number(c->gyration),
-        [FOLDED] = bench_number(c->folded),
-        [INVERTED] = bench_number(c->inverted),
-    };
-    if (!table_add(cases->table, row)) cases->full_table = true;
+    table_text(cases->table, "state", 6, c->setup.state == BENCH_SWING ? "swing" : "shrink");
+    table_number(cases->table, "cells", "%.0f", 5, c->setup.cells);
+    table_number(cases->table, "t_over_s", "%.3g", 8, c->t_over_s);
+    table_number(cases->table, "h_ms", "%.3g", 5, 1e3 * (double)c->setup.time_step);
+    table_text(cases->table, "result", 9, verdict);
+    table_number(cases->table, "max_strain_pct", "%.3g", 14, c->strain.number[0]);
+    table_number(cases->table, "p99_pct", "%.3g", 8, c->strain.number[1]);
+    table_number(cases->table, "speed", "%.3g", 7, c->speed);
+    table_number(cases->table, "energy_gain", "%.3g", 11, c->energy_gain);
+    table_number(cases->table, "reach", "%.3f", 7, c->reach);
+    table_number(cases->table, "gyration", "%.2f", 8, c->gyration);
+    table_number(cases->table, "folded", "%.2f", 6, c->folded);
+    table_number(cases->table, "inverted", "%.0f", 8, c->inverted);
+    if (table_end_row(cases->table)) cases->full_table = true;
 }
 
 enum { CELLS_MAX = BENCH_LIST_MAX, RATIOS_MAX = 6, STEPS_MAX = 5 };
@@ -131,7 +117,7 @@ SingeResult bench_stability(const BenchOptions *options, BenchTable *table, Sing
     Cases cases = {.table = table, .list = calloc(2 * CELLS_MAX * RATIOS_MAX * STEPS_MAX, sizeof *cases.list)};
     SingeResult result = SINGE_OK;
     if (!cases.list) return SINGE_ERROR_MEMORY;
-    *table = table_begin("stability", columns, COLUMNS, table->text);
+    table_begin(table, "stability");
     if (table->text)
         fputs("NaN: a step failed or a number is not finite. exploded: energy_gain > 0.5 J/kg (shrink 10) or\n"
               "speed > 100 m/s. stretched: reach > 1.5. crumpled: gyration < 0.35 of a flat sheet's, or folded > 0.25\n"

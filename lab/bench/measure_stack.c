@@ -2,58 +2,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "analysis/crossings.h"
 #include "bench/bench.h"
+#include "bench/geometry.h"
 #include "bench/machine.h"
+#include "bench/strain.h"
 
 enum { STEPS_FRAME = 20, FPS = 24 };
 static const float side = 0.35f, ball = 0.1f, lowest = 0.21f, apart = 0.01f; // m
 static const double seconds = 1;
-
-enum {
-    SHEETS,
-    CELLS,
-    SPRINGS,
-    THREADS,
-    STEP_MEAN,
-    STEP_WORST,
-    STEP_CPU,
-    FIND,
-    PUSH,
-    STOP,
-    ROUNDS,
-    LOOKS,
-    PAIRS,
-    HALTS,
-    STRAIN,
-    STRAIN_WORST,
-    CROSSINGS,
-    SPEED,
-    MEGABYTES,
-    COLUMNS
-};
-
-static const BenchColumn columns[COLUMNS] = {
-    [SHEETS] = {"sheets", "%.0f", 6, NULL},
-    [CELLS] = {"cells", "%.0f", 5, NULL},
-    [SPRINGS] = {"springs", "%.0f", 8, NULL},
-    [THREADS] = {"threads", "%.0f", 7, NULL},
-    [STEP_MEAN] = {"step_ms", "%.4g", 8, NULL},
-    [STEP_WORST] = {"worst_ms", "%.4g", 8, NULL},
-    [STEP_CPU] = {"cpu_ms", "%.4g", 8, NULL}, // of all threads, the mean of a step
-    [FIND] = {"find_ms", "%.4g", 8, NULL},    // contact, the mean of a step
-    [PUSH] = {"push_ms", "%.4g", 8, NULL},
-    [STOP] = {"stop_ms", "%.4g", 8, NULL},
-    [ROUNDS] = {"rounds_step", "%.2f", 11, NULL},
-    [LOOKS] = {"looks_step", "%.0f", 10, NULL},
-    [PAIRS] = {"pairs_step", "%.0f", 10, NULL},
-    [HALTS] = {"halts", "%.0f", 5, NULL},
-    [STRAIN] = {"strain_pct", "%.3g", 20, "max/p99/mean"},
-    [STRAIN_WORST] = {"worst_p99_pct", "%.3g", 13, NULL}, // of all frames
-    [CROSSINGS] = {"crossing", "%.0f", 8, NULL},          // pairs of drawn triangles
-    [SPEED] = {"speed", "%.4f", 8, NULL},
-    [MEGABYTES] = {"max_mb", "%.1f", 8, NULL},
-};
 
 static SingeResult stack_fill(SingeSim *sim, uint32_t sheets, uint32_t cells, SingeError *error) {
     SingeGridDef grid = singe_default_grid();
@@ -121,12 +77,9 @@ static SingeResult stack_measure(const BenchOptions *options, uint32_t sheets, u
 
     const double wall = machine_clock() - begun, busy = machine_cpu_clock() - processor;
     const size_t max = held.max;
-    SingeSurface surface = {0};
     uint64_t crossing = 0;
-    float at[3];
-    if (!result) result = singe_sim_surface(sim, &surface);
     if (result && !error->code) *error = *singe_sim_error(sim);
-    if (!result && !crossings_count(&surface, &crossing, at)) result = SINGE_ERROR_MEMORY;
+    if (!result) result = geometry_crossings(sim, &crossing, error);
     if (!result) {
         const SingeTimers t = singe_sim_timers(sim);
         const SingeCounts counts = singe_sim_counts(sim);
@@ -134,31 +87,28 @@ static SingeResult stack_measure(const BenchOptions *options, uint32_t sheets, u
         const double a_step = 1.0 / steps;
         double springs = 0;
         for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += counts.springs[c];
-        BenchValue row[COLUMNS] = {
-            [SHEETS] = bench_number(sheets),
-            [CELLS] = bench_number(cells),
-            [SPRINGS] = bench_number(springs),
-            [THREADS] = bench_number(options->threads),
-            [STEP_MEAN] = bench_number(1e3 * a_step * wall),
-            [STEP_WORST] = bench_number(1e3 * worst),
-            [STEP_CPU] = bench_number(1e3 * a_step * busy),
-            [FIND] = bench_number(1e3 * a_step * t.contact_find_seconds),
-            [PUSH] = bench_number(1e3 * a_step * t.contact_push_seconds),
-            [STOP] = bench_number(1e3 * a_step * t.contact_stop_seconds),
-            [ROUNDS] = bench_number(a_step * (double)t.contact_rounds),
-            [LOOKS] = bench_number(a_step * (double)t.contact_looks),
-            [PAIRS] = bench_number(a_step * (double)t.contact_pairs),
-            [HALTS] = bench_number((double)t.contact_halts),
-            [STRAIN] = {.number = {100 * stats.strain_max, 100 * stats.strain_p99, 100 * stats.strain_mean}},
-            [STRAIN_WORST] = bench_number(100 * worst_p99),
-            [CROSSINGS] = bench_number((double)crossing),
-            [SPEED] = bench_number(stats.speed_rms_unburnt),
-            [MEGABYTES] = bench_number(1e-6 * (double)max),
-        };
-        if (!table_add(table, row)) result = SINGE_ERROR_MEMORY;
+        table_number(table, "sheets", "%.0f", 6, sheets);
+        table_number(table, "cells", "%.0f", 5, cells);
+        table_number(table, "springs", "%.0f", 8, springs);
+        table_number(table, "threads", "%.0f", 7, options->threads);
+        table_number(table, "step_ms", "%.4g", 8, 1e3 * a_step * wall);
+        table_number(table, "worst_ms", "%.4g", 8, 1e3 * worst);
+        table_number(table, "cpu_ms", "%.4g", 8, 1e3 * a_step * busy); // of all threads, the mean of a step
+        table_number(table, "find_ms", "%.4g", 8, 1e3 * a_step * t.contact_find_seconds); // contact, the mean of a step
+        table_number(table, "push_ms", "%.4g", 8, 1e3 * a_step * t.contact_push_seconds);
+        table_number(table, "stop_ms", "%.4g", 8, 1e3 * a_step * t.contact_stop_seconds);
+        table_number(table, "rounds_step", "%.2f", 11, a_step * (double)t.contact_rounds);
+        table_number(table, "looks_step", "%.0f", 10, a_step * (double)t.contact_looks);
+        table_number(table, "pairs_step", "%.0f", 10, a_step * (double)t.contact_pairs);
+        table_number(table, "halts", "%.0f", 5, (double)t.contact_halts);
+        table_parts(table, "strain_pct", "%.3g", 20, "max/p99/mean", strain_of(&stats));
+        table_number(table, "worst_p99_pct", "%.3g", 13, 100 * worst_p99); // of all frames
+        table_number(table, "crossing", "%.0f", 8, (double)crossing);      // pairs of drawn triangles
+        table_number(table, "speed", "%.4f", 8, stats.speed_rms_unburnt);
+        table_number(table, "max_mb", "%.1f", 8, 1e-6 * (double)max);
+        result = table_end_row(table);
     }
 
-    singe_surface_free(&surface);
     singe_sim_destroy(sim);
     return result;
 }
@@ -167,7 +117,7 @@ SingeResult bench_stack(const BenchOptions *options, BenchTable *table, SingeErr
     BenchList sheets = bench_list(&options->sheets, 1, (const double[]){10});
     BenchList cells = bench_list(&options->cells, 1, (const double[]){70});
     SingeResult result = SINGE_OK;
-    *table = table_begin("stack", columns, COLUMNS, table->text);
+    table_begin(table, "stack");
     for (int i = 0; i < sheets.count && !result; i++)
         for (int k = 0; k < cells.count && !result; k++)
             result = stack_measure(options, (uint32_t)sheets.values[i], (uint32_t)cells.values[k], table, error);

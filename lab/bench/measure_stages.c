@@ -7,40 +7,6 @@
 
 enum { WARM_UP = 40 };
 
-enum {
-    SPRINGS,
-    SOLVER,
-    LIMIT,
-    THREADS,
-    STEP_MEDIAN,
-    STEP_MIN,
-    HEAT,
-    BURN,
-    ABLATE,
-    DYNAMICS,
-    GAS,
-    PROJECTION,
-    NS,
-    ITERATIONS,
-    CONTACTS,
-    BURNT,
-    MEMORY,
-    YARDSTICK,
-    COLUMNS
-};
-
-static const BenchColumn columns[COLUMNS] = {
-    [SPRINGS] = {"springs", "%.0f", 8, NULL},      [SOLVER] = {"solver", NULL, 11, NULL},
-    [LIMIT] = {"curvature_max", "%.0f", 13, NULL}, [THREADS] = {"threads", "%.0f", 7, NULL},
-    [STEP_MEDIAN] = {"step_ms", "%.4g", 8, NULL},  [STEP_MIN] = {"min_ms", "%.4g", 8, NULL},
-    [HEAT] = {"heat_ms", "%.4g", 8, NULL},         [BURN] = {"burn_ms", "%.4g", 8, NULL},
-    [ABLATE] = {"ablate_ms", "%.4g", 9, NULL},     [DYNAMICS] = {"dynamics_ms", "%.4g", 11, NULL},
-    [GAS] = {"gas_ms", "%.4g", 8, NULL},           [PROJECTION] = {"projection_ms", "%.4g", 13, NULL},
-    [NS] = {"ns_spring", "%.2f", 9, NULL},         [ITERATIONS] = {"heat_iterations", "%.1f", 15, NULL},
-    [CONTACTS] = {"contacts", "%.0f", 8, NULL},    [BURNT] = {"burnt_pct", "%.2f", 9, NULL},
-    [MEMORY] = {"bytes_spring", "%.1f", 12, NULL}, [YARDSTICK] = {"yardstick_ms", "%.2f", 12, NULL},
-};
-
 /// Compares the step with the limit of the reference machine, scaled by the yardstick's time on this machine.
 static SingeResult stages_judge(const BenchOptions *options, const Timing *timing, BenchTable *table,
                                 SingeError *error) {
@@ -71,27 +37,26 @@ static SingeResult stages_measure(const BenchOptions *options, double springs, Y
         *error = *singe_sim_error(sim);
     } else {
         const double actual = timing_springs(sim), step = timing_median(&timing, TIMED_STEP);
-        const BenchValue row[COLUMNS] = {
-            [SPRINGS] = bench_number(actual),
-            [SOLVER] = bench_text(enum_words.SingeSolverMethod[options->solver]),
-            [LIMIT] = bench_number(options->curvature.values[0]),
-            [THREADS] = bench_number(options->threads),
-            [STEP_MEDIAN] = bench_number(step),
-            [STEP_MIN] = bench_number(timing_min(&timing, TIMED_STEP)),
-            [HEAT] = bench_number(timing_median(&timing, SINGE_STAGE_HEAT)),
-            [BURN] = bench_number(timing_median(&timing, SINGE_STAGE_BURN)),
-            [ABLATE] = bench_number(timing_median(&timing, SINGE_STAGE_ABLATE)),
-            [DYNAMICS] = bench_number(timing_median(&timing, SINGE_STAGE_DYNAMICS)),
-            [GAS] = bench_number(timing_median(&timing, SINGE_STAGE_GAS)),
-            [PROJECTION] = bench_number(timing_median(&timing, TIMED_PROJECTION)),
-            [NS] = bench_number(1e6 * step / actual),
-            [ITERATIONS] = bench_number((double)timing.total.heat_iterations / timing.steps),
-            [CONTACTS] = bench_number((double)timing.total.contacts / timing.steps),
-            [BURNT] = bench_number(100 * singe_sim_stats(sim).burnt_fraction),
-            [MEMORY] = bench_number((double)singe_sim_counts(sim).memory / actual),
-            [YARDSTICK] = bench_number(timing_median(&timing, TIMED_YARDSTICK)),
-        };
-        result = table_add(table, row) ? stages_judge(options, &timing, table, error) : SINGE_ERROR_MEMORY;
+        table_number(table, "springs", "%.0f", 8, actual);
+        table_text(table, "solver", 11, enum_words.SingeSolverMethod[options->solver]);
+        table_number(table, "curvature_max", "%.0f", 13, options->curvature.values[0]);
+        table_number(table, "threads", "%.0f", 7, options->threads);
+        table_number(table, "step_ms", "%.4g", 8, step);
+        table_number(table, "min_ms", "%.4g", 8, timing_min(&timing, TIMED_STEP));
+        table_number(table, "heat_ms", "%.4g", 8, timing_median(&timing, SINGE_STAGE_HEAT));
+        table_number(table, "burn_ms", "%.4g", 8, timing_median(&timing, SINGE_STAGE_BURN));
+        table_number(table, "ablate_ms", "%.4g", 9, timing_median(&timing, SINGE_STAGE_ABLATE));
+        table_number(table, "dynamics_ms", "%.4g", 11, timing_median(&timing, SINGE_STAGE_DYNAMICS));
+        table_number(table, "gas_ms", "%.4g", 8, timing_median(&timing, SINGE_STAGE_GAS));
+        table_number(table, "projection_ms", "%.4g", 13, timing_median(&timing, TIMED_PROJECTION));
+        table_number(table, "ns_spring", "%.2f", 9, 1e6 * step / actual);
+        table_number(table, "heat_iterations", "%.1f", 15, (double)timing.total.heat_iterations / timing.steps);
+        table_number(table, "contacts", "%.0f", 8, (double)timing.total.contacts / timing.steps);
+        table_number(table, "burnt_pct", "%.2f", 9, 100 * singe_sim_stats(sim).burnt_fraction);
+        table_number(table, "bytes_spring", "%.1f", 12, (double)singe_sim_counts(sim).memory / actual);
+        table_number(table, "yardstick_ms", "%.2f", 12, timing_median(&timing, TIMED_YARDSTICK));
+        result = table_end_row(table);
+        if (!result) result = stages_judge(options, &timing, table, error);
     }
 
     timing_free(&timing);
@@ -105,7 +70,7 @@ SingeResult bench_step(const BenchOptions *options, BenchTable *table, SingeErro
     BenchList limits = bench_list(&options->curvature, 1, &default_limit);
     Yardstick *yardstick = yardstick_create();
     SingeResult result = yardstick ? SINGE_OK : SINGE_ERROR_MEMORY;
-    *table = table_begin("step", columns, COLUMNS, table->text);
+    table_begin(table, "step");
     for (int i = 0; i < springs.count; i++)
         for (int l = 0; l < limits.count && !result; l++) {
             BenchOptions limited = *options;

@@ -8,16 +8,6 @@
 enum { BURNING_STEPS = 240, DRAWINGS = 15 };
 static const float fire_pace = 20; // so that much is gone after these steps
 
-enum { SPRINGS, THREADS, DETAIL, TRIANGLES, FINE, VERTICES, MEDIAN, CPU, CACHE, COLUMNS };
-
-static const BenchColumn columns[COLUMNS] = {
-    [SPRINGS] = {"springs", "%.0f", 8, NULL},    [THREADS] = {"threads", "%.0f", 7, NULL},
-    [DETAIL] = {"detail_mm", "%.2f", 9, NULL},   [TRIANGLES] = {"triangles", "%.0f", 9, NULL},
-    [FINE] = {"fine_pct", "%.1f", 8, NULL},      [VERTICES] = {"vertices", "%.0f", 8, NULL},
-    [MEDIAN] = {"surface_ms", "%.3g", 10, NULL}, [CPU] = {"cpu_ms", "%.3g", 8, NULL},
-    [CACHE] = {"cache_mb", "%.2f", 8, NULL},
-};
-
 static SingeResult surface_measure(const BenchOptions *options, double springs, BenchTable *table, SingeError *error) {
     SingeSim *sim;
     SingeSurface surface = {0};
@@ -38,18 +28,18 @@ static SingeResult surface_measure(const BenchOptions *options, double springs, 
     const double wall = numbers_median(walls, DRAWINGS), cpu = numbers_median(cpus, DRAWINGS);
     if (result) *error = *singe_sim_error(sim);
     double triangles = surface.triangle_count;
-    BenchValue row[COLUMNS] = {
-        [SPRINGS] = bench_number(timing_springs(sim)),
-        [THREADS] = bench_number(options->threads),
-        [DETAIL] = bench_number(1e3 * options->detail),
-        [TRIANGLES] = bench_number(triangles),
-        [FINE] = bench_number(triangles > 0 ? 100 * surface.fine_triangle_count / triangles : 0),
-        [VERTICES] = bench_number(surface.vertex_count),
-        [MEDIAN] = bench_number(wall),
-        [CPU] = bench_number(cpu),
-        [CACHE] = bench_number(1e-6 * (92.0 * surface.vertex_count + 13 * triangles)),
-    };
-    if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
+    if (!result) {
+        table_number(table, "springs", "%.0f", 8, timing_springs(sim));
+        table_number(table, "threads", "%.0f", 7, options->threads);
+        table_number(table, "detail_mm", "%.2f", 9, 1e3 * options->detail);
+        table_number(table, "triangles", "%.0f", 9, triangles);
+        table_number(table, "fine_pct", "%.1f", 8, triangles > 0 ? 100 * surface.fine_triangle_count / triangles : 0);
+        table_number(table, "vertices", "%.0f", 8, surface.vertex_count);
+        table_number(table, "surface_ms", "%.3g", 10, wall);
+        table_number(table, "cpu_ms", "%.3g", 8, cpu);
+        table_number(table, "cache_mb", "%.2f", 8, 1e-6 * (92.0 * surface.vertex_count + 13 * triangles));
+        result = table_end_row(table);
+    }
     singe_surface_free(&surface);
     singe_sim_destroy(sim);
     return result;
@@ -59,7 +49,7 @@ SingeResult bench_surface(const BenchOptions *options, BenchTable *table, SingeE
     const double details[] = {0, 0.8e-3, 0.4e-3, 0.2e-3};
     BenchList springs = bench_list(&options->springs, 2, (const double[]){3e4, 1e5});
     SingeResult result = SINGE_OK;
-    *table = table_begin("surface", columns, COLUMNS, table->text);
+    table_begin(table, "surface");
     for (int i = 0; i < springs.count && !result; i++)
         for (size_t k = 0; k < sizeof details / sizeof *details && !result; k++) {
             BenchOptions with = *options;

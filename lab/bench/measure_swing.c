@@ -13,45 +13,6 @@
 /// sheet held at one corner whips, so from 100 cells on the substeps grow with the cells.
 enum { DEFAULT_STEPS = 20, SWING_SUBSTEPS = 60, ONE_CORNER_SUBSTEPS = 240, ONE_CORNER_CELLS = 100 };
 
-enum {
-    CELLS,
-    THICKNESS,
-    SUBSTEPS,
-    CPU_MEDIAN,
-    CPU_MEAN,
-    DYNAMICS,
-    BLUE,
-    RED,
-    GREEN,
-    YELLOW,
-    FALL,
-    OFF,
-    SPEED,
-    INVERTED,
-    BARS,
-    RESULT,
-    COLUMNS
-};
-
-static const BenchColumn columns[COLUMNS] = {
-    [CELLS] = {"cells", "%.0f", 5, NULL},
-    [THICKNESS] = {"thickness_mm", "%.3g", 12, NULL},
-    [SUBSTEPS] = {"substeps", "%.0f", 8, NULL},
-    [CPU_MEDIAN] = {"cpu_ms", "%.2f", 8, NULL},
-    [CPU_MEAN] = {"mean_ms", "%.2f", 8, NULL},
-    [DYNAMICS] = {"dynamics_ms", "%.2f", 11, NULL},
-    [BLUE] = {"blue_pct", "%.3g", 20, "max/p99/mean"},
-    [RED] = {"red_pct", "%.3g", 20, "max/p99/mean"},
-    [GREEN] = {"green_pct", "%.3g", 20, "max/p99/mean"},
-    [YELLOW] = {"yellow_pct", "%.3g", 20, "max/p99/mean"},
-    [FALL] = {"fall_m", "%.3f", 20, "0.33/0.50/0.67"},
-    [OFF] = {"off_cm", "%.1f", 6, NULL},
-    [SPEED] = {"speed", "%.2f", 9, NULL},
-    [INVERTED] = {"inverted", "%.0f", 8, NULL},
-    [BARS] = {"bars", NULL, 6, NULL},
-    [RESULT] = {"result", NULL, 8, NULL},
-};
-
 /// Whether the sheet is inextensible and moves correctly; "-" if unknown.
 static const char *bars_held(const BenchSetup *setup, const Trajectory *t, double off) {
     const double scale = setup->pins == 1 ? 10 : 1, max = 0.5 * scale, p99 = 0.05 * scale, off_max = 2;
@@ -81,27 +42,27 @@ static SingeResult run_all(const BenchOptions *options, BenchSetup *setup, int s
             if (!trajectory) return error->code;
 
             const double off = trajectory_off(setup, trajectory);
-            BenchValue row[COLUMNS] = {
-                [CELLS] = bench_number(setup->cells),
-                [THICKNESS] = bench_number(1e3 * (double)setup->thickness),
-                [SUBSTEPS] = bench_number(steps * setup->solver.substeps),
-                [CPU_MEDIAN] = bench_number(trajectory->cpu_median),
-                [CPU_MEAN] = bench_number(trajectory->cpu_mean),
-                [DYNAMICS] = bench_number(trajectory->dynamics_ms),
-                [BLUE] = strain_percent(&trajectory->strain[SINGE_BLUE]),
-                [RED] = strain_percent(&trajectory->strain[SINGE_RED]),
-                [GREEN] = strain_percent(&trajectory->strain[SINGE_GREEN]),
-                [YELLOW] = strain_percent(&trajectory->strain[SINGE_YELLOW]),
-                [FALL] = {.number = {trajectory->fall[0], trajectory->fall[1], trajectory->fall[2]}},
-                [OFF] = bench_number(off),
-                [SPEED] = bench_number(trajectory->speed_max),
-                [INVERTED] = bench_number(trajectory->inverted),
-                [BARS] = bench_text(bars_held(setup, trajectory, off)),
-                [RESULT] = bench_text(trajectory->diverged ? "diverged" : "ok"),
-            };
-            bool added = table_add(table, row);
+            table_number(table, "cells", "%.0f", 5, setup->cells);
+            table_number(table, "thickness_mm", "%.3g", 12, 1e3 * (double)setup->thickness);
+            table_number(table, "substeps", "%.0f", 8, steps * setup->solver.substeps);
+            table_number(table, "cpu_ms", "%.2f", 8, trajectory->cpu_median);
+            table_number(table, "mean_ms", "%.2f", 8, trajectory->cpu_mean);
+            table_number(table, "dynamics_ms", "%.2f", 11, trajectory->dynamics_ms);
+            table_parts(table, "blue_pct", "%.3g", 20, "max/p99/mean", strain_percent(&trajectory->strain[SINGE_BLUE]));
+            table_parts(table, "red_pct", "%.3g", 20, "max/p99/mean", strain_percent(&trajectory->strain[SINGE_RED]));
+            table_parts(table, "green_pct", "%.3g", 20, "max/p99/mean",
+                        strain_percent(&trajectory->strain[SINGE_GREEN]));
+            table_parts(table, "yellow_pct", "%.3g", 20, "max/p99/mean",
+                        strain_percent(&trajectory->strain[SINGE_YELLOW]));
+            table_parts(table, "fall_m", "%.3f", 20, "0.33/0.50/0.67",
+                        (BenchValue){.number = {trajectory->fall[0], trajectory->fall[1], trajectory->fall[2]}});
+            table_number(table, "off_cm", "%.1f", 6, off);
+            table_number(table, "speed", "%.2f", 9, trajectory->speed_max);
+            table_number(table, "inverted", "%.0f", 8, trajectory->inverted);
+            table_text(table, "bars", 6, bars_held(setup, trajectory, off));
+            table_text(table, "result", 8, trajectory->diverged ? "diverged" : "ok");
             trajectory_free(trajectory);
-            if (!added) return SINGE_ERROR_MEMORY;
+            if (table_end_row(table)) return SINGE_ERROR_MEMORY;
         }
     return SINGE_OK;
 }
@@ -112,7 +73,7 @@ SingeResult bench_swing(const BenchOptions *options, BenchTable *table, SingeErr
     BenchSetup setup = sheet_setup(options, BENCH_SWING, DEFAULT_STEPS);
     if (options->smoothing < 0) setup.solver.smoothing = 0; // no damping of any kind
     bool standard = setup.solver.method == SINGE_SOLVER_STRAND && !options->steps && !options->substeps;
-    *table = table_begin("swing", columns, COLUMNS, table->text);
+    table_begin(table, "swing");
     return run_all(options, &setup, standard ? 1 : DEFAULT_STEPS, 1, &cells, &thickness, table, error);
 }
 
@@ -120,6 +81,6 @@ SingeResult bench_hang_and_shrink(const BenchOptions *options, BenchTable *table
     BenchList cells = bench_list(&options->cells, 2, (const double[]){50, 100});
     BenchList thickness = bench_list(&options->thickness, 3, (const double[]){1e-3, 2e-3, 5e-3});
     BenchSetup setup = sheet_setup(options, BENCH_SHRINK, DEFAULT_STEPS);
-    *table = table_begin("hang-and-shrink", columns, COLUMNS, table->text);
+    table_begin(table, "hang-and-shrink");
     return run_all(options, &setup, DEFAULT_STEPS, 2, &cells, &thickness, table, error);
 }

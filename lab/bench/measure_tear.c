@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "bench/bench.h"
+#include "bench/geometry.h"
 
 static const float length = 0.12f, width = 0.06f, line = 0.05f; // m
 static const float strength = 2, line_strength = 1;             // N/m
@@ -13,19 +14,6 @@ static const float speed = 4e-3f, seconds = 0.45f;
 static const float stiffness = 500; // N/m
 
 enum { STEP_RATE = 480, SUBSTEPS = 16, GRIP_CELLS = 2, PICTURE_WIDTH = 18, PICTURE_LINE = 7 };
-
-enum { CELL, STEP, SUBSTEP, LOAD, ERROR, STRETCH, TEARS, PIECES, ASIDE, COLUMNS };
-static const BenchColumn columns[COLUMNS] = {
-    [CELL] = {"cell_mm", "%.3g", 7, NULL},
-    [STEP] = {"step_ms", "%.3f", 7, NULL},
-    [SUBSTEP] = {"substeps", "%.0f", 8, NULL},
-    [LOAD] = {"load_n_m", "%.3f", 9, NULL},
-    [ERROR] = {"off_pct", "%.1f", 8, NULL}, // relative to the first row's load
-    [STRETCH] = {"stretch_pct", "%.2f", 11, NULL},
-    [TEARS] = {"tears", "%.0f", 6, NULL},
-    [PIECES] = {"pieces", "%.0f", 6, NULL},
-    [ASIDE] = {"aside", "%.0f", 6, NULL}, // vertices that tore away from the line
-};
 
 typedef struct Pulled {
     double load;    ///< N/m, the max
@@ -52,14 +40,7 @@ static SingeResult add_strip(SingeSim *sim, uint32_t nx, uint32_t ny, SingeSheet
             uv[2 * v + 1] = y;
         }
 
-        for (uint32_t c = 0; c < cells; c++) {
-            uint32_t v = c / nx * row + c % nx, *cell = corners + (size_t)4 * c;
-            cell[0] = v;
-            cell[1] = v + 1;
-            cell[2] = v + row + 1;
-            cell[3] = v + row;
-        }
-
+        geometry_grid(nx, ny, corners);
         def.vertex_count = vertices;
         def.positions = positions;
         def.uv = uv;
@@ -152,7 +133,7 @@ static SingeResult pull(const BenchOptions *options, uint32_t nx, uint32_t ny, i
 
 SingeResult bench_tear(const BenchOptions *options, BenchTable *table, SingeError *error) {
     double first = 0;
-    *table = table_begin("tear", columns, COLUMNS, table->text);
+    table_begin(table, "tear");
     for (int finer = 1; finer <= 2; finer++)
         for (int rate = STEP_RATE; rate <= 2 * STEP_RATE; rate *= 2) {
             Pulled pulled;
@@ -160,18 +141,17 @@ SingeResult bench_tear(const BenchOptions *options, BenchTable *table, SingeErro
             SingeResult result = pull(options, nx, ny, rate, &pulled, error);
             if (result) return result;
             if (first == 0) first = pulled.load;
-            BenchValue row[COLUMNS] = {
-                [CELL] = bench_number(1e3 * (double)length / nx),
-                [STEP] = bench_number(1e3 / rate),
-                [SUBSTEP] = bench_number(options->substeps ? options->substeps : SUBSTEPS),
-                [LOAD] = bench_number(pulled.load),
-                [ERROR] = bench_number(100 * (pulled.load / first - 1)),
-                [STRETCH] = bench_number(100 * pulled.stretch),
-                [TEARS] = bench_number(pulled.tears),
-                [PIECES] = bench_number(pulled.pieces),
-                [ASIDE] = bench_number(pulled.aside),
-            };
-            if (!table_add(table, row)) return SINGE_ERROR_MEMORY;
+            table_number(table, "cell_mm", "%.3g", 7, 1e3 * (double)length / nx);
+            table_number(table, "step_ms", "%.3f", 7, 1e3 / rate);
+            table_number(table, "substeps", "%.0f", 8, options->substeps ? options->substeps : SUBSTEPS);
+            table_number(table, "load_n_m", "%.3f", 9, pulled.load);
+            table_number(table, "off_pct", "%.1f", 8,
+                         100 * (pulled.load / first - 1)); // relative to the first row's load
+            table_number(table, "stretch_pct", "%.2f", 11, 100 * pulled.stretch);
+            table_number(table, "tears", "%.0f", 6, pulled.tears);
+            table_number(table, "pieces", "%.0f", 6, pulled.pieces);
+            table_number(table, "aside", "%.0f", 6, pulled.aside); // vertices that tore away from the line
+            if (table_end_row(table)) return SINGE_ERROR_MEMORY;
         }
     return SINGE_OK;
 }

@@ -2,28 +2,14 @@
 // its processor time is the unit of the others.
 #include <math.h>
 
-#include "analysis/crossings.h"
 #include "bench/bench.h"
+#include "bench/geometry.h"
 #include "bench/machine.h"
+#include "bench/strain.h"
 
 enum { STEPS = 40, STEPS_SECOND = 240 };
 static const float side = 0.1f; // m
 static const double speeds[] = {5, 15, 30};
-
-enum { CELLS, WIND, STEP_COUNT, SECONDS, TIMES, ROUNDS, LOOKS, HALTS, STRAIN, CROSSINGS, COLUMNS };
-
-static const BenchColumn columns[COLUMNS] = {
-    [CELLS] = {"cells", "%.0f", 5, NULL},
-    [WIND] = {"wind_m_s", "%.0f", 8, NULL}, // mean, and of gusts
-    [STEP_COUNT] = {"steps", "%.0f", 5, NULL},
-    [SECONDS] = {"cpu_s", "%.3g", 8, NULL},
-    [TIMES] = {"of_first", "%.3g", 8, NULL},
-    [ROUNDS] = {"rounds_step", "%.2f", 11, NULL},
-    [LOOKS] = {"looks_step", "%.0f", 10, NULL},
-    [HALTS] = {"halts", "%.0f", 5, NULL},
-    [STRAIN] = {"strain_pct", "%.3g", 20, "max/p99/mean"},
-    [CROSSINGS] = {"crossing", "%.0f", 8, NULL}, // pairs of drawn triangles
-};
 
 static SingeResult wind_fill(SingeSim *sim, uint32_t cells, float speed, SingeError *error) {
     SingeGridDef grid = singe_default_grid();
@@ -69,30 +55,24 @@ static SingeResult wind_measure(const BenchOptions *options, uint32_t cells, flo
     const double busy = machine_cpu_clock() - begun;
     if (*first == 0) *first = busy;
 
-    SingeSurface surface = {0};
     uint64_t crossing = 0;
-    float at[3];
-    if (!result) result = singe_sim_surface(sim, &surface);
     if (result && !error->code) *error = *singe_sim_error(sim);
-    if (!result && !crossings_count(&surface, &crossing, at)) result = SINGE_ERROR_MEMORY;
+    if (!result) result = geometry_crossings(sim, &crossing, error);
     if (!result) {
         const SingeTimers timers = singe_sim_timers(sim);
         const SingeStats stats = singe_sim_stats(sim);
-        BenchValue row[COLUMNS] = {
-            [CELLS] = bench_number(cells),
-            [WIND] = bench_number((double)speed),
-            [STEP_COUNT] = bench_number(steps),
-            [SECONDS] = bench_number(busy),
-            [TIMES] = bench_number(busy / *first),
-            [ROUNDS] = bench_number((double)timers.contact_rounds / steps),
-            [LOOKS] = bench_number((double)timers.contact_looks / steps),
-            [HALTS] = bench_number((double)timers.contact_halts),
-            [STRAIN] = {.number = {100 * stats.strain_max, 100 * stats.strain_p99, 100 * stats.strain_mean}},
-            [CROSSINGS] = bench_number((double)crossing),
-        };
-        if (!table_add(table, row)) result = SINGE_ERROR_MEMORY;
+        table_number(table, "cells", "%.0f", 5, cells);
+        table_number(table, "wind_m_s", "%.0f", 8, (double)speed); // mean, and of gusts
+        table_number(table, "steps", "%.0f", 5, steps);
+        table_number(table, "cpu_s", "%.3g", 8, busy);
+        table_number(table, "of_first", "%.3g", 8, busy / *first);
+        table_number(table, "rounds_step", "%.2f", 11, (double)timers.contact_rounds / steps);
+        table_number(table, "looks_step", "%.0f", 10, (double)timers.contact_looks / steps);
+        table_number(table, "halts", "%.0f", 5, (double)timers.contact_halts);
+        table_parts(table, "strain_pct", "%.3g", 20, "max/p99/mean", strain_of(&stats));
+        table_number(table, "crossing", "%.0f", 8, (double)crossing); // pairs of drawn triangles
+        result = table_end_row(table);
     }
-    singe_surface_free(&surface);
     singe_sim_destroy(sim);
     return result;
 }
@@ -100,7 +80,7 @@ static SingeResult wind_measure(const BenchOptions *options, uint32_t cells, flo
 SingeResult bench_wind(const BenchOptions *options, BenchTable *table, SingeError *error) {
     BenchList cells = bench_list(&options->cells, 1, (const double[]){60});
     SingeResult result = SINGE_OK;
-    *table = table_begin("wind", columns, COLUMNS, table->text);
+    table_begin(table, "wind");
     for (int i = 0; i < cells.count && !result; i++) {
         double first = 0;
         for (size_t k = 0; k < sizeof speeds / sizeof *speeds && !result; k++)

@@ -60,3 +60,7 @@ BenchValue strain_percent(const Strain *strain) {
 
     return (BenchValue){.number = {100 * strain->max, 100 * p99, 100 * strain->sum / (double)strain->count}};
 }
+
+BenchValue strain_of(const SingeStats *stats) {
+    return (BenchValue){.number = {100 * stats->strain_max, 100 * stats->strain_p99, 100 * stats->strain_mean}};
+}

@@ -25,7 +25,8 @@ void strain_add(Strain *strain, const SingeView *view, SingeColour colour);
 /// Adds the samples of another.
 void strain_merge(Strain *strain, const Strain *other);
 
-/// Max, p99 and mean in percent.
+/// Max, p99 and mean in percent: of the samples, and of a simulation.
 BenchValue strain_percent(const Strain *strain);
+BenchValue strain_of(const SingeStats *stats);
 
 #endif

@@ -6,8 +6,8 @@
 
 #include "bench/machine.h"
 
-BenchTable table_begin(const char *command, const BenchColumn *columns, int column_count, FILE *text) {
-    return (BenchTable){.command = command, .columns = columns, .column_count = column_count, .text = text};
+void table_begin(BenchTable *table, const char *command) {
+    *table = (BenchTable){.command = command, .text = table->text};
 }
 
 void table_fact(BenchTable *table, const char *name, double number) {
@@ -16,52 +16,70 @@ void table_fact(BenchTable *table, const char *name, double number) {
     if (table->text) fprintf(table->text, "%s %.4g\n", name, number);
 }
 
-bool table_add(BenchTable *table, const BenchValue *row) {
-    size_t width = (size_t)table->column_count;
-    if (table->row_count == table->capacity) {
-        int capacity = table->capacity ? 2 * table->capacity : 16;
-        BenchValue *values = realloc(table->values, (size_t)capacity * width * sizeof *values);
-        if (!values) return false;
-        table->values = values;
+static void add_cell(BenchTable *table, BenchColumn column, BenchValue value) {
+    if (table->row_count == 0 && table->column_count < BENCH_COLUMNS_MAX)
+        table->columns[table->column_count++] = column;
+    if (table->cell_count == table->capacity) {
+        const int capacity = table->capacity ? 2 * table->capacity : 16 * BENCH_COLUMNS_MAX;
+        BenchValue *cells = realloc(table->cells, (size_t)capacity * sizeof *cells);
+        if (!cells) return;
+        table->cells = cells;
         table->capacity = capacity;
     }
 
-    memcpy(table->values + (size_t)table->row_count * width, row, width * sizeof *row);
-    if (table->text && table->row_count == 0) {
-        for (int c = 0; c < table->column_count; c++)
-            fprintf(table->text, "%s%*s", c ? "  " : "", table->columns[c].width, table->columns[c].name);
-        fputc('\n', table->text);
-    }
+    table->cells[table->cell_count++] = value;
+}
 
-    if (table->text) {
-        for (int c = 0; c < table->column_count; c++) {
-            if (c) fputs("  ", table->text);
+void table_number(BenchTable *table, const char *name, const char *format, int width, double number) {
+    add_cell(table, (BenchColumn){name, format, width, NULL}, (BenchValue){.number = {number}});
+}
 
-            char shown[96];
-            int length = 0;
-            if (row[c].text) length = snprintf(shown, sizeof shown, "%s", row[c].text);
-            for (int part = 0; !row[c].text && part < (table->columns[c].parts ? 3 : 1); part++) {
-                size_t left = sizeof shown - (size_t)length;
-                if (part) length += snprintf(shown + length, left, "/"), left--;
-                if (isnan(row[c].number[part])) length += snprintf(shown + length, left, "-");
-                else length += snprintf(shown + length, left, table->columns[c].format, row[c].number[part]);
-            }
+void table_text(BenchTable *table, const char *name, int width, const char *text) {
+    add_cell(table, (BenchColumn){name, NULL, width, NULL}, (BenchValue){.text = text});
+}
 
-            fprintf(table->text, "%*s", table->columns[c].width, shown);
+void table_parts(BenchTable *table, const char *name, const char *format, int width, const char *parts,
+                 BenchValue value) {
+    add_cell(table, (BenchColumn){name, format, width, parts}, value);
+}
+
+SingeResult table_end_row(BenchTable *table) {
+    const int begin = table->row_count * table->column_count;
+    if (table->cell_count != begin + table->column_count) return SINGE_ERROR_MEMORY;
+    table->row_count++;
+    if (!table->text) return SINGE_OK;
+
+    for (int c = 0; c < table->column_count && begin == 0; c++)
+        fprintf(table->text, "%s%*s", c ? "  " : "", table->columns[c].width, table->columns[c].name);
+    if (begin == 0) fputc('\n', table->text);
+
+    for (int c = 0; c < table->column_count; c++) {
+        const BenchColumn *column = &table->columns[c];
+        const BenchValue *cell = &table->cells[begin + c];
+        if (c) fputs("  ", table->text);
+
+        char shown[96];
+        int length = 0;
+        if (cell->text) length = snprintf(shown, sizeof shown, "%s", cell->text);
+        for (int part = 0; !cell->text && part < (column->parts ? 3 : 1); part++) {
+            size_t left = sizeof shown - (size_t)length;
+            if (part) length += snprintf(shown + length, left, "/"), left--;
+            if (isnan(cell->number[part])) length += snprintf(shown + length, left, "-");
+            else length += snprintf(shown + length, left, column->format, cell->number[part]);
         }
 
-        fputc('\n', table->text);
-        fflush(table->text);
+        fprintf(table->text, "%*s", column->width, shown);
     }
 
-    table->row_count++;
-    return true;
+    fputc('\n', table->text);
+    fflush(table->text);
+    return SINGE_OK;
 }
 
 void table_free(BenchTable *table) {
-    free(table->values);
-    table->values = NULL;
-    table->row_count = table->capacity = 0;
+    free(table->cells);
+    table->cells = NULL;
+    table->row_count = table->cell_count = table->capacity = 0;
 }
 
 static void write_key(FILE *file, const BenchColumn *column, int part) {
@@ -111,7 +129,7 @@ void table_write_json(const BenchTable *table, FILE *file) {
     for (int r = 0; r < table->row_count; r++) {
         fputs(r ? ",\n  {" : "\n  {", file);
 
-        const BenchValue *row = table->values + (size_t)r * (size_t)table->column_count;
+        const BenchValue *row = table->cells + (size_t)r * (size_t)table->column_count;
         const char *comma = "";
         for (int c = 0; c < table->column_count; c++)
             for (int part = 0; part < (table->columns[c].parts ? 3 : 1); part++) {
@@ -136,7 +154,7 @@ void table_write_csv(const BenchTable *table, FILE *file) {
     for (int r = -1; r < table->row_count; r++) {
         for (int c = 0; c < table->column_count; c++)
             for (int part = 0; part < (table->columns[c].parts ? 3 : 1); part++) {
-                const BenchValue *value = r < 0 ? NULL : &table->values[r * table->column_count + c];
+                const BenchValue *value = r < 0 ? NULL : &table->cells[r * table->column_count + c];
                 if (c || part) fputc(',', file);
                 if (!value) write_key(file, &table->columns[c], part);
                 else if (value->text) fputs(value->text, file);

@@ -26,31 +26,36 @@ typedef struct BenchFact {
     double number;
 } BenchFact;
 
-enum { BENCH_FACTS_MAX = 24 };
+enum { BENCH_FACTS_MAX = 24, BENCH_COLUMNS_MAX = 32 };
 
 typedef struct BenchTable {
     const char *command; ///< the measurement's name
-    const BenchColumn *columns;
-    int column_count, row_count, capacity;
-    BenchValue *values; ///< [row_count * column_count]
-    FILE *text;         ///< where rows are printed as they arrive, or NULL
+    BenchColumn columns[BENCH_COLUMNS_MAX];
+    int column_count, row_count;
+    int cell_count, capacity;
+    BenchValue *cells; ///< [row_count * column_count], and those of the row that is not ended
+    FILE *text;        ///< where rows are printed as they arrive, or NULL
     BenchFact facts[BENCH_FACTS_MAX];
     int fact_count;
 } BenchTable;
 
-BenchTable table_begin(const char *command, const BenchColumn *columns, int column_count, FILE *text);
+/// Names the measurement; `text` stays.
+void table_begin(BenchTable *table, const char *command);
 
 /// Adds a number about the whole table; before the first row.
 void table_fact(BenchTable *table, const char *name, double number);
 
-/// Adds a row of `column_count` values. False when out of memory.
-bool table_add(BenchTable *table, const BenchValue *row);
+/// Add the cells of a row from left to right. The first row makes the columns; every other one has the same.
+void table_number(BenchTable *table, const char *name, const char *format, int width, double number);
+void table_text(BenchTable *table, const char *name, int width, const char *text);
+void table_parts(BenchTable *table, const char *name, const char *format, int width, const char *parts,
+                 BenchValue value);
+
+/// Ends and prints the row. SINGE_ERROR_MEMORY if one of its cells found no room.
+SingeResult table_end_row(BenchTable *table);
 
 void table_write_json(const BenchTable *table, FILE *file);
 void table_write_csv(const BenchTable *table, FILE *file);
 void table_free(BenchTable *table);
-
-static inline BenchValue bench_number(double number) { return (BenchValue){.number = {number}}; }
-static inline BenchValue bench_text(const char *text) { return (BenchValue){.text = text}; }
 
 #endif

@@ -11,7 +11,7 @@
 
 static const BenchValue *cell(const BenchTable *table, int row, const char *column) {
     for (int c = 0; c < table->column_count; c++)
-        if (strcmp(table->columns[c].name, column) == 0) return &table->values[row * table->column_count + c];
+        if (strcmp(table->columns[c].name, column) == 0) return &table->cells[row * table->column_count + c];
     return NULL;
 }
 
