@@ -6,38 +6,8 @@
 #include "cli/args.h"
 
 /// The options of all measurements.
-extern const ArgOption bench_all_options[];
-typedef enum BenchOption {
-    BENCH_OPT_CELLS,
-    BENCH_OPT_SHEETS,
-    BENCH_OPT_THICKNESS,
-    BENCH_OPT_PINS,
-    BENCH_OPT_TIME,
-    BENCH_OPT_SUBSTEPS,
-    BENCH_OPT_STEPS,
-    BENCH_OPT_SMOOTHING,
-    BENCH_OPT_THREADS,
-    BENCH_OPT_SOLVER,
-    BENCH_OPT_INSTRUCTIONS,
-    BENCH_OPT_PROJECTIONS,
-    BENCH_OPT_SPRINGS,
-    BENCH_OPT_STATE,
-    BENCH_OPT_LIMIT,
-    BENCH_OPT_QUICK,
-    BENCH_OPT_TIMED,
-    BENCH_OPT_MATERIAL,
-    BENCH_OPT_CURVATURE,
-    BENCH_OPT_SEEDS,
-    BENCH_OPT_OUTLINE,
-    BENCH_OPT_CREASES,
-    BENCH_OPT_RED,
-    BENCH_OPT_JSON,
-    BENCH_OPT_CSV,
-    BENCH_OPT_SVG,
-    BENCH_OPT_COUNT
-} BenchOption;
-
-#define BENCH_BIT(option) (1u << BENCH_OPT_##option)
+enum { BENCH_OPTION_COUNT = 25 };
+extern const ArgOption bench_all_options[BENCH_OPTION_COUNT];
 
 typedef struct BenchRequest {
     BenchOptions options;
@@ -47,8 +17,11 @@ typedef struct BenchRequest {
     const char *materials; ///< "office-paper,./mine.yaml", or NULL for all that are built in
 } BenchRequest;
 
-/// Reads the options in `accepted` (bits) of the measurement `name` ("bench swing"). ARG_END, ARG_HELP or ARG_ERROR.
-int bench_args_read(const char *name, const char *summary, unsigned accepted, int argc, char **argv,
-                    BenchRequest *request);
+/// Whether a measurement takes an option: `accepted` has its name between spaces, " cells time ".
+bool bench_takes(const char *accepted, const char *option);
+
+/// Reads the command line of the measurement `name` ("bench swing"), as args_read does.
+bool bench_args_read(const char *name, const char *summary, const char *accepted, int argc, char **argv,
+                     BenchRequest *request, ExitCode *code);
 
 #endif

@@ -12,83 +12,65 @@
 #include "cli/console.h"
 #include "common/printable.h"
 
-#define OUTPUT (BENCH_BIT(JSON) | BENCH_BIT(CSV))
-#define SOLVER (BENCH_BIT(SOLVER) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(PROJECTIONS) | BENCH_BIT(SUBSTEPS))
-#define TRAJECTORY                                                                                    \
-    (BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(PINS) | BENCH_BIT(TIME) | BENCH_BIT(STEPS) | \
-     BENCH_BIT(SMOOTHING) | BENCH_BIT(THREADS) | SOLVER | OUTPUT)
-#define SIZES (BENCH_BIT(SPRINGS) | BENCH_BIT(TIMED) | BENCH_BIT(THREADS) | OUTPUT)
+// options that several measurements take
+#define OUTPUT " json csv "
+#define SOLVER " solver instructions projections substeps "
+#define TRAJECTORY " cells thickness pins time steps smoothing threads " SOLVER OUTPUT
+#define SIZES " springs steps threads " OUTPUT
 
 static const struct {
     const char *name, *full_name;
     BenchFn *run;
-    unsigned accepted; ///< options
+    const char *accepted; ///< options, between spaces
     const char *summary;
 } measurements[] = {
     {"swing", "bench swing", bench_swing, TRAJECTORY,
      "A sheet of 1 m x 1 m, held at corners, falls from the horizontal: time per frame, strain, motion."},
     {"hang-and-shrink", "bench hang-and-shrink", bench_hang_and_shrink, TRAJECTORY,
      "A sheet that hangs from two corner patches shrinks to 0.8 of its size: the numbers of swing."},
-    {"tear", "bench tear", bench_tear, BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(SUBSTEPS) | OUTPUT,
+    {"tear", "bench tear", bench_tear, " threads instructions substeps " OUTPUT,
      "A strip with a weak line is pulled apart: the load at which it breaks, by cell size and time step."},
-    {"dynamics", "bench dynamics", bench_dynamics, SIZES | SOLVER | BENCH_BIT(STATE) | BENCH_BIT(QUICK),
+    {"dynamics", "bench dynamics", bench_dynamics, " state quick " SIZES SOLVER,
      "The dynamics and its projection of springs at several sizes, compared with the machine's peaks."},
-    {"step", "bench step", bench_step, SIZES | SOLVER | BENCH_BIT(LIMIT) | BENCH_BIT(CURVATURE),
+    {"step", "bench step", bench_step, " limit-ms curvature " SIZES SOLVER,
      "Whole steps of a burning sheet with a sphere and the ground: milliseconds per stage."},
     {"surface", "bench surface", bench_surface, SIZES,
      "The drawn surface of a burning sheet at several refinements: triangles and milliseconds."},
-    {"heap", "bench heap", bench_heap,
-     BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) | OUTPUT,
+    {"heap", "bench heap", bench_heap, " cells time threads substeps " OUTPUT,
      "A cloth falls over a sphere and folds: milliseconds per frame and stage, self-contact, strain."},
-    {"collapse", "bench collapse", bench_collapse,
-     BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) | OUTPUT,
+    {"collapse", "bench collapse", bench_collapse, " cells time threads substeps " OUTPUT,
      "A hollow ball collapses into self-contact under its weight: the numbers of heap."},
-    {"stack", "bench stack", bench_stack,
-     BENCH_BIT(CELLS) | BENCH_BIT(SHEETS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) | OUTPUT,
+    {"stack", "bench stack", bench_stack, " cells sheets time threads substeps " OUTPUT,
      "Sheets fall on top of each other over a sphere: mean and worst step, strain, crossings, memory."},
-    {"wind", "bench wind", bench_wind,
-     BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) | OUTPUT,
+    {"wind", "bench wind", bench_wind, " cells time threads substeps " OUTPUT,
      "A sheet held at two corners in gusts of 5, 15 and 30 m/s: processor time, CCD, strain, crossings."},
-    {"memory", "bench memory", bench_memory, BENCH_BIT(SPRINGS) | BENCH_BIT(THREADS) | OUTPUT,
+    {"memory", "bench memory", bench_memory, " springs threads " OUTPUT,
      "Bytes per spring of a simulation and of its drawn mesh."},
-    {"front", "bench front", bench_front, BENCH_BIT(MATERIAL) | BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,
+    {"front", "bench front", bench_front, " material quick threads " OUTPUT,
      "The burning front of materials, level, down and up: speed, temperature, residue, and published values."},
-    {"spread", "bench spread", bench_spread, BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,
-     "Speed of a fire with gas: level, down and up."},
+    {"spread", "bench spread", bench_spread, " quick threads " OUTPUT, "Speed of a fire with gas: level, down and up."},
     {"output", "bench output", bench_output, OUTPUT,
      "Frames of 25,000 vertices in every format: bytes, and milliseconds of the program and of the system."},
-    {"preview", "bench preview", bench_preview, BENCH_BIT(THREADS) | OUTPUT,
+    {"preview", "bench preview", bench_preview, " threads " OUTPUT,
      "Pictures of 100,000 triangles at 1280 x 720 with 16 samples: seconds of processor time."},
-    {"picture", "bench picture", bench_picture, BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | OUTPUT,
+    {"picture", "bench picture", bench_picture, " threads quick " OUTPUT,
      "Pictures at 960 x 540: seconds; and at 320 x 180 their error against 256 samples, and its change while the camera turns."},
-    {"compare", "bench compare", bench_compare,
-     BENCH_BIT(SPRINGS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(QUICK) | OUTPUT,
+    {"compare", "bench compare", bench_compare, " springs time threads instructions quick " OUTPUT,
      "The paper's solver and ours on the same trajectories: error, cost, and cost at equal error."},
-    {"width", "bench width", bench_width, SIZES | BENCH_BIT(SUBSTEPS) | BENCH_BIT(PROJECTIONS) | BENCH_BIT(STATE),
+    {"width", "bench width", bench_width, " substeps projections state " SIZES,
      "The same run with each instruction set: cost, and whether the bytes are the same."},
-    {"stability", "bench stability", bench_stability,
-     BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) | BENCH_BIT(QUICK) | SOLVER |
-         OUTPUT,
+    {"stability", "bench stability", bench_stability, " cells time threads smoothing quick " SOLVER OUTPUT,
      "Whether swinging and strongly shrinking sheets are stable at any thickness, resolution and time step."},
-    {"look", "bench look", bench_look,
-     BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) |
-         BENCH_BIT(QUICK) | SOLVER | OUTPUT,
+    {"look", "bench look", bench_look, " cells thickness time threads smoothing quick " SOLVER OUTPUT,
      "Rest shape, sag and wrinkles at several time steps, substeps and resolutions."},
-    {"fold", "bench fold", bench_fold,
-     BENCH_BIT(SUBSTEPS) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) | OUTPUT,
+    {"fold", "bench fold", bench_fold, " substeps threads quick instructions " OUTPUT,
      "A strip is folded by 180 degrees and released: the angle that remains, by resolution and time step."},
     {"isotropy", "bench isotropy", bench_isotropy,
-     BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(CURVATURE) | BENCH_BIT(CREASES) | BENCH_BIT(RED) |
-         BENCH_BIT(OUTLINE) | BENCH_BIT(SEEDS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) |
-         BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(QUICK) | OUTPUT,
+     " cells thickness curvature creases red outline seeds time threads substeps instructions quick " OUTPUT,
      "The same burn on a grid and on one turned by 45 degrees: whether its folds follow the mesh."},
-    {"plate", "bench plate", bench_plate,
-     BENCH_BIT(CELLS) | BENCH_BIT(SUBSTEPS) | BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(QUICK) |
-         BENCH_BIT(SVG) | OUTPUT,
+    {"plate", "bench plate", bench_plate, " cells substeps threads instructions quick svg " OUTPUT,
      "Strips that sag and discs that roll up, by the direction of their mesh: stiffness and curvatures."},
-    {"spectrum", "bench spectrum", bench_spectrum,
-     BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) |
-         BENCH_BIT(SUBSTEPS) | OUTPUT,
+    {"spectrum", "bench spectrum", bench_spectrum, " thickness time threads quick instructions substeps " OUTPUT,
      "Wrinkles of a burning edge by wavelength, and their peak by time step, resolution and thickness."},
 };
 
@@ -142,7 +124,7 @@ const ArgCommand bench_command = {
     .operand = "MEASUREMENT",
     .summary = "Measures speed, strain and stability of the solver on this machine.",
     .options = bench_all_options,
-    .option_count = BENCH_OPT_COUNT,
+    .option_count = BENCH_OPTION_COUNT,
     .footer = "Each measurement takes some of these options: `singe bench MEASUREMENT --help` shows which.",
     .examples = "singe bench front --material newsprint,cotton\n"
                 "singe bench step --springs 100000 --threads 2 --csv step.csv",
@@ -167,13 +149,13 @@ int command_bench(int argc, char **argv) {
     int m = bench_find(strcmp(argv[0], "--compare") == 0 ? "compare" : argv[0]);
     if (m < 0) return EXIT_INPUT;
     BenchRequest request;
-    int end = bench_args_read(measurements[m].full_name, measurements[m].summary, measurements[m].accepted, argc - 1,
-                              argv + 1, &request);
-    if (end == ARG_HELP) return EXIT_GOOD;
-    if (end != ARG_END) return EXIT_INPUT;
-    if (!(measurements[m].accepted & BENCH_BIT(MATERIAL))) return bench_measure(m, &request);
+    ExitCode code;
+    if (!bench_args_read(measurements[m].full_name, measurements[m].summary, measurements[m].accepted, argc - 1,
+                         argv + 1, &request, &code))
+        return code;
+    if (!bench_takes(measurements[m].accepted, "material")) return bench_measure(m, &request);
     BenchMaterials materials;
-    ExitCode code = bench_materials_open(request.materials, &materials);
+    code = bench_materials_open(request.materials, &materials);
     request.options.material_count = materials.count;
     request.options.materials = materials.items;
     if (!code) code = bench_measure(m, &request);

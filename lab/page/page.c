@@ -11,44 +11,12 @@
 
 extern const SceneBuiltin paper_files[]; // of the folder `paper`, embedded unchanged
 
-// ---- the command line
-
-typedef struct Request {
-    const char *folder, *name; ///< name NULL: all items
-    bool quick;
-    int threads;
-} Request;
-
-/// False if the value is invalid; a message has been printed.
-static bool take(const Page *page, const ArgReader *reader, int option, const char *value, Request *request) {
-    const char *name = option == ARG_OPERAND ? "only" : reader->command->options[option].name;
-    if (strcmp(name, "only") == 0) {
-        // whether there is an item of that name; otherwise prints a message
-        request->name = value;
-        for (int i = 0; i < page->count; i++)
-            if (strcmp(value, page->items[i].name) == 0) return true;
-        if (option != ARG_OPERAND) return args_complain(reader, "--only: there is no '%s'", shown(value).text), false;
-        request->name = NULL;
-        if (strcmp(value, "all") == 0) return true;
-        const char *near = args_nearest(value, page->items, page->count, sizeof *page->items);
-        if (near) args_complain(reader, "unknown WHAT '%s'; did you mean '%s'?", shown(value).text, near);
-        else args_complain(reader, "unknown WHAT '%s': expected all, or one of the experiments", shown(value).text);
-        return false;
-    }
-
-    if (strcmp(name, "quick") == 0) return request->quick = true;
-    if (strcmp(name, "threads") == 0) return args_int(reader, option, value, 1, JOB_THREADS_MAX, &request->threads);
-    request->folder = value;
-    if (!value[0]) args_complain(reader, "--output needs a folder");
-    return value[0] != 0;
-}
-
 // ---- the report
 
 /// The items of a page, run by several threads.
 typedef struct Queue {
     const Page *page;
-    const Request *request;
+    const PageRequest *request;
     const Lab *lab; ///< common to all
     ReportPage *report;
     pthread_mutex_t lock; ///< of all below
@@ -59,7 +27,7 @@ typedef struct Queue {
 } Queue;
 
 static bool is_wanted(const Queue *queue, int item) {
-    return !queue->request->name || strcmp(queue->request->name, queue->page->items[item].name) == 0;
+    return !queue->request->item || strcmp(queue->request->item, queue->page->items[item].name) == 0;
 }
 
 static bool is_alone(const Queue *queue, int item) {
@@ -130,14 +98,14 @@ static ExitCode fill(Queue *queue) {
     const int threads = queue->request->threads;
     pthread_t others[JOB_THREADS_MAX];
     int started = 0;
-    if (!queue->request->name) {
+    if (!queue->request->item) {
         while (started < threads - 1 && !pthread_create(&others[started], NULL, run_together, queue)) started++;
         run_together(queue);
         for (int i = 0; i < started; i++) pthread_join(others[i], NULL);
     }
 
     for (int i = 0; i < queue->page->count && !queue->result; i++)
-        if (is_wanted(queue, i) && (queue->request->name || is_alone(queue, i))) run_item(queue, i, threads, true);
+        if (is_wanted(queue, i) && (queue->request->item || is_alone(queue, i))) run_item(queue, i, threads, true);
 
     pthread_mutex_destroy(&queue->lock);
     if (queue->result) code = fail(&queue->error);
@@ -154,7 +122,7 @@ static ExitCode fill(Queue *queue) {
     return code ? code : failed ? EXIT_FAILED : EXIT_GOOD;
 }
 
-static ExitCode run(const Page *page, const Request *request) {
+static ExitCode run(const Page *page, const PageRequest *request) {
     SingeError error = {0};
     Lab lab = {.quick = request->quick, .console = console_make(false)};
     Queue queue = {
@@ -182,13 +150,27 @@ static ExitCode run(const Page *page, const Request *request) {
     return code;
 }
 
+/// Whether there is an item of that name; otherwise prints a message.
+static bool has_item(const Page *page, const ArgCommand *command, const char *name, bool only) {
+    for (int i = 0; i < page->count; i++)
+        if (strcmp(name, page->items[i].name) == 0) return true;
+    if (only) return args_complain(command, "--only: there is no '%s'", shown(name).text);
+    const char *near = args_nearest(name, page->items, page->count, sizeof *page->items);
+    if (near) return args_complain(command, "unknown WHAT '%s'; did you mean '%s'?", shown(name).text, near);
+    return args_complain(command, "unknown WHAT '%s': expected all, or one of the experiments", shown(name).text);
+}
+
 ExitCode page_run(const Page *page, const ArgCommand *command, int argc, char **argv) {
-    ArgReader reader = args_begin(command, argc, argv);
-    Request request = {.folder = page->folder, .threads = job_threads()};
-    const char *value;
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        if (option == ARG_HELP) return EXIT_GOOD;
-        if (option == ARG_ERROR || !take(page, &reader, option, value, &request)) return EXIT_INPUT;
+    PageRequest request = {.folder = page->folder, .threads = job_threads()};
+    ExitCode code;
+    if (!args_read(command, argc, argv, &request, &code)) return code;
+    if (request.item && strcmp(request.item, "all") == 0) request.item = NULL;
+    if (request.item && !has_item(page, command, request.item, false)) return EXIT_INPUT;
+    if (request.only && !has_item(page, command, request.only, true)) return EXIT_INPUT;
+    if (request.only) request.item = request.only;
+    if (!request.folder[0]) {
+        args_complain(command, "--output needs a folder");
+        return EXIT_INPUT;
     }
     return run(page, &request);
 }

@@ -23,9 +23,16 @@ typedef struct Page {
     ReportGradeFn *grade; ///< NULL: its measures have none
 } Page;
 
+typedef struct PageRequest {
+    const char *folder, *item, *only; ///< item or only: one item instead of all
+    bool quick;
+    int threads;
+} PageRequest;
+
 /// Reads a command line and runs items into a report: all, or the one named by an operand (or `all`) or --only. Items
 /// run in parallel, one thread each; then those that run alone, each with all threads. The page and the output are in
-/// the order of the items. `command` may have the options output, only, quick and threads. Returns EXIT_FAILED if an
+/// the order of the items. The options of `command` are a
+/// PageRequest's. Returns EXIT_FAILED if an
 /// item fails or a measure does not hold.
 ExitCode page_run(const Page *page, const ArgCommand *command, int argc, char **argv);
 

@@ -84,12 +84,10 @@ static const PageItem items[] = {
      "What the paper says about its method and its results, and what this program finds.", paper_statements},
 };
 
-enum { OPT_OUTPUT, OPT_QUICK, OPT_THREADS, OPT_COUNT };
-
-static const ArgOption paper_options[OPT_COUNT] = {
-    [OPT_OUTPUT] = {"output", 'o', "DIR", "folder for the page [out/paper]"},
-    [OPT_QUICK] = {"quick", 0, NULL, "small sizes, for a quick check"},
-    [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
+static const ArgOption paper_options[] = {
+    {"output", 'o', "DIR", "folder for the page [out/paper]", .read = args_text, offsetof(PageRequest, folder)},
+    {"quick", 0, NULL, "small sizes, for a quick check", .read = args_switch, offsetof(PageRequest, quick)},
+    {"threads", 0, "N", "threads [all]", .read = args_int, offsetof(PageRequest, threads), 1, JOB_THREADS_MAX},
 };
 
 const ArgCommand paper_command = {
@@ -97,7 +95,7 @@ const ArgCommand paper_command = {
     "WHAT",
     "Runs the paper's experiments and writes a page about them, DIR/index.html.",
     paper_options,
-    OPT_COUNT,
+    sizeof paper_options / sizeof *paper_options,
     "WHAT is all, or one of\n"
     "  fig1 fig2 fig3 fig4 fig5 fig6 fig7ab fig7cd fig8 fig10 fig11 table1 table2 whole\n"
     "  heat alpha all-at-once mass-loss weights rival crossing adaptive readings statements   (docs/cli.md "
@@ -105,7 +103,8 @@ const ArgCommand paper_command = {
     "\n"
     "Exit codes: 0 good, 1 an error, or a measure outside its bars, 2 bad usage.",
     "singe paper fig8 -o out\n"
-    "singe paper all --quick"};
+    "singe paper all --quick",
+    .operand_field = offsetof(PageRequest, item)};
 
 static const char *const alone[] = {"table2", "adaptive", "statements", NULL};
 

@@ -38,14 +38,12 @@ static const PageItem items[] = {
     {"grades", "Grades", "How far each measure is from what the parameters were set by.", validate_grades},
 };
 
-enum { OPT_OUTPUT, OPT_ONLY, OPT_QUICK, OPT_THREADS, OPT_COUNT };
-
-static const ArgOption validate_options[OPT_COUNT] = {
-    [OPT_OUTPUT] = {"output", 'o', "DIR", "folder for the page [out/validate]"},
-    [OPT_ONLY] = {"only", 0, "NAME",
-                  "one of heat, umbrella, front, pmma, cone, oxygen, damp, beam, disc, kinetics, ledgers, grades"},
-    [OPT_QUICK] = {"quick", 0, NULL, "small sizes, for a quick check"},
-    [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
+static const ArgOption validate_options[] = {
+    {"output", 'o', "DIR", "folder for the page [out/validate]", .read = args_text, offsetof(PageRequest, folder)},
+    {"only", 0, "NAME", "one of heat, umbrella, front, pmma, cone, oxygen, damp, beam, disc, kinetics, ledgers, grades",
+     .read = args_text, offsetof(PageRequest, only)},
+    {"quick", 0, NULL, "small sizes, for a quick check", .read = args_switch, offsetof(PageRequest, quick)},
+    {"threads", 0, "N", "threads [all]", .read = args_int, offsetof(PageRequest, threads), 1, JOB_THREADS_MAX},
 };
 
 const ArgCommand validate_command = {
@@ -53,10 +51,10 @@ const ArgCommand validate_command = {
     NULL,
     "Compares the physics with independent sources and writes a page about it, DIR/index.html.",
     validate_options,
-    OPT_COUNT,
-    "Exit codes: 0 good, 1 an error, or a measure outside its bars, 2 bad usage.",
-    "singe validate -o out\n"
-    "singe validate --only heat"};
+    sizeof validate_options / sizeof *validate_options,
+    .footer = "Exit codes: 0 good, 1 an error, or a measure outside its bars, 2 bad usage.",
+    .examples = "singe validate -o out\n"
+                "singe validate --only heat"};
 
 static const Page page = {
     items,

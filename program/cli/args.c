@@ -7,24 +7,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/job.h"
 #include "common/printable.h"
 #include "scene/schema.h"
 
-ArgReader args_begin(const ArgCommand *command, int argc, char **argv) {
-    return (ArgReader){.command = command, .argc = argc, .argv = argv};
-}
-
-int args_complain(const ArgReader *reader, const char *format, ...) {
+bool args_complain(const ArgCommand *command, const char *format, ...) {
     va_list list;
     va_start(list, format);
     char text[4096];
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
     printable_trim(text);
-    fprintf(stderr, "singe %s: error: ", reader->command->name);
+    fprintf(stderr, "singe %s: error: ", command->name);
     printable_write(text, stderr);
-    fprintf(stderr, "\nsee: singe %s --help\n", reader->command->name);
-    return ARG_ERROR;
+    fprintf(stderr, "\nsee: singe %s --help\n", command->name);
+    return false;
 }
 
 const char *args_nearest(const char *word, const void *first, int count, unsigned long stride) {
@@ -42,30 +39,40 @@ const char *args_nearest(const char *word, const void *first, int count, unsigne
     return nearest.best;
 }
 
-static int unknown_option(const ArgReader *reader, const char *argument, const char *name) {
+/// A command line that is being read.
+typedef struct ArgReader {
+    const ArgCommand *command;
+    int argc, index;
+    char **argv;
+    int letters; ///< position within a group of one-letter switches
+    void *options;
+    bool help;
+} ArgReader;
+
+static bool unknown_option(const ArgReader *reader, const char *argument, const char *name) {
     const ArgCommand *command = reader->command;
     const char *near = args_nearest(name, command->options, command->option_count, sizeof *command->options);
-    if (near) return args_complain(reader, "unknown option '%s'; did you mean '--%s'?", shown(argument).text, near);
-    return args_complain(reader, "unknown option '%s'", shown(argument).text);
+    if (near) return args_complain(command, "unknown option '%s'; did you mean '--%s'?", shown(argument).text, near);
+    return args_complain(command, "unknown option '%s'", shown(argument).text);
 }
 
-static int take_long(ArgReader *reader, const char *argument, const char **value) {
+static bool take(const ArgReader *reader, const ArgOption *option, const char *value) {
+    return option->read(reader->command, option, value, (char *)reader->options + option->field);
+}
+
+static bool take_long(ArgReader *reader, const char *argument) {
     const ArgCommand *command = reader->command;
     const char *name = argument + 2, *equals = strchr(name, '=');
     size_t length = equals ? (size_t)(equals - name) : strlen(name);
-    if (length == 4 && strncmp(name, "help", 4) == 0 && !equals) {
-        args_help(command);
-        return ARG_HELP;
-    }
+    if (length == 4 && strncmp(name, "help", 4) == 0 && !equals) return reader->help = true;
 
     for (int i = 0; i < command->option_count; i++) {
         const ArgOption *option = &command->options[i];
         if (strlen(option->name) != length || strncmp(option->name, name, length) != 0) continue;
-        if (!option->value && equals) return args_complain(reader, "--%s takes no value", option->name);
+        if (!option->value && equals) return args_complain(command, "--%s takes no value", option->name);
         if (option->value && !equals && reader->index >= reader->argc)
-            return args_complain(reader, "--%s needs %s", option->name, option->value);
-        *value = !option->value ? NULL : equals ? equals + 1 : reader->argv[reader->index++];
-        return i;
+            return args_complain(command, "--%s needs %s", option->name, option->value);
+        return take(reader, option, !option->value ? NULL : equals ? equals + 1 : reader->argv[reader->index++]);
     }
 
     char word[41]; // longer words are no misspellings
@@ -73,14 +80,11 @@ static int take_long(ArgReader *reader, const char *argument, const char **value
     return unknown_option(reader, argument, word);
 }
 
-static int take_letter(ArgReader *reader, const char **value) {
+static bool take_letter(ArgReader *reader) {
     const ArgCommand *command = reader->command;
     const char *argument = reader->argv[reader->index], *rest = argument + reader->letters + 1;
     const char letter = argument[reader->letters];
-    if (letter == 'h') {
-        args_help(command);
-        return ARG_HELP;
-    }
+    if (letter == 'h') return reader->help = true;
 
     int i = 0;
     while (i < command->option_count && command->options[i].letter != letter) i++;
@@ -88,51 +92,49 @@ static int take_letter(ArgReader *reader, const char **value) {
 
     // a switch may be followed by others; a value is the rest of the word or the next one
     const ArgOption *option = &command->options[i];
-    *value = NULL;
     if (!option->value && *rest) {
         reader->letters++;
-        return i;
+        return take(reader, option, NULL);
     }
 
     reader->index++;
     reader->letters = 0;
-    if (!option->value) return i;
-    if (!*rest && reader->index >= reader->argc) return args_complain(reader, "-%c needs %s", letter, option->value);
-
-    *value = *rest ? rest : reader->argv[reader->index++];
-    return i;
+    if (!option->value) return take(reader, option, NULL);
+    if (!*rest && reader->index >= reader->argc) return args_complain(command, "-%c needs %s", letter, option->value);
+    return take(reader, option, *rest ? rest : reader->argv[reader->index++]);
 }
 
-int args_next(ArgReader *reader, const char **value) {
-    const ArgCommand *command = reader->command;
-    if (reader->letters) return take_letter(reader, value);
-    if (reader->index < reader->argc && !reader->operands_only && strcmp(reader->argv[reader->index], "--") == 0) {
-        reader->operands_only = true;
-        reader->index++;
+bool args_read(const ArgCommand *command, int argc, char **argv, void *options, ExitCode *code) {
+    ArgReader reader = {.command = command, .argc = argc, .argv = argv, .options = options};
+    bool good = true, operands_only = false, operand = false;
+    while (good && !reader.help && reader.index < argc) {
+        const char *argument = argv[reader.index];
+        if (reader.letters) {
+            good = take_letter(&reader);
+        } else if (!operands_only && strcmp(argument, "--") == 0) {
+            operands_only = true;
+            reader.index++;
+        } else if (!operands_only && strncmp(argument, "--", 2) == 0) {
+            reader.index++;
+            good = take_long(&reader, argument);
+        } else if (!operands_only && argument[0] == '-' && argument[1]) {
+            reader.letters = 1;
+            good = take_letter(&reader);
+        } else if (!command->operand || operand) {
+            good = args_complain(command, "unexpected argument '%s'", shown(argument).text);
+        } else {
+            operand = true;
+            reader.index++;
+            memcpy((char *)options + command->operand_field, &argument, sizeof argument);
+        }
     }
 
-    if (reader->index >= reader->argc) {
-        if (command->operand && command->operand[0] != '[' && reader->operand_count == 0)
-            return args_complain(reader, "needs %s", command->operand);
-        return ARG_END;
-    }
-
-    const char *argument = reader->argv[reader->index];
-    if (!reader->operands_only && strncmp(argument, "--", 2) == 0) {
-        reader->index++;
-        return take_long(reader, argument, value);
-    }
-
-    if (!reader->operands_only && argument[0] == '-' && argument[1]) {
-        reader->letters = 1;
-        return take_letter(reader, value);
-    }
-
-    if (!command->operand || (++reader->operand_count > 1 && !strstr(command->operand, "...")))
-        return args_complain(reader, "unexpected argument '%s'", shown(argument).text);
-    reader->index++;
-    *value = argument;
-    return ARG_OPERAND;
+    if (good && !reader.help && command->operand && command->operand[0] != '[' && !operand)
+        good = args_complain(command, "needs %s", command->operand);
+    if (good && !reader.help && command->check) good = command->check(command, options);
+    if (reader.help) args_help(command);
+    *code = good ? EXIT_GOOD : EXIT_INPUT;
+    return good && !reader.help;
 }
 
 void args_help(const ArgCommand *command) {
@@ -163,21 +165,36 @@ void args_examples(const ArgCommand *command) {
     }
 }
 
-bool args_int(const ArgReader *reader, int option, const char *text, int low, int high, int *number) {
-    char *end;
-    errno = 0;
-    long value = strtol(text, &end, 10);
-    if (errno == 0 && end != text && *end == 0 && value >= low && value <= high) {
-        *number = (int)value;
-        return true;
-    }
-
-    args_complain(reader, "--%s: expected a whole number from %d to %d, got '%s'",
-                  reader->command->options[option].name, low, high, shown(text).text);
-    return false;
+bool args_switch(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    (void)command, (void)option, (void)text;
+    return *(bool *)field = true;
 }
 
-bool args_span(const ArgReader *reader, int option, const char *text, int *first, int *last) {
+bool args_text(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    (void)command, (void)option;
+    *(const char **)field = text;
+    return true;
+}
+
+bool args_set(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    (void)command, (void)option;
+    set_add(field, text);
+    return true;
+}
+
+bool args_int(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    char *end;
+    errno = 0;
+    const long value = strtol(text, &end, 10);
+    const bool good = errno == 0 && end != text && *end == 0;
+    if (!good || (double)value < option->low || (double)value > option->high)
+        return args_complain(command, "--%s: expected a whole number from %.0f to %.0f, got '%s'", option->name,
+                             option->low, option->high, shown(text).text);
+    *(int *)field = (int)value;
+    return true;
+}
+
+bool args_span(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
     char *end;
     errno = 0;
     long a = strtol(text, &end, 10), b = a;
@@ -188,13 +205,10 @@ bool args_span(const ArgReader *reader, int option, const char *text, int *first
         good = errno == 0 && end != second;
     }
 
-    if (good && *end == 0 && a >= 1 && a <= b && b <= INT_MAX) {
-        *first = (int)a;
-        *last = (int)b;
-        return true;
-    }
-
-    args_complain(reader, "--%s: expected A-B with 1 <= A <= B, got '%s'", reader->command->options[option].name,
-                  shown(text).text);
-    return false;
+    if (!good || *end != 0 || a < 1 || a > b || b > INT_MAX)
+        return args_complain(command, "--%s: expected A-B with 1 <= A <= B, got '%s'", option->name, shown(text).text);
+    int *span = field;
+    span[0] = (int)a;
+    span[1] = (int)b;
+    return true;
 }

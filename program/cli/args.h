@@ -3,55 +3,56 @@
 #define CLI_ARGS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
-typedef struct ArgOption {
+#include "cli/cli.h"
+
+typedef struct ArgCommand ArgCommand;
+typedef struct ArgOption ArgOption;
+
+/// Reads what is given for an option into its field, or prints what is expected and returns false.
+typedef bool ArgRead(const ArgCommand *command, const ArgOption *option, const char *text, void *field);
+
+/// Completes what has been read, or prints what contradicts itself and returns false.
+typedef bool ArgCheck(const ArgCommand *command, void *options);
+
+struct ArgOption {
     const char *name;  ///< without its dashes
     char letter;       ///< 0 for none
     const char *value; ///< name of the value in the help ("DIR"); NULL for a switch
     const char *help;
-} ArgOption;
+    ArgRead *read;
+    size_t field;     ///< its offset in the command's options
+    double low, high; ///< of a number
+};
 
-typedef struct ArgCommand {
+struct ArgCommand {
     const char *name;    ///< "run"
-    const char *operand; ///< "SCENE" takes exactly one, "[NAME]" one at most, "FILE..." one or more, NULL none
+    const char *operand; ///< "SCENE" takes exactly one, "[NAME]" one at most, NULL none
     const char *summary;
     const ArgOption *options;
     int option_count;
     const char *footer;   ///< printed below the options in the help, or NULL
     const char *examples; ///< command lines, one a line, for the help and the manual; NULL: none
-} ArgCommand;
+    size_t operand_field; ///< of a const char *
+    ArgCheck *check;      ///< of all options together, or NULL
+};
 
-/// Results of args_next besides an option, which is its index in `options`, from 0.
-enum { ARG_END = -1, ARG_OPERAND = -2, ARG_HELP = -3, ARG_ERROR = -4 };
+/// Reads a command line into the command's options, a struct with the fields that its table names. False where the
+/// command ends here, with *code: the help has been printed, or an error with a hint to it.
+bool args_read(const ArgCommand *command, int argc, char **argv, void *options, ExitCode *code);
 
-typedef struct ArgReader {
-    const ArgCommand *command;
-    int argc, index;
-    char **argv;
-    int letters;        ///< position within a group of one-letter switches
-    bool operands_only; ///< after "--"
-    int operand_count;
-} ArgReader;
-
-ArgReader args_begin(const ArgCommand *command, int argc, char **argv);
-
-/// The next argument. ARG_ERROR: a message with a hint has been printed, also for a missing operand at the end.
-/// ARG_HELP: the help has been printed.
-int args_next(ArgReader *reader, const char **value);
+/// Fields: a bool; a const char *; an int within low and high; int[2] of "A-B", or of "A" for both, with 1 <= A <= B; a
+/// SetList, to which it adds.
+ArgRead args_switch, args_text, args_int, args_span, args_set;
 
 void args_help(const ArgCommand *command);
 
 /// The part of the help with the examples.
 void args_examples(const ArgCommand *command);
 
-/// Reads a whole number within [low, high], or prints what the option expects and returns false.
-bool args_int(const ArgReader *reader, int option, const char *text, int low, int high, int *number);
-
-/// Reads "A-B", or "A" for both, with 1 <= A <= B, or prints what was expected of the option and returns false.
-bool args_span(const ArgReader *reader, int option, const char *text, int *first, int *last);
-
-/// Prints "singe COMMAND: error: TEXT" and the hint to the help. Returns ARG_ERROR.
-int args_complain(const ArgReader *reader, const char *format, ...)
+/// Prints "singe COMMAND: error: TEXT" and the hint to the help. Returns false.
+bool args_complain(const ArgCommand *command, const char *format, ...)
 #if defined(__GNUC__)
     __attribute__((format(printf, 2, 3)))
 #endif

@@ -13,12 +13,18 @@
 #include "formats/gas_grid.h"
 #include "scene/words.h"
 
-enum { OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_COUNT };
+typedef struct CheckOptions {
+    const char *scene;
+    int frames, threads; ///< frames 0: the scene's
+    SetList sets;
+} CheckOptions;
 
-static const ArgOption check_options[OPT_COUNT] = {
-    [OPT_FRAMES] = {"frames", 0, "N", "frames to estimate the time for"},
-    [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
-    [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
+static const ArgOption check_options[] = {
+    {"frames", 0, "N", "frames to estimate the time for", .read = args_int, offsetof(CheckOptions, frames), 1,
+     JOB_FRAMES_MAX},
+    {"threads", 0, "N", "threads [all]", .read = args_int, offsetof(CheckOptions, threads), 1, JOB_THREADS_MAX},
+    {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated", .read = args_set,
+     offsetof(CheckOptions, sets)},
 };
 
 const ArgCommand check_command = {
@@ -26,11 +32,12 @@ const ArgCommand check_command = {
     "SCENE",
     "Reads a scene with its meshes and images, builds it, and prints its size and cost.",
     check_options,
-    OPT_COUNT,
+    sizeof check_options / sizeof *check_options,
     "Exit codes: 0 the scene is valid, 1 a step failed, memory ran out or standard output could not be written,\n"
     "2 bad input.",
     "singe check letter.yaml\n"
-    "singe check letter.yaml --set sheets.0.material=newsprint"};
+    "singe check letter.yaml --set sheets.0.material=newsprint",
+    .operand_field = offsetof(CheckOptions, scene)};
 
 /// Steps are timed until this many are done or this much time has passed.
 enum { CHECK_STEPS = 10 };
@@ -269,27 +276,16 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
 }
 
 int command_check(int argc, char **argv) {
-    ArgReader reader = args_begin(&check_command, argc, argv);
-    const char *value, *scene = NULL;
-    SetList sets = {0};
-    int threads = job_threads(), frames = 0, option;
-    bool good = true;
-    while (good && (option = args_next(&reader, &value)) != ARG_END) {
-        switch (option) {
-        case OPT_FRAMES: good = args_int(&reader, option, value, 1, 1000000, &frames); break;
-        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &threads); break;
-        case OPT_SET: set_add(&sets, value); break;
-        case ARG_OPERAND: scene = value; break;
-        case ARG_HELP: set_free(&sets); return EXIT_GOOD;
-        default: good = false;
-        }
+    CheckOptions options = {.threads = job_threads()};
+    ExitCode code;
+    if (args_read(&check_command, argc, argv, &options, &code)) {
+        if (options.frames) set_frames(&options.sets, options.frames);
+        Console console = console_make(false);
+        char *path = job_scene_path(&console, options.scene);
+        code = path ? check_scene(&console, path, &options.sets, options.threads) : EXIT_INPUT;
+        free(path);
     }
 
-    if (frames) set_frames(&sets, frames);
-    Console console = console_make(false);
-    char *path = good ? job_scene_path(&console, scene) : NULL;
-    ExitCode code = path ? check_scene(&console, path, &sets, threads) : EXIT_INPUT;
-    free(path);
-    set_free(&sets);
+    set_free(&options.sets);
     return code;
 }

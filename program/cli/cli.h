@@ -46,26 +46,10 @@ const char *paper_item_word(int index);
 const char *completion_shell_word(int index);
 const char *new_template_word(int index);
 
-int command_run(int argc, char **argv);
-int command_info(int argc, char **argv);
-int command_clean(int argc, char **argv);
-int command_check(int argc, char **argv);
-int command_view(int argc, char **argv);
-int command_render(int argc, char **argv);
-int command_convert(int argc, char **argv);
-int command_measure(int argc, char **argv);
-int command_verify(int argc, char **argv);
-int command_replay(int argc, char **argv);
-int command_bench(int argc, char **argv);
-int command_paper(int argc, char **argv);
-int command_validate(int argc, char **argv);
-int command_sweep(int argc, char **argv);
-int command_fit(int argc, char **argv);
-int command_scene_doc(int argc, char **argv);
-int command_scene_schema(int argc, char **argv);
-int command_materials(int argc, char **argv);
-int command_new(int argc, char **argv);
-int command_manual(int argc, char **argv);
-int command_completion(int argc, char **argv);
+typedef int CommandFn(int argc, char **argv);
+CommandFn command_run, command_info, command_clean, command_check, command_view, command_render, command_convert,
+    command_measure, command_verify, command_replay, command_bench, command_paper, command_validate, command_sweep,
+    command_fit, command_scene_doc, command_scene_schema, command_materials, command_new, command_manual,
+    command_completion;
 
 #endif

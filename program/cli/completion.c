@@ -16,7 +16,7 @@ const ArgCommand completion_command = {.name = "completion",
                                                    "singe completion zsh > ~/.zfunc/_singe\n"
                                                    "singe completion fish > ~/.config/fish/completions/singe.fish"};
 
-/// What a value is, by its name: "DIR", or "[COMMAND]", "FILE..." of an operand. NULL: nothing that can be completed.
+/// What a value is, by its name: "DIR", or "[COMMAND]" of an operand. NULL: nothing that can be completed.
 static const CommandValue *value_of(const char *name) {
     if (name && *name == '[') name++;
     for (int i = 0; name && i < command_table.value_count; i++) {
@@ -161,7 +161,7 @@ static void zsh_command(const Command *command) {
     }
 
     if (arguments->operand) {
-        fputs(strstr(arguments->operand, "...") ? " \\\n        '*" : " \\\n        '1", stdout);
+        fputs(" \\\n        '1", stdout);
         zsh_value(arguments->operand);
         putchar('\'');
     }
@@ -271,12 +271,9 @@ enum { SHELLS = sizeof shells / sizeof *shells };
 const char *completion_shell_word(int index) { return index < SHELLS ? shells[index].name : NULL; }
 
 int command_completion(int argc, char **argv) {
-    ArgReader reader = args_begin(&completion_command, argc, argv);
-    const char *value, *word = NULL;
-    for (int option; (option = args_next(&reader, &value)) != ARG_END; word = value) {
-        if (option == ARG_HELP) return EXIT_GOOD;
-        if (option == ARG_ERROR) return EXIT_INPUT;
-    }
+    const char *word;
+    ExitCode code;
+    if (!args_read(&completion_command, argc, argv, &word, &code)) return code;
 
     for (int i = 0; i < SHELLS; i++) {
         if (strcmp(word, shells[i].name) != 0) continue;
@@ -284,6 +281,6 @@ int command_completion(int argc, char **argv) {
         return EXIT_GOOD;
     }
 
-    args_complain(&reader, "expected bash, zsh or fish, got '%s'", shown(word).text);
+    args_complain(&completion_command, "expected bash, zsh or fish, got '%s'", shown(word).text);
     return EXIT_INPUT;
 }

@@ -9,28 +9,6 @@
 #include "cli/outputs.h"
 #include "common/printable.h"
 
-enum { OPT_TO, OPT_SINGLE, OPT_PLAIN, OPT_SET, OPT_QUIET, OPT_COUNT };
-
-static const ArgOption convert_options[OPT_COUNT] = {
-    [OPT_TO] = {"to", 0, "FORMAT", "format to write (see docs/formats.md); may be repeated"},
-    [OPT_SINGLE] = {"single", 0, NULL, "writes all frames into one file: `usd` or `glb`"},
-    [OPT_PLAIN] = {"plain", 0, NULL, "does not pack a single GLB: for readers without EXT_meshopt_compression"},
-    [OPT_SET] = {"set", 0, "PATH=VALUE",
-                 "sets a value of the scene (output.texture_size, gas.detail); may be repeated"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only warnings and errors"},
-};
-
-const ArgCommand convert_command = {
-    "convert",
-    "DIR",
-    "Writes the frames of a cache in other formats, beside it.",
-    convert_options,
-    OPT_COUNT,
-    "Existing frames are written again. Exit codes: 0 success, 1 failed or interrupted, 2 bad input.",
-    "singe convert out --to usd\n"
-    "singe convert out --to glb --single\n"
-    "singe convert out --to vtp --to textures --set output.texture_size=512"};
-
 typedef struct ConvertOptions {
     const char *folder;
     const char *names[16]; ///< of --to
@@ -47,18 +25,7 @@ static int single_named(const char *name, bool by_option) {
     return -1;
 }
 
-const char *convert_format_word(int index) {
-    if (index == 0) return "gas";
-    for (int i = 0; i < OUTPUT_COUNT + OUTPUT_SINGLE_COUNT; i++) {
-        const OutputSingle *single = i < OUTPUT_COUNT ? NULL : &output_singles[i - OUTPUT_COUNT];
-        if (single ? single->by_option : i == OUTPUT_ply) continue; // the former are formats of frames too
-        if (--index == 0) return single ? single->name : output_formats[i].name;
-    }
-
-    return NULL;
-}
-
-static bool add_format(const ArgReader *reader, const char *name, ConvertOptions *o) {
+static bool add_format(const ArgCommand *command, const char *name, ConvertOptions *o) {
     int which = single_named(name, false);
     if (which < 0 && o->single) which = single_named(name, true);
     if (which >= 0) {
@@ -84,42 +51,59 @@ static bool add_format(const ArgReader *reader, const char *name, ConvertOptions
                  other ? other->name : output_formats[i].name);
     }
 
-    args_complain(reader, "--to%s: expected one of %s%s, got '%s'", o->single ? " with --single" : "", known,
-                  o->single ? "" : ", gas", shown(name).text);
-    return false;
+    return args_complain(command, "--to%s: expected one of %s%s, got '%s'", o->single ? " with --single" : "", known,
+                         o->single ? "" : ", gas", shown(name).text);
 }
 
-static ExitCode convert_parse(int argc, char **argv, ConvertOptions *o, bool *done) {
-    ArgReader reader = args_begin(&convert_command, argc, argv);
-    const char *value;
+static bool read_to(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    ConvertOptions *o = field;
+    (void)option;
+    if (o->name_count == (int)(sizeof o->names / sizeof *o->names))
+        return args_complain(command, "--to: too many formats");
+    o->names[o->name_count++] = text;
+    return true;
+}
 
-    *o = (ConvertOptions){0};
-    *done = false;
+static const ArgOption convert_options[] = {
+    {"to", 0, "FORMAT", "format to write (see docs/formats.md); may be repeated", .read = read_to},
+    {"single", 0, NULL, "writes all frames into one file: `usd` or `glb`", .read = args_switch,
+     offsetof(ConvertOptions, single)},
+    {"plain", 0, NULL, "does not pack a single GLB: for readers without EXT_meshopt_compression", .read = args_switch,
+     offsetof(ConvertOptions, plain)},
+    {"set", 0, "PATH=VALUE", "sets a value of the scene (output.texture_size, gas.detail); may be repeated",
+     .read = args_set, offsetof(ConvertOptions, sets)},
+    {"quiet", 'q', NULL, "prints only warnings and errors", .read = args_switch, offsetof(ConvertOptions, quiet)},
+};
 
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        bool good = true;
-        switch (option) {
-        case OPT_TO:
-            if ((good = o->name_count < (int)(sizeof o->names / sizeof *o->names))) o->names[o->name_count++] = value;
-            else args_complain(&reader, "--to: too many formats");
-            break;
-        case OPT_SINGLE: o->single = true; break;
-        case OPT_PLAIN: o->plain = true; break;
-        case OPT_SET: set_add(&o->sets, value); break;
-        case OPT_QUIET: o->quiet = true; break;
-        case ARG_OPERAND: o->folder = value; break;
-        case ARG_HELP: *done = true; return EXIT_GOOD;
-        default: good = false;
-        }
-        if (!good) return EXIT_INPUT;
+static bool convert_check(const ArgCommand *command, void *options) {
+    ConvertOptions *o = options;
+    for (int i = 0; i < o->name_count; i++)
+        if (!add_format(command, o->names[i], o)) return false;
+    return o->name_count || args_complain(command, "needs --to FORMAT");
+}
+
+const ArgCommand convert_command = {
+    "convert",
+    "DIR",
+    "Writes the frames of a cache in other formats, beside it.",
+    convert_options,
+    sizeof convert_options / sizeof *convert_options,
+    "Existing frames are written again. Exit codes: 0 success, 1 failed or interrupted, 2 bad input.",
+    "singe convert out --to usd\n"
+    "singe convert out --to glb --single\n"
+    "singe convert out --to vtp --to textures --set output.texture_size=512",
+    .operand_field = offsetof(ConvertOptions, folder),
+    .check = convert_check};
+
+const char *convert_format_word(int index) {
+    if (index == 0) return "gas";
+    for (int i = 0; i < OUTPUT_COUNT + OUTPUT_SINGLE_COUNT; i++) {
+        const OutputSingle *single = i < OUTPUT_COUNT ? NULL : &output_singles[i - OUTPUT_COUNT];
+        if (single ? single->by_option : i == OUTPUT_ply) continue; // the former are formats of frames too
+        if (--index == 0) return single ? single->name : output_formats[i].name;
     }
 
-    for (int i = 0; i < o->name_count; i++)
-        if (!add_format(&reader, o->names[i], o)) return EXIT_INPUT;
-    if (o->name_count) return EXIT_GOOD;
-
-    args_complain(&reader, "needs --to FORMAT");
-    return EXIT_INPUT;
+    return NULL;
 }
 
 /// The progress over all that is written. What reads the frames several times counts once.
@@ -215,10 +199,9 @@ static ExitCode convert(const ConvertOptions *o, Console *console, const Job *jo
 }
 
 int command_convert(int argc, char **argv) {
-    ConvertOptions options;
-    bool done;
-    ExitCode code = convert_parse(argc, argv, &options, &done);
-    if (code || done) {
+    ConvertOptions options = {0};
+    ExitCode code;
+    if (!args_read(&convert_command, argc, argv, &options, &code)) {
         set_free(&options.sets);
         return code;
     }

@@ -114,26 +114,17 @@ static void print_ranges(const int *frames, size_t count) {
 }
 
 const ArgCommand info_command = {
-    "info",
-    "DIR",
-    "Prints what a run's folder holds: frames, sizes, checkpoints, and the run that it branches from.",
-    NULL,
-    0,
-    "Exit codes: 0 success, 1 the folder cannot be listed, 2 bad input.",
-    "singe info out"};
+    "info", "DIR", "Prints what a run's folder holds: frames, sizes, checkpoints, and the run that it branches from.",
+    .footer = "Exit codes: 0 success, 1 the folder cannot be listed, 2 bad input.", .examples = "singe info out"};
 
 int command_info(int argc, char **argv) {
-    ArgReader reader = args_begin(&info_command, argc, argv);
-    const char *value, *path = NULL;
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        if (option == ARG_HELP) return EXIT_GOOD;
-        if (option != ARG_OPERAND) return EXIT_INPUT;
-        path = value;
-    }
+    const char *path;
+    ExitCode code;
+    if (!args_read(&info_command, argc, argv, &path, &code)) return code;
 
     Console console = console_make(false);
     Book book;
-    ExitCode code = book_open(&book, &console, path);
+    code = book_open(&book, &console, path);
     if (code) {
         book_close(&book);
         return code;
@@ -185,48 +176,44 @@ int command_info(int argc, char **argv) {
 
 // ---- clean
 
-enum { OPT_KEEP_EVERY, OPT_QUIET, OPT_COUNT };
+typedef struct CleanOptions {
+    const char *folder;
+    int every;
+    bool quiet;
+} CleanOptions;
 
-static const ArgOption clean_options[OPT_COUNT] = {
-    [OPT_KEEP_EVERY] = {"keep-every", 0, "N", "keeps frames N, 2N, 3N, ..., the first and the last"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only warnings and errors"},
+static const ArgOption clean_options[] = {
+    {"keep-every", 0, "N", "keeps frames N, 2N, 3N, ..., the first and the last", .read = args_int,
+     offsetof(CleanOptions, every), 1, JOB_FRAMES_MAX},
+    {"quiet", 'q', NULL, "prints only warnings and errors", .read = args_switch, offsetof(CleanOptions, quiet)},
 };
+
+static bool clean_check(const ArgCommand *command, void *options) {
+    return ((CleanOptions *)options)->every || args_complain(command, "--keep-every says which frames remain");
+}
 
 const ArgCommand clean_command = {
     "clean",
     "DIR",
     "Removes frames of a run, and keeps every N-th one. Only files of frames that DIR/run.json lists are removed.",
     clean_options,
-    OPT_COUNT,
+    sizeof clean_options / sizeof *clean_options,
     "A run that lacks frames cannot be resumed or branched. Exit codes: 0 success, 1 a file cannot be removed,\n"
     "2 bad input.",
-    "singe clean out --keep-every 10"};
+    "singe clean out --keep-every 10",
+    .operand_field = offsetof(CleanOptions, folder),
+    .check = clean_check};
 
 int command_clean(int argc, char **argv) {
-    ArgReader reader = args_begin(&clean_command, argc, argv);
-    const char *value, *path = NULL;
-    int every = 0;
-    bool quiet = false;
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        bool good = true;
-        switch (option) {
-        case OPT_KEEP_EVERY: good = args_int(&reader, option, value, 1, 1000000, &every); break;
-        case OPT_QUIET: quiet = true; break;
-        case ARG_OPERAND: path = value; break;
-        case ARG_HELP: return EXIT_GOOD;
-        default: good = false;
-        }
-        if (!good) return EXIT_INPUT;
-    }
+    CleanOptions options = {0};
+    ExitCode code;
+    if (!args_read(&clean_command, argc, argv, &options, &code)) return code;
 
-    if (!every) {
-        args_complain(&reader, "--keep-every says which frames remain");
-        return EXIT_INPUT;
-    }
-    Console console = console_make(quiet);
+    const char *path = options.folder;
+    Console console = console_make(options.quiet);
     Book book;
     SingeError error = {0};
-    ExitCode code = book_open(&book, &console, path);
+    code = book_open(&book, &console, path);
     if (!code && book.done < 1) {
         console_error(&console, "%s/run.json lists no frames: the run is unfinished; complete it with --resume",
                       shown_path(path).text);
@@ -243,7 +230,7 @@ int command_clean(int argc, char **argv) {
     int removed = 0;
     SingeResult result = lock_take(&cache, folder.cache_lock, "frames", false, &console, &error);
     if (!result) result = lock_take(&pictures, folder.pictures_lock, "pictures", false, &console, &error);
-    if (!result) result = folder_thin(&folder, every, (int)book.done, &removed, &error);
+    if (!result) result = folder_thin(&folder, options.every, (int)book.done, &removed, &error);
     if (result) console_result(&console, &error);
     else console_note(&console, "removed %d files of %ld frames in %s", removed, book.done, folder.path);
     lock_release(&pictures);

@@ -65,7 +65,7 @@ void job_close(Job *job);
 
 /// As many as the machine has, at most the library's limit.
 int job_threads(void);
-enum { JOB_THREADS_MAX = 64 };
+enum { JOB_THREADS_MAX = 64, JOB_FRAMES_MAX = 1000000 };
 
 /// The exit code of a library result: out of memory and errors of our own files are failures, everything else is bad
 /// input.

@@ -11,20 +11,24 @@
 #include "common/printable.h"
 #include "singe/singe.h"
 
-enum { OPT_OUTPUT, OPT_COUNT };
+typedef struct ManualOptions {
+    const char *command, *folder; ///< NULL: none
+} ManualOptions;
 
-static const ArgOption manual_options[OPT_COUNT] = {
-    [OPT_OUTPUT] = {"output", 'o', "DIR", "writes all pages into this folder, as man reads them"},
+static const ArgOption manual_options[] = {
+    {"output", 'o', "DIR", "writes all pages into this folder, as man reads them", .read = args_text,
+     offsetof(ManualOptions, folder)},
 };
 
 const ArgCommand manual_command = {"manual",
                                    "[COMMAND]",
                                    "Prints the manual page of a command, or that of singe, for the program man.",
                                    manual_options,
-                                   OPT_COUNT,
+                                   sizeof manual_options / sizeof *manual_options,
                                    "Exit codes: 0 success, 1 a page could not be written, 2 bad input.",
                                    "singe manual run | man -l -\n"
-                                   "singe manual -o ~/.local/share/man/man1"};
+                                   "singe manual -o ~/.local/share/man/man1",
+                                   .operand_field = offsetof(ManualOptions, command)};
 
 /// Writes text as roff: dashes as they are typed, nothing that begins a line taken for a request.
 static void put(FILE *page, const char *text) {
@@ -114,23 +118,19 @@ static void print_page(FILE *page, const void *command) {
 }
 
 int command_manual(int argc, char **argv) {
-    ArgReader reader = args_begin(&manual_command, argc, argv);
+    ManualOptions options = {0};
+    ExitCode code;
+    if (!args_read(&manual_command, argc, argv, &options, &code)) return code;
+
     const Command *const commands = command_table.commands, *command = NULL;
     const int count = command_table.command_count;
-    const char *value, *folder = NULL;
-
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        if (option == ARG_HELP) return EXIT_GOOD;
-        if (option == ARG_ERROR) return EXIT_INPUT;
-        if (option == OPT_OUTPUT) {
-            folder = *value ? value : ".";
-            continue;
-        }
-        for (int i = 0; i < count; i++)
-            if (strcmp(value, commands[i].name) == 0) command = &commands[i];
-        if (command) continue;
-        const char *near = args_nearest(value, commands, count, sizeof *commands);
-        args_complain(&reader, "unknown command '%s'%s%s%s", shown(value).text, near ? "; did you mean '" : "",
+    const char *const word = options.command;
+    const char *const folder = options.folder && !*options.folder ? "." : options.folder;
+    for (int i = 0; i < count && word; i++)
+        if (strcmp(word, commands[i].name) == 0) command = &commands[i];
+    if (word && !command) {
+        const char *near = args_nearest(word, commands, count, sizeof *commands);
+        args_complain(&manual_command, "unknown command '%s'%s%s%s", shown(word).text, near ? "; did you mean '" : "",
                       near ? near : "", near ? "'?" : "");
         return EXIT_INPUT;
     }
@@ -147,7 +147,6 @@ int command_manual(int argc, char **argv) {
         return EXIT_FAILED;
     }
 
-    ExitCode code = EXIT_GOOD;
     for (int i = -1; i < count && !code; i++) {
         if (i >= 0 && !commands[i].group) continue;
         char *path = text_format("%s/singe%s%s.1", folder, i < 0 ? "" : "-", i < 0 ? "" : commands[i].name);

@@ -23,26 +23,35 @@
 #include "cli/pictures.h"
 #include "formats/formats.h"
 
-enum { OPT_FRAMES, OPT_CSV, OPT_NO_PREVIEW, OPT_COUNT };
 enum { EMBER_FRAMES = 4, EMBER_SCALE = 3, EMBER_WIDE = 4096, RUN = 64 };
 
 /// m at rest from all that has ignited, beyond which the sheet is cold.
 static const float cold_from = 0.09f;
 
-static const ArgOption measure_options[OPT_COUNT] = {
-    [OPT_FRAMES] = {"frames", 0, "A-B", "reads only these frames (or A alone) [all]"},
-    [OPT_CSV] = {"csv", 0, "FILE", "also writes the numbers of every frame to FILE"},
-    [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no frames, so embers are not measured"},
+typedef struct MeasureOptions {
+    const char *path, *csv;
+    int frames[2]; ///< the first and the last; 0: all
+    bool no_preview;
+} MeasureOptions;
+
+static const ArgOption measure_options[] = {
+    {"frames", 0, "A-B", "reads only these frames (or A alone) [all]", .read = args_span,
+     offsetof(MeasureOptions, frames)},
+    {"csv", 0, "FILE", "also writes the numbers of every frame to FILE", .read = args_text,
+     offsetof(MeasureOptions, csv)},
+    {"no-preview", 0, NULL, "draws no frames, so embers are not measured", .read = args_switch,
+     offsetof(MeasureOptions, no_preview)},
 };
 
 const ArgCommand measure_command = {"measure",
                                     "DIR",
                                     "Measures what a cache looks like: creases, wrinkles, jitter, embers.",
                                     measure_options,
-                                    OPT_COUNT,
+                                    sizeof measure_options / sizeof *measure_options,
                                     "docs/cli.md describes the numbers. Exit codes: 0 success, 1 failed, 2 bad input.",
                                     "singe measure out\n"
-                                    "singe measure out --frames 10-40 --csv shape.csv"};
+                                    "singe measure out --frames 10-40 --csv shape.csv",
+                                    .operand_field = offsetof(MeasureOptions, path)};
 
 /// A number of every frame, and how it is summarized.
 typedef enum Number {
@@ -426,30 +435,23 @@ static ExitCode measure_all(Measure *measure) {
 }
 
 int command_measure(int argc, char **argv) {
-    Measure measure = {.console = console_make(false)};
-    bool draws = pictures_available();
-    ArgReader reader = args_begin(&measure_command, argc, argv);
-    const char *value, *path = NULL;
+    MeasureOptions options = {0};
+    ExitCode code;
+    if (!args_read(&measure_command, argc, argv, &options, &code)) return code;
 
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        if (option == ARG_HELP) return EXIT_GOOD;
-        if (option == ARG_OPERAND) path = value;
-        else if (option == OPT_CSV) measure.csv = value;
-        else if (option == OPT_NO_PREVIEW) draws = false;
-        else if (option != OPT_FRAMES || !args_span(&reader, option, value, &measure.first, &measure.last))
-            return EXIT_INPUT;
-    }
-
+    Measure measure = {
+        .console = console_make(false), .csv = options.csv, .first = options.frames[0], .last = options.frames[1]};
     SetList sets = {0};
-    ExitCode code = job_reopen(&measure.job, &measure.console, path, &sets, job_threads());
+    code = job_reopen(&measure.job, &measure.console, options.path, &sets, job_threads());
     if (code) return code;
 
-    measure.folder = folder_name(path, measure.job.scene->name);
+    measure.folder = folder_name(options.path, measure.job.scene->name);
     code = folder_span(&measure.folder, &measure.console, &measure.first, &measure.last);
     SingeError error = {0};
     const int *size = measure.job.scene->preview.size;
     int scale = EMBER_SCALE; // embers are thinner than a pixel, unless the pictures are large
     while (scale > 1 && scale * (size[0] > size[1] ? size[0] : size[1]) > EMBER_WIDE) scale--;
+    const bool draws = !options.no_preview && pictures_available();
     if (!code && draws && pictures_open_sharp(&measure.job, scale, &measure.pictures, &error)) {
         console_result(&measure.console, &error);
         code = EXIT_FAILED;

@@ -27,11 +27,14 @@ static const struct {
 };
 
 enum { TEMPLATES = sizeof templates / sizeof *templates };
-enum { OPT_OUTPUT, OPT_FORCE, OPT_COUNT };
+typedef struct NewOptions {
+    const char *name, *folder;
+    bool force;
+} NewOptions;
 
-static const ArgOption new_options[OPT_COUNT] = {
-    [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the scene [.]"},
-    [OPT_FORCE] = {"force", 'f', NULL, "replaces a file of this name"},
+static const ArgOption new_options[] = {
+    {"output", 'o', "DIR", "folder of the scene [.]", .read = args_text, offsetof(NewOptions, folder)},
+    {"force", 'f', NULL, "replaces a file of this name", .read = args_switch, offsetof(NewOptions, force)},
 };
 
 const ArgCommand new_command = {
@@ -39,14 +42,15 @@ const ArgCommand new_command = {
     "TEMPLATE",
     "Writes a commented scene to start from: letter, cloth, mesh or sweep.",
     new_options,
-    OPT_COUNT,
+    sizeof new_options / sizeof *new_options,
     "letter  a sheet of paper burns on a table\n"
     "cloth   a cloth hangs, and burns in the wind\n"
     "mesh    a sample mesh burns; replace it with yours\n"
     "sweep   the letter burns many times with other parameters\n\n"
     "Exit codes: 0 success, 1 a file could not be written, 2 bad input, or the file already exists.",
     "singe new letter\n"
-    "singe new mesh -o lamp"};
+    "singe new mesh -o lamp",
+    .operand_field = offsetof(NewOptions, name)};
 
 const char *new_template_word(int index) { return index < TEMPLATES ? templates[index].name : NULL; }
 
@@ -56,24 +60,16 @@ static void print_template(FILE *file, const void *context) {
 }
 
 int command_new(int argc, char **argv) {
-    ArgReader reader = args_begin(&new_command, argc, argv);
-    const char *value, *word = NULL, *folder = ".";
-    bool force = false;
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        switch (option) {
-        case OPT_OUTPUT: folder = *value ? value : "."; break;
-        case OPT_FORCE: force = true; break;
-        case ARG_OPERAND: word = value; break;
-        case ARG_HELP: return EXIT_GOOD;
-        default: return EXIT_INPUT;
-        }
-    }
+    NewOptions options = {.folder = "."};
+    ExitCode code;
+    if (!args_read(&new_command, argc, argv, &options, &code)) return code;
 
+    const char *word = options.name, *folder = *options.folder ? options.folder : ".";
     int which = 0;
     while (which < TEMPLATES && strcmp(templates[which].name, word) != 0) which++;
     if (which == TEMPLATES) {
         const char *near = args_nearest(word, templates, TEMPLATES, sizeof *templates);
-        args_complain(&reader, "expected letter, cloth, mesh or sweep, got '%s'%s%s%s", shown(word).text,
+        args_complain(&new_command, "expected letter, cloth, mesh or sweep, got '%s'%s%s%s", shown(word).text,
                       near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         return EXIT_INPUT;
     }
@@ -91,8 +87,7 @@ int command_new(int argc, char **argv) {
     char *paths[2];
     struct stat info;
     for (int i = 0; i < 2; i++) paths[i] = text_format("%s%s%s", before, slash, files[i] ? files[i] : "");
-    ExitCode code = EXIT_GOOD;
-    if (!force && lstat(paths[1], &info) == 0) {
+    if (!options.force && lstat(paths[1], &info) == 0) {
         console_error(&console, "%s already exists; --force replaces it", shown_path(paths[1]).text);
         code = EXIT_INPUT;
     }
@@ -122,12 +117,9 @@ const ArgCommand materials_command = {
 };
 
 int command_materials(int argc, char **argv) {
-    ArgReader reader = args_begin(&materials_command, argc, argv);
-    const char *value, *word = NULL;
-    for (int option; (option = args_next(&reader, &value)) != ARG_END; word = value) {
-        if (option == ARG_HELP) return EXIT_GOOD;
-        if (option == ARG_ERROR) return EXIT_INPUT;
-    }
+    const char *word = NULL;
+    ExitCode code;
+    if (!args_read(&materials_command, argc, argv, &word, &code)) return code;
 
     int count = 0;
     for (const SceneBuiltin *material = scene_builtins; material->name; material++, count++) {
@@ -145,7 +137,7 @@ int command_materials(int argc, char **argv) {
     if (!word) return EXIT_GOOD;
 
     const char *near = args_nearest(word, scene_builtins, count, sizeof *scene_builtins);
-    args_complain(&reader, "there is no material '%s'%s%s%s", shown(word).text, near ? "; did you mean '" : "",
-                  near ? near : "", near ? "'?" : "");
+    args_complain(&materials_command, "there is no material '%s'%s%s%s", shown(word).text,
+                  near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
     return EXIT_INPUT;
 }

@@ -13,49 +13,76 @@
 #include "cli/video.h"
 #include "common/printable.h"
 
-enum {
-    OPT_OUTPUT,
-    OPT_SET,
-    OPT_FRAMES,
-    OPT_SHEET,
-    OPT_ONLY_SHEET,
-    OPT_EXR,
-    OPT_GIF,
-    OPT_THREADS,
-    OPT_QUIET,
-    OPT_COUNT
+typedef struct RenderOptions {
+    const char *folder, *output; ///< output NULL: the same
+    SetList sets;
+    int frames[2]; ///< the first and the last; 0: all
+    int sheet[2];  ///< columns and rows; 0: none
+    int threads;
+    bool only_sheet, exr, gif, quiet;
+} RenderOptions;
+
+static bool read_output(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    return text[0] ? args_text(command, option, text, field) : args_complain(command, "--output: expected a folder");
+}
+
+static bool read_set(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    if (strncmp(text, "preview.", 8) == 0) return args_set(command, option, text, field);
+    return args_complain(command, "--set: only preview.* can be set here, got '%s'", shown(text).text);
+}
+
+static bool read_sheet(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    (void)option;
+    int *size = field, end = 0;
+    if (sscanf(text, "%2dx%2d%n", &size[0], &size[1], &end) == 2 && !text[end] && size[0] >= 1 && size[0] <= 64 &&
+        size[1] >= 1 && size[1] <= 64)
+        return true;
+    return args_complain(command, "--sheet: expected COLUMNSxROWS such as 4x2, at most 64x64, got '%s'",
+                         shown(text).text);
+}
+
+static const ArgOption render_options[] = {
+    {"output", 'o', "FOLDER", "writes to this folder, not into the cache's", .read = read_output,
+     offsetof(RenderOptions, output)},
+    {"set", 0, "preview.PATH=VALUE", "sets a value of the scene; may be repeated", .read = read_set,
+     offsetof(RenderOptions, sets)},
+    {"frames", 0, "A-B", "draws only these frames (or A alone), and no video", .read = args_span,
+     offsetof(RenderOptions, frames)},
+    {"sheet", 0, "CxR", "also writes DIR/sheet.png: C by R frames, spread over the run", .read = read_sheet,
+     offsetof(RenderOptions, sheet)},
+    {"only-sheet", 0, NULL, "draws the frames of the sheet and writes nothing else", .read = args_switch,
+     offsetof(RenderOptions, only_sheet)},
+    {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame", .read = args_switch,
+     offsetof(RenderOptions, exr)},
+    {"gif", 0, NULL, "also writes DIR/preview.gif, of the frames that are drawn", .read = args_switch,
+     offsetof(RenderOptions, gif)},
+    {"threads", 0, "N", "threads [all]", .read = args_int, offsetof(RenderOptions, threads), 1, JOB_THREADS_MAX},
+    {"quiet", 'q', NULL, "prints only warnings and errors", .read = args_switch, offsetof(RenderOptions, quiet)},
 };
 
-static const ArgOption render_options[OPT_COUNT] = {
-    [OPT_OUTPUT] = {"output", 'o', "FOLDER", "writes to this folder, not into the cache's"},
-    [OPT_SET] = {"set", 0, "preview.PATH=VALUE", "sets a value of the scene; may be repeated"},
-    [OPT_FRAMES] = {"frames", 0, "A-B", "draws only these frames (or A alone), and no video"},
-    [OPT_SHEET] = {"sheet", 0, "CxR", "also writes DIR/sheet.png: C by R frames, spread over the run"},
-    [OPT_ONLY_SHEET] = {"only-sheet", 0, NULL, "draws the frames of the sheet and writes nothing else"},
-    [OPT_EXR] = {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
-    [OPT_GIF] = {"gif", 0, NULL, "also writes DIR/preview.gif, of the frames that are drawn"},
-    [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only warnings and errors"},
-};
+static bool render_check(const ArgCommand *command, void *options) {
+    RenderOptions *o = options;
+    if (o->only_sheet && (o->exr || o->gif))
+        return args_complain(command, "--only-sheet writes nothing else: not with --%s", o->exr ? "exr" : "gif");
+    if (o->exr && !exr_available()) return args_complain(command, "--exr: this singe was built without EXR");
+    if (o->only_sheet && !o->sheet[0]) {
+        o->sheet[0] = 4;
+        o->sheet[1] = 2;
+    }
+    return true;
+}
 
 const ArgCommand render_command = {"render",
                                    "DIR",
                                    "Draws the pictures and the video of a cache again.",
                                    render_options,
-                                   OPT_COUNT,
+                                   sizeof render_options / sizeof *render_options,
                                    "Exit codes: 0 success, 1 failed or interrupted, 2 bad input.",
                                    "singe render out --set preview.exposure=2\n"
                                    "singe render out --frames 24 --exr -o stills --set preview.samples=256\n"
-                                   "singe render out --sheet 4x2 --only-sheet"};
-
-typedef struct RenderOptions {
-    const char *folder, *output; ///< output NULL: the same
-    SetList sets;
-    int first, last;   ///< 0: all
-    int columns, rows; ///< 0: no sheet
-    int threads;
-    bool only_sheet, exr, gif, quiet;
-} RenderOptions;
+                                   "singe render out --sheet 4x2 --only-sheet",
+                                   .operand_field = offsetof(RenderOptions, folder),
+                                   .check = render_check};
 
 typedef struct Render {
     Console *console;
@@ -67,65 +94,6 @@ typedef struct Render {
     int first, last; ///< frames to draw
     Lock lock;       ///< of the pictures
 } Render;
-
-static ExitCode render_parse(int argc, char **argv, RenderOptions *o, bool *done) {
-    ArgReader reader = args_begin(&render_command, argc, argv);
-    const char *value;
-    int end;
-
-    *o = (RenderOptions){.threads = job_threads()};
-    *done = false;
-
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        bool good = true;
-        switch (option) {
-        case OPT_OUTPUT:
-            o->output = value;
-            good = value[0] != 0;
-            if (!good) args_complain(&reader, "--output: expected a folder");
-            break;
-        case OPT_SET:
-            good = strncmp(value, "preview.", 8) == 0;
-            if (good) set_add(&o->sets, value);
-            else args_complain(&reader, "--set: only preview.* can be set here, got '%s'", shown(value).text);
-            break;
-        case OPT_FRAMES: good = args_span(&reader, option, value, &o->first, &o->last); break;
-        case OPT_SHEET:
-            end = 0;
-            good = sscanf(value, "%2dx%2d%n", &o->columns, &o->rows, &end) == 2 && !value[end] && o->columns >= 1 &&
-                   o->columns <= 64 && o->rows >= 1 && o->rows <= 64;
-            if (!good)
-                args_complain(&reader, "--sheet: expected COLUMNSxROWS such as 4x2, at most 64x64, got '%s'",
-                              shown(value).text);
-            break;
-        case OPT_ONLY_SHEET: o->only_sheet = true; break;
-        case OPT_EXR: o->exr = true; break;
-        case OPT_GIF: o->gif = true; break;
-        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &o->threads); break;
-        case OPT_QUIET: o->quiet = true; break;
-        case ARG_OPERAND: o->folder = value; break;
-        case ARG_HELP: *done = true; return EXIT_GOOD;
-        default: good = false;
-        }
-        if (!good) return EXIT_INPUT;
-    }
-
-    if (o->only_sheet && (o->exr || o->gif)) {
-        args_complain(&reader, "--only-sheet writes nothing else: not with --%s", o->exr ? "exr" : "gif");
-        return EXIT_INPUT;
-    }
-
-    if (o->exr && !exr_available()) {
-        args_complain(&reader, "--exr: this singe was built without EXR");
-        return EXIT_INPUT;
-    }
-
-    if (o->only_sheet && !o->columns) {
-        o->columns = 4;
-        o->rows = 2;
-    }
-    return EXIT_GOOD;
-}
 
 // ---- drawing
 
@@ -187,15 +155,15 @@ static ExitCode render_frames(Render *render) {
     // several processes may draw parts of a run at the same time; one that draws all of it makes the video, and must be
     // alone
     if (!result && !o->only_sheet)
-        result =
-            lock_take(&render->lock, render->drawn.pictures_lock, "pictures", o->first > 0, render->console, &error);
+        result = lock_take(&render->lock, render->drawn.pictures_lock, "pictures", o->frames[0] > 0, render->console,
+                           &error);
     const FolderParts parts = {.pictures = !o->only_sheet, .exr = o->exr, .elsewhere = o->output != NULL};
     if (!result) result = folder_create(&render->drawn, parts, &error);
     if (!result && o->exr) result = pictures_keep_layers(render->pictures, &error);
-    if (!result && o->columns) {
+    if (!result && o->sheet[0]) {
         int width, height;
         pictures_size(render->pictures, &width, &height);
-        result = contact_sheet_make(&render->sheet, o->columns, o->rows, width, height, &error);
+        result = contact_sheet_make(&render->sheet, o->sheet[0], o->sheet[1], width, height, &error);
     }
 
     interrupt_watch();
@@ -207,24 +175,23 @@ static ExitCode render_frames(Render *render) {
     }
 
     if (interrupted) return EXIT_FAILED;
-    if (!o->quiet && o->columns) printf("%s\n", render->drawn.sheet);
+    if (!o->quiet && o->sheet[0]) printf("%s\n", render->drawn.sheet);
 
     // the films
     const double fps = (double)render->job.scene->fps;
     VideoResult gif = VIDEO_NO_PROGRAM, video = VIDEO_NO_PROGRAM;
     if (o->gif) gif = gif_make(render->console, &render->drawn, fps, render->first, render->last);
     if (gif == VIDEO_MADE && !o->quiet) printf("%s\n", render->drawn.gif);
-    if (!o->first && !o->only_sheet)
+    if (!o->frames[0] && !o->only_sheet)
         video = video_make(render->console, &render->drawn, fps, render->first, render->last);
     if (video == VIDEO_MADE && !o->quiet) printf("%s\n", render->drawn.video);
     return video == VIDEO_FAILED || gif == VIDEO_FAILED ? EXIT_FAILED : EXIT_GOOD;
 }
 
 int command_render(int argc, char **argv) {
-    RenderOptions options;
-    bool done;
-    ExitCode code = render_parse(argc, argv, &options, &done);
-    if (!code && !done) {
+    RenderOptions options = {.threads = job_threads()};
+    ExitCode code;
+    if (args_read(&render_command, argc, argv, &options, &code)) {
         interrupt_shield();
         Console console = console_make(options.quiet);
         Render render = {.console = &console, .options = &options, .lock = LOCK_NONE};
@@ -233,8 +200,8 @@ int command_render(int argc, char **argv) {
         if (!code) {
             render.folder = folder_name(options.folder, render.job.scene->name);
             render.drawn = folder_name(options.output ? options.output : options.folder, render.job.scene->name);
-            render.first = options.first;
-            render.last = options.last;
+            render.first = options.frames[0];
+            render.last = options.frames[1];
             code = folder_span(&render.folder, &console, &render.first, &render.last);
         }
 

@@ -9,10 +9,14 @@
 #include "common/printable.h"
 #include "singe/replay.h"
 
-enum { OPT_THREADS, OPT_COUNT };
+typedef struct ReplayOptions {
+    const char *path;
+    int threads;
+} ReplayOptions;
 
-static const ArgOption replay_options[OPT_COUNT] = {
-    [OPT_THREADS] = {"threads", 0, "N", "threads [all]; the result does not depend on them"},
+static const ArgOption replay_options[] = {
+    {"threads", 0, "N", "threads [all]; the result does not depend on them", .read = args_int,
+     offsetof(ReplayOptions, threads), 1, JOB_THREADS_MAX},
 };
 
 const ArgCommand replay_command = {
@@ -20,11 +24,12 @@ const ArgCommand replay_command = {
     "FILE",
     "Repeats the calls of a recording (singe run --record) and compares the state after every step.",
     replay_options,
-    OPT_COUNT,
+    sizeof replay_options / sizeof *replay_options,
     "Exit codes: 0 identical (a truncated recording is compared up to its end), 1 different, or out of memory,\n"
     "2 not a recording, or a damaged one.",
     "singe run letter.yaml --record letter.replay\n"
-    "singe replay letter.replay --threads 1"};
+    "singe replay letter.replay --threads 1",
+    .operand_field = offsetof(ReplayOptions, path)};
 
 /// Prints what a replay has shown, and returns the exit code.
 static ExitCode replay_report(const SingeReplay *replay, Console *console) {
@@ -40,30 +45,23 @@ static ExitCode replay_report(const SingeReplay *replay, Console *console) {
 }
 
 int command_replay(int argc, char **argv) {
-    ArgReader reader = args_begin(&replay_command, argc, argv);
-    const char *value, *path = NULL;
-    int threads = job_threads();
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        if (option == ARG_HELP) return EXIT_GOOD;
-        if (option == ARG_OPERAND) path = value;
-        else if (option != OPT_THREADS || !args_int(&reader, option, value, 1, JOB_THREADS_MAX, &threads))
-            return EXIT_INPUT;
-    }
+    ReplayOptions options = {.threads = job_threads()};
+    ExitCode code;
+    if (!args_read(&replay_command, argc, argv, &options, &code)) return code;
 
     Console console = console_make(false);
     SingeSimDef hooks = singe_default_sim();
     hooks.allocator = allocator_or_libc((SingeAllocator){0});
     hooks.log = console_log(&console);
-    hooks.thread_count = threads;
+    hooks.thread_count = options.threads;
 
     Bytes bytes = {0};
     SingeReplay replay;
     SingeError error = {0};
-    SingeResult result = file_read(path, hooks.allocator, &bytes, &error);
+    SingeResult result = file_read(options.path, hooks.allocator, &bytes, &error);
     if (!result) result = singe_replay(&hooks, bytes.data, bytes.size, &replay, &error);
-    ExitCode code = EXIT_GOOD;
     if (result == SINGE_ERROR_FORMAT || result == SINGE_ERROR_VERSION) {
-        console_error(&console, "%s: %s", shown(path).text, error.message);
+        console_error(&console, "%s: %s", shown(options.path).text, error.message);
         code = EXIT_INPUT;
     } else if (result) {
         console_result(&console, &error);

@@ -12,85 +12,51 @@
 #include "cli/video.h"
 #include "scene/warnings.h"
 
-enum {
-    OPT_OUTPUT,
-    OPT_FRAMES,
-    OPT_THREADS,
-    OPT_SET,
-    OPT_RESUME,
-    OPT_FROM,
-    OPT_FORCE,
-    OPT_NO_PREVIEW,
-    OPT_EXR,
-    OPT_RECORD,
-    OPT_QUIET,
-    OPT_COUNT
+static const ArgOption run_options[] = {
+    {"output", 'o', "DIR", "folder of the cache [out/NAME]", .read = args_text, offsetof(RunOptions, output)},
+    {"frames", 0, "N", "number of frames; the first is the start", .read = args_int, offsetof(RunOptions, frames), 1,
+     JOB_FRAMES_MAX},
+    {"threads", 0, "N", "threads [all]; the result does not depend on them", .read = args_int,
+     offsetof(RunOptions, threads), 1, JOB_THREADS_MAX},
+    {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated", .read = args_set,
+     offsetof(RunOptions, sets)},
+    {"resume", 0, NULL, "continues from DIR/checkpoint.singe", .read = args_switch, offsetof(RunOptions, resume)},
+    {"from", 0, "DIR:FRAME", "starts from a frame of an earlier run, with a changed scene", .read = args_text,
+     offsetof(RunOptions, from)},
+    {"force", 'f', NULL, "replaces an earlier run in DIR without asking", .read = args_switch,
+     offsetof(RunOptions, force)},
+    {"no-preview", 0, NULL, "draws no pictures and makes no video", .read = args_switch,
+     offsetof(RunOptions, no_preview)},
+    {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame", .read = args_switch,
+     offsetof(RunOptions, exr)},
+    {"record", 0, "FILE", "also writes a recording, which `singe replay` repeats and compares", .read = args_text,
+     offsetof(RunOptions, record)},
+    {"quiet", 'q', NULL, "prints only warnings and errors", .read = args_switch, offsetof(RunOptions, quiet)},
 };
 
-static const ArgOption run_options[OPT_COUNT] = {
-    [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the cache [out/NAME]"},
-    [OPT_FRAMES] = {"frames", 0, "N", "number of frames; the first is the start"},
-    [OPT_THREADS] = {"threads", 0, "N", "threads [all]; the result does not depend on them"},
-    [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
-    [OPT_RESUME] = {"resume", 0, NULL, "continues from DIR/checkpoint.singe"},
-    [OPT_FROM] = {"from", 0, "DIR:FRAME", "starts from a frame of an earlier run, with a changed scene"},
-    [OPT_FORCE] = {"force", 'f', NULL, "replaces an earlier run in DIR without asking"},
-    [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no video"},
-    [OPT_EXR] = {"exr", 0, NULL, "also writes DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
-    [OPT_RECORD] = {"record", 0, "FILE", "also writes a recording, which `singe replay` repeats and compares"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only warnings and errors"},
-};
+static bool run_check(const ArgCommand *command, void *options) {
+    RunOptions *o = options;
+    if (o->exr && o->no_preview) return args_complain(command, "--exr: not with --no-preview");
+    if (o->exr && !(pictures_available() && exr_available()))
+        return args_complain(command, "--exr: this singe was built without %s",
+                             exr_available() ? "the preview" : "EXR");
+    if (o->frames) set_frames(&o->sets, o->frames);
+    return true;
+}
 
 const ArgCommand run_command = {
     "run",
     "SCENE",
     "Simulates a scene file and writes a cache, pictures, a video and statistics to DIR.",
     run_options,
-    OPT_COUNT,
+    sizeof run_options / sizeof *run_options,
     "Ctrl-C ends the run after the current step; a second Ctrl-C ends it at once. Exit codes: 0 success,\n"
     "1 the run failed or was interrupted, or ffmpeg failed, 2 bad input.",
     "singe run letter.yaml -o out\n"
     "singe run letter.yaml --frames 24 --set pace=2 --set \"sheets.0.grid.cells=[40, 60]\"\n"
-    "singe run letter.yaml -o out --resume"};
-
-static ExitCode run_parse(int argc, char **argv, RunOptions *options, bool *done) {
-    ArgReader reader = args_begin(&run_command, argc, argv);
-    const char *value;
-    int frames = 0;
-
-    *options = (RunOptions){.threads = job_threads()};
-    *done = false;
-
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        bool good = true;
-        switch (option) {
-        case OPT_OUTPUT: options->output = value; break;
-        case OPT_FRAMES: good = args_int(&reader, option, value, 1, 1000000, &frames); break;
-        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &options->threads); break;
-        case OPT_SET: set_add(&options->sets, value); break;
-        case OPT_RESUME: options->resume = true; break;
-        case OPT_FROM: options->from = value; break;
-        case OPT_FORCE: options->force = true; break;
-        case OPT_NO_PREVIEW: options->no_preview = true; break;
-        case OPT_EXR: options->exr = true; break;
-        case OPT_RECORD: options->record = value; break;
-        case OPT_QUIET: options->quiet = true; break;
-        case ARG_OPERAND: options->scene = value; break;
-        case ARG_HELP: *done = true; return EXIT_GOOD;
-        default: good = false;
-        }
-        if (!good) return EXIT_INPUT;
-    }
-
-    if (options->exr && (options->no_preview || !pictures_available() || !exr_available())) {
-        if (options->no_preview) args_complain(&reader, "--exr: not with --no-preview");
-        else args_complain(&reader, "--exr: this singe was built without %s", exr_available() ? "the preview" : "EXR");
-        return EXIT_INPUT;
-    }
-
-    if (frames) set_frames(&options->sets, frames);
-    return EXIT_GOOD;
-}
+    "singe run letter.yaml -o out --resume",
+    .operand_field = offsetof(RunOptions, scene),
+    .check = run_check};
 
 static SingeResult stop(Run *run, Progress progress, SingeError *error) {
     run->record.result = "interrupted";
@@ -289,10 +255,9 @@ static ExitCode run_scene(Run *run, const RunOptions *options) {
 }
 
 int command_run(int argc, char **argv) {
-    RunOptions options;
-    bool done;
-    ExitCode code = run_parse(argc, argv, &options, &done);
-    if (!code && !done) {
+    RunOptions options = {.threads = job_threads()};
+    ExitCode code;
+    if (args_read(&run_command, argc, argv, &options, &code)) {
         interrupt_shield();
         Console console = console_make(options.quiet);
         Run run = {.console = &console,

@@ -40,7 +40,7 @@ typedef struct RunOptions {
     const char *from;   ///< "DIR:FRAME", the frame of which it is a branch; NULL: none
     const char *record; ///< file of the recording; NULL: none
     SetList sets;
-    int threads;
+    int threads, frames; ///< frames 0: the scene's
     bool resume, force, no_preview, exr, quiet;
 } RunOptions;
 

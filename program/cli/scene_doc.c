@@ -18,11 +18,8 @@ const ArgCommand scene_schema_command = {
                 "check-jsonschema --schemafile singe.schema.json letter.yaml"};
 
 static ExitCode print_all(const ArgCommand *command, void (*print)(FILE *file), int argc, char **argv) {
-    ArgReader reader = args_begin(command, argc, argv);
-    const char *value;
-    int option = args_next(&reader, &value);
-    if (option == ARG_HELP) return EXIT_GOOD;
-    if (option != ARG_END) return EXIT_INPUT;
+    ExitCode code;
+    if (!args_read(command, argc, argv, NULL, &code)) return code;
 
     setvbuf(stdout, NULL, _IOFBF, 1 << 18); // written in one piece, so that main gets the reason of a failure
     print(stdout);

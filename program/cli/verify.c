@@ -16,12 +16,39 @@
 #include "cli/text.h"
 #include "common/printable.h"
 
-enum { OPT_FRAMES, OPT_STRETCH, OPT_CSV, OPT_COUNT };
+typedef struct Row {
+    uint32_t vertices, triangles;
+    uint64_t count[FAULT_COUNT], near, folded, from_start;
+} Row;
 
-static const ArgOption verify_options[OPT_COUNT] = {
-    [OPT_FRAMES] = {"frames", 0, "A-B", "reads only these frames (or A alone) [all]"},
-    [OPT_STRETCH] = {"stretch", 0, "X", "edges longer than X times their length at rest are stretched [2]"},
-    [OPT_CSV] = {"csv", 0, "FILE", "also writes the counts of every frame to FILE"},
+typedef struct Verify {
+    Console console;
+    Folder folder;
+    StatsTable stats;
+    const char *path, *csv;
+    int frames[2]; ///< asked for; 0: all
+    double stretch;
+    bool crossed;          ///< at the start
+    int first, last, done; ///< frames
+    Row *rows;             ///< of every frame
+    Findings findings;
+} Verify;
+
+static bool read_stretch(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    char *end;
+    const double stretch = strtod(text, &end);
+    (void)option;
+    if (end == text || *end || !(stretch >= 1) || !isfinite(stretch))
+        return args_complain(command, "--stretch: expected a number of 1 or more, got '%s'", shown(text).text);
+    *(double *)field = stretch;
+    return true;
+}
+
+static const ArgOption verify_options[] = {
+    {"frames", 0, "A-B", "reads only these frames (or A alone) [all]", .read = args_span, offsetof(Verify, frames)},
+    {"stretch", 0, "X", "edges longer than X times their length at rest are stretched [2]", .read = read_stretch,
+     offsetof(Verify, stretch)},
+    {"csv", 0, "FILE", "also writes the counts of every frame to FILE", .read = args_text, offsetof(Verify, csv)},
 };
 
 const ArgCommand verify_command = {
@@ -29,10 +56,11 @@ const ArgCommand verify_command = {
     "DIR",
     "Reads a cache and counts crossings, inverted cells and other faults.",
     verify_options,
-    OPT_COUNT,
+    sizeof verify_options / sizeof *verify_options,
     "docs/cli.md defines the faults. Exit codes: 0 no faults, 1 faults or interrupted, 2 a frame cannot be read.",
     "singe verify out\n"
-    "singe verify out --stretch 1.5 --csv faults.csv"};
+    "singe verify out --stretch 1.5 --csv faults.csv",
+    .operand_field = offsetof(Verify, path)};
 
 static const struct {
     const char *key, *title;
@@ -49,23 +77,6 @@ static const struct {
     [FAULT_INDEX] = {"index", "triangles with an index out of range"},
     [FAULT_STATS] = {"stats", "contradictions of stats.csv"},
 };
-
-typedef struct Row {
-    uint32_t vertices, triangles;
-    uint64_t count[FAULT_COUNT], near, folded, from_start;
-} Row;
-
-typedef struct Verify {
-    Console console;
-    Folder folder;
-    StatsTable stats;
-    const char *csv;
-    double stretch;
-    bool crossed;          ///< at the start
-    int first, last, done; ///< frames; first 0: all
-    Row *rows;             ///< of every frame
-    Findings findings;
-} Verify;
 
 // ---- one frame
 
@@ -278,30 +289,14 @@ static ExitCode find_folder(Verify *verify, const char *path) {
 
 int command_verify(int argc, char **argv) {
     Verify verify = {.console = console_make(false), .stretch = 2};
-    ArgReader reader = args_begin(&verify_command, argc, argv);
-    const char *value, *path = NULL;
-
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        bool good = true;
-        char *end;
-        switch (option) {
-        case OPT_FRAMES: good = args_span(&reader, option, value, &verify.first, &verify.last); break;
-        case OPT_STRETCH:
-            verify.stretch = strtod(value, &end);
-            good = end != value && *end == 0 && verify.stretch >= 1 && isfinite(verify.stretch);
-            if (!good) args_complain(&reader, "--stretch: expected a number of 1 or more, got '%s'", shown(value).text);
-            break;
-        case OPT_CSV: verify.csv = value; break;
-        case ARG_OPERAND: path = value; break;
-        case ARG_HELP: return EXIT_GOOD;
-        default: good = false;
-        }
-        if (!good) return EXIT_INPUT;
-    }
+    ExitCode code;
+    if (!args_read(&verify_command, argc, argv, &verify, &code)) return code;
 
     interrupt_watch();
     verify.findings = (Findings){.report = verify_report, .context = &verify.console, .stretch = verify.stretch};
-    ExitCode code = find_folder(&verify, path);
+    verify.first = verify.frames[0];
+    verify.last = verify.frames[1];
+    code = find_folder(&verify, verify.path);
     if (!code) code = folder_span(&verify.folder, &verify.console, &verify.first, &verify.last);
     if (!code) code = stats_table_read(&verify.stats, verify.folder.stats, &verify.console);
     if (!code) code = verify_all(&verify);

@@ -24,22 +24,23 @@
 #include "formats/uv_raster.h"
 #include "sweep/sweep.h"
 
-enum { OPT_OUTPUT, OPT_THREADS, OPT_QUIET, OPT_COUNT };
-
-static const ArgOption fit_options[OPT_COUNT] = {
-    [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the fit [out/NAME]"},
-    [OPT_THREADS] = {"threads", 0, "N", "threads [all]; the result does not depend on them"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only warnings, errors and the result"},
+static const ArgOption fit_options[] = {
+    {"output", 'o', "DIR", "folder of the fit [out/NAME]", .read = args_text, offsetof(SweepOptions, output)},
+    {"threads", 0, "N", "threads [all]; the result does not depend on them", .read = args_int,
+     offsetof(SweepOptions, threads), 1, JOB_THREADS_MAX},
+    {"quiet", 'q', NULL, "prints only warnings, errors and the result", .read = args_switch,
+     offsetof(SweepOptions, quiet)},
 };
 
 const ArgCommand fit_command = {"fit",
                                 "PLAN",
                                 "Finds the parameters with which a scene best matches measurements.",
                                 fit_options,
-                                OPT_COUNT,
+                                sizeof fit_options / sizeof *fit_options,
                                 "docs/sweep.md describes plans. The same command continues a fit that was stopped.\n"
                                 "Exit codes: 0 success, 1 a row failed or the fit was interrupted, 2 bad input.",
-                                "singe fit fit.yaml -o out"};
+                                "singe fit fit.yaml -o out",
+                                .operand_field = offsetof(SweepOptions, plan)};
 
 /// Changes of the coordinates in [0, 1] below this end the search.
 static const double parameter_tolerance = 1e-3;
@@ -455,28 +456,15 @@ static ExitCode search(Fit *fit) {
 }
 
 int command_fit(int argc, char **argv) {
-    ArgReader reader = args_begin(&fit_command, argc, argv);
     SweepOptions options = {.threads = job_threads(), .jobs = 1, .no_preview = true};
-    const char *value;
-
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        bool good = true;
-        switch (option) {
-        case OPT_OUTPUT: options.output = value; break;
-        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &options.threads); break;
-        case OPT_QUIET: options.quiet = true; break;
-        case ARG_OPERAND: options.plan = value; break;
-        case ARG_HELP: return EXIT_GOOD;
-        default: good = false;
-        }
-        if (!good) return EXIT_INPUT;
-    }
+    ExitCode code;
+    if (!args_read(&fit_command, argc, argv, &options, &code)) return code;
 
     interrupt_shield();
     Console console = console_make(options.quiet);
     Sweep sweep = sweep_make(&console, &options);
     FitTarget target = {0};
-    ExitCode code = plan_read(options.plan, true, &console, &sweep.plan);
+    code = plan_read(options.plan, true, &console, &sweep.plan);
     if (!code) code = read_target(&target, &sweep.plan.target, &console);
     if (!code) code = sweep_prepare(&sweep);
     if (!code) {

@@ -10,53 +10,61 @@
 #include "common/printable.h"
 #include "sweep/sweep.h"
 
-enum {
-    OPT_OUTPUT,
-    OPT_JOBS,
-    OPT_THREADS,
-    OPT_RETRY,
-    OPT_NO_PREVIEW,
-    OPT_PRINT,
-    OPT_OPENJD,
-    OPT_ROW,
-    OPT_REPORT,
-    OPT_SLURM,
-    OPT_MAX_RUNNING,
-    OPT_SLURM_OPTION,
-    OPT_RENDER_FRAMES,
-    OPT_QUIET,
-    OPT_COUNT
+static bool read_slurm(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    if (!text[strcspn(text, "\r\n")]) return args_set(command, option, text, field); // it becomes a line of a script
+    return args_complain(command, "--slurm-option: expected one line, got '%s'", shown(text).text);
+}
+
+static const ArgOption sweep_options[] = {
+    {"output", 'o', "DIR", "folder of the sweep [out/NAME]", .read = args_text, offsetof(SweepOptions, output)},
+    {"jobs", 'j', "N", "rows at a time [cores of the machine / threads of a row]", .read = args_int,
+     offsetof(SweepOptions, jobs), 1, 1024},
+    {"threads", 0, "N", "threads of each row [1]", .read = args_int, offsetof(SweepOptions, threads), 1,
+     JOB_THREADS_MAX},
+    {"retry", 0, NULL, "runs failed rows again", .read = args_switch, offsetof(SweepOptions, retry)},
+    {"no-preview", 0, NULL, "draws no pictures and makes no videos", .read = args_switch,
+     offsetof(SweepOptions, no_preview)},
+    {"print", 0, NULL, "prints a command for each unfinished row, and runs nothing", .read = args_switch,
+     offsetof(SweepOptions, print)},
+    {"openjd", 0, NULL, "prints a job of Open Job Description, and runs nothing", .read = args_switch,
+     offsetof(SweepOptions, openjd)},
+    {"row", 0, "N", "runs only this row, as a job of a farm does", .read = args_int, offsetof(SweepOptions, row), 1,
+     PLAN_ROWS_MAX},
+    {"report", 0, NULL, "writes the report of the rows that are complete, and runs nothing", .read = args_switch,
+     offsetof(SweepOptions, report)},
+    {"slurm", 0, NULL, "submits the rows, their pictures and the report to Slurm", .read = args_switch,
+     offsetof(SweepOptions, submit)},
+    {"max-running", 0, "N", "with --slurm: rows at a time [no limit]", .read = args_int,
+     offsetof(SweepOptions, max_running), 1, PLAN_ROWS_MAX},
+    {"slurm-option", 0, "TEXT", "with --slurm: an option of sbatch; may be repeated", .read = read_slurm,
+     offsetof(SweepOptions, slurm)},
+    {"render-frames", 0, "N", "with --slurm: frames that one job draws [24]", .read = args_int,
+     offsetof(SweepOptions, frames), 1, JOB_FRAMES_MAX},
+    {"quiet", 'q', NULL, "prints only warnings and errors", .read = args_switch, offsetof(SweepOptions, quiet)},
 };
 
-static const ArgOption sweep_options[OPT_COUNT] = {
-    [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the sweep [out/NAME]"},
-    [OPT_JOBS] = {"jobs", 'j', "N", "rows at a time [cores of the machine / threads of a row]"},
-    [OPT_THREADS] = {"threads", 0, "N", "threads of each row [1]"},
-    [OPT_RETRY] = {"retry", 0, NULL, "runs failed rows again"},
-    [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no videos"},
-    [OPT_PRINT] = {"print", 0, NULL, "prints a command for each unfinished row, and runs nothing"},
-    [OPT_OPENJD] = {"openjd", 0, NULL, "prints a job of Open Job Description, and runs nothing"},
-    [OPT_ROW] = {"row", 0, "N", "runs only this row, as a job of a farm does"},
-    [OPT_REPORT] = {"report", 0, NULL, "writes the report of the rows that are complete, and runs nothing"},
-    [OPT_SLURM] = {"slurm", 0, NULL, "submits the rows, their pictures and the report to Slurm"},
-    [OPT_MAX_RUNNING] = {"max-running", 0, "N", "with --slurm: rows at a time [no limit]"},
-    [OPT_SLURM_OPTION] = {"slurm-option", 0, "TEXT", "with --slurm: an option of sbatch; may be repeated"},
-    [OPT_RENDER_FRAMES] = {"render-frames", 0, "N", "with --slurm: frames that one job draws [24]"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only warnings and errors"},
-};
+static bool sweep_check(const ArgCommand *command, void *options) {
+    SweepOptions *o = options;
+    if (o->print + o->openjd + o->report + o->submit + (o->row > 0) > 1)
+        return args_complain(command, "--print, --openjd, --report, --row and --slurm exclude each other");
+    if (!o->jobs) o->jobs = job_threads() / o->threads > 1 ? job_threads() / o->threads : 1;
+    return true;
+}
 
 const ArgCommand sweep_command = {
     "sweep",
     "PLAN",
     "Runs a scene many times with other parameters, and writes a report.",
     sweep_options,
-    OPT_COUNT,
+    sizeof sweep_options / sizeof *sweep_options,
     "docs/sweep.md describes plans. The same command continues a sweep that was stopped.\n"
     "Exit codes: 0 all rows are complete, 1 a row failed or the sweep was interrupted, 2 bad input.",
     "singe sweep sweep.yaml -o out --jobs 4\n"
     "singe sweep sweep.yaml -o out --print\n"
     "singe sweep sweep.yaml -o out --openjd > job.json\n"
-    "singe sweep sweep.yaml -o out --slurm --max-running 20"};
+    "singe sweep sweep.yaml -o out --slurm --max-running 20",
+    .operand_field = offsetof(SweepOptions, plan),
+    .check = sweep_check};
 
 /// Absolute, so that jobs may start in any folder.
 static char *absolute(const char *path) {
@@ -155,49 +163,9 @@ static ExitCode sweep_rows(Sweep *sweep) {
 }
 
 int command_sweep(int argc, char **argv) {
-    ArgReader reader = args_begin(&sweep_command, argc, argv);
     SweepOptions options = {.threads = 1, .frames = 24};
-    ExitCode code = EXIT_GOOD;
-    const char *value;
-    bool done = false;
-
-    for (int option; !code && !done && (option = args_next(&reader, &value)) != ARG_END;) {
-        bool good = true;
-        switch (option) {
-        case OPT_OUTPUT: options.output = value; break;
-        case OPT_JOBS: good = args_int(&reader, option, value, 1, 1024, &options.jobs); break;
-        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &options.threads); break;
-        case OPT_RETRY: options.retry = true; break;
-        case OPT_NO_PREVIEW: options.no_preview = true; break;
-        case OPT_PRINT: options.print = true; break;
-        case OPT_OPENJD: options.openjd = true; break;
-        case OPT_ROW: good = args_int(&reader, option, value, 1, PLAN_ROWS_MAX, &options.row); break;
-        case OPT_REPORT: options.report = true; break;
-        case OPT_SLURM: options.submit = true; break;
-        case OPT_MAX_RUNNING: good = args_int(&reader, option, value, 1, PLAN_ROWS_MAX, &options.max_running); break;
-        case OPT_SLURM_OPTION:
-            set_add(&options.slurm, value);
-            good = !value[strcspn(value, "\r\n")]; // it becomes a line of a script
-            if (!good) args_complain(&reader, "--slurm-option: expected one line, got '%s'", shown(value).text);
-            break;
-        case OPT_RENDER_FRAMES: good = args_int(&reader, option, value, 1, 1000000, &options.frames); break;
-        case OPT_QUIET: options.quiet = true; break;
-        case ARG_OPERAND: options.plan = value; break;
-        case ARG_HELP: done = true; break;
-        default: good = false;
-        }
-        if (!good) code = EXIT_INPUT;
-    }
-
-    if (!code && !done && options.print + options.openjd + options.report + options.submit + (options.row > 0) > 1) {
-        args_complain(&reader, "--print, --openjd, --report, --row and --slurm exclude each other");
-        code = EXIT_INPUT;
-    }
-
-    if (!code && !options.jobs)
-        options.jobs = job_threads() / options.threads > 1 ? job_threads() / options.threads : 1;
-
-    if (!code && !done) {
+    ExitCode code;
+    if (args_read(&sweep_command, argc, argv, &options, &code)) {
         interrupt_shield();
         Console console = console_make(options.quiet);
         Sweep sweep = sweep_make(&console, &options);

@@ -11,14 +11,21 @@
 #include "cli/text.h"
 #include "common/printable.h"
 
-enum { OPT_SET, OPT_FRAMES, OPT_THREADS, OPT_PORT, OPT_QUIET, OPT_COUNT };
+typedef struct ViewOptions {
+    const char *what;
+    SetList sets;
+    int threads, frames, port;
+    bool quiet;
+} ViewOptions;
 
-static const ArgOption view_options[OPT_COUNT] = {
-    [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
-    [OPT_FRAMES] = {"frames", 0, "N", "frames of the scene"},
-    [OPT_THREADS] = {"threads", 0, "N", "threads of the burn [all]"},
-    [OPT_PORT] = {"port", 0, "N", "port on this machine [a free one]"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "prints only the address, warnings and errors"},
+static const ArgOption view_options[] = {
+    {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated", .read = args_set,
+     offsetof(ViewOptions, sets)},
+    {"frames", 0, "N", "frames of the scene", .read = args_int, offsetof(ViewOptions, frames), 1, JOB_FRAMES_MAX},
+    {"threads", 0, "N", "threads of the burn [all]", .read = args_int, offsetof(ViewOptions, threads), 1,
+     JOB_THREADS_MAX},
+    {"port", 0, "N", "port on this machine [a free one]", .read = args_int, offsetof(ViewOptions, port), 1, 65535},
+    {"quiet", 'q', NULL, "prints only the address and errors", .read = args_switch, offsetof(ViewOptions, quiet)},
 };
 
 const ArgCommand view_command = {
@@ -26,44 +33,11 @@ const ArgCommand view_command = {
     "SCENE|DIR",
     "Shows a burn in a browser: the cache in DIR, or SCENE while it burns, again each time its file is saved.",
     view_options,
-    OPT_COUNT,
+    sizeof view_options / sizeof *view_options,
     "The address works on this machine only; keep it secret. From another machine: ssh -L PORT:127.0.0.1:PORT and --port PORT.\nExit codes: 0 ended by Ctrl-C, 1 failed, 2 bad input.",
     "singe view letter.yaml\n"
-    "singe view out"};
-
-typedef struct ViewOptions {
-    const char *what;
-    SetList sets;
-    int threads, port;
-    bool quiet;
-} ViewOptions;
-
-static ExitCode view_parse(int argc, char **argv, ViewOptions *o, bool *done) {
-    ArgReader reader = args_begin(&view_command, argc, argv);
-    const char *value;
-    int frames;
-    *o = (ViewOptions){.threads = job_threads()};
-    *done = false;
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        bool good = true;
-        switch (option) {
-        case OPT_SET: set_add(&o->sets, value); break;
-        case OPT_FRAMES:
-            good = args_int(&reader, option, value, 1, 1000000, &frames);
-            if (good) set_frames(&o->sets, frames);
-            break;
-        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &o->threads); break;
-        case OPT_PORT: good = args_int(&reader, option, value, 1, 65535, &o->port); break;
-        case OPT_QUIET: o->quiet = true; break;
-        case ARG_OPERAND: o->what = value; break;
-        case ARG_HELP: *done = true; return EXIT_GOOD;
-        default: good = false;
-        }
-        if (!good) return EXIT_INPUT;
-    }
-
-    return EXIT_GOOD;
-}
+    "singe view out",
+    .operand_field = offsetof(ViewOptions, what)};
 
 static ExitCode show(View *view, const ViewOptions *o) {
     SingeError error = {0};
@@ -129,10 +103,10 @@ static ExitCode show(View *view, const ViewOptions *o) {
 }
 
 int command_view(int argc, char **argv) {
-    ViewOptions options;
-    bool done;
-    ExitCode code = view_parse(argc, argv, &options, &done);
-    if (!code && !done) {
+    ViewOptions options = {.threads = job_threads()};
+    ExitCode code;
+    if (args_read(&view_command, argc, argv, &options, &code)) {
+        if (options.frames) set_frames(&options.sets, options.frames);
         interrupt_shield();
         Console console = console_make(options.quiet);
         View view = {.console = &console};

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "cli/args.h"
+#include "cli/job.h"
 #include "cli/cli.h"
 #include "cli/console.h"
 #include "cli/pictures.h"
@@ -86,19 +87,29 @@ TEST(finds_the_nearest_word) {
 }
 
 TEST(reads_arguments) {
-    static const ArgOption options[] = {{"out", 'o', "DIR", ""}, {"quiet", 'q', NULL, ""}, {"all", 'a', NULL, ""}};
+    typedef struct Read {
+        const char *scene;
+        SetList out;
+        bool quiet, all;
+    } Read;
+    static const ArgOption options[] = {
+        {"out", 'o', "DIR", "", .read = args_set, offsetof(Read, out)},
+        {"quiet", 'q', NULL, "", .read = args_switch, offsetof(Read, quiet)},
+        {"all", 'a', NULL, "", .read = args_switch, offsetof(Read, all)},
+    };
     const ArgCommand command = {
         .name = "test", .operand = "SCENE", .summary = "", .options = options, .option_count = 3};
     char *argv[] = {"-qa", "-oX", "--out=Y", "--out", "Z", "-qo", "W", "--", "--quiet"};
-    ArgReader reader = args_begin(&command, 9, argv);
-    const int expected[] = {1, 2, 0, 0, 0, 1, 0, ARG_OPERAND, ARG_END};
-    const char *values[] = {NULL, NULL, "X", "Y", "Z", NULL, "W", "--quiet", NULL};
-
-    for (int i = 0; i < 9; i++) {
-        const char *value = NULL;
-        assert_int_equal(args_next(&reader, &value), expected[i]);
-        if (values[i]) assert_string_equal(value, values[i]);
-    }
+    Read read = {0};
+    ExitCode code = EXIT_FAILED;
+    assert_true(args_read(&command, 9, argv, &read, &code));
+    assert_int_equal(code, EXIT_GOOD);
+    assert_true(read.quiet && read.all);
+    assert_string_equal(read.scene, "--quiet");
+    const char *const given[] = {"X", "Y", "Z", "W"};
+    assert_int_equal(read.out.count, 4);
+    for (int i = 0; i < 4; i++) assert_string_equal(read.out.items[i], given[i]);
+    set_free(&read.out);
 }
 
 TEST(averages_tiles) {
