@@ -3,8 +3,7 @@
 #include <math.h>
 #include <unistd.h>
 
-static char *folder;
-static char path[512];
+TEST_IN_FOLDER("a.0001.ply")
 
 enum { VERTICES = 5, TRIANGLES = 3 };
 
@@ -60,11 +59,8 @@ static void make_sample(Sample *s) {
 
 static Bytes written(const SingeSurface *surface, double time) {
     SingeError error;
-    Bytes bytes;
     if (ply_write_surface(path, surface, time, &error)) fail_msg("%s", error.message);
-    assert_int_equal(file_read(path, (SingeAllocator){0}, &bytes, &error), SINGE_OK);
-    unlink(path);
-    return bytes;
+    return take_file(path);
 }
 
 TEST(round_trip_is_bitwise) {
@@ -236,14 +232,3 @@ TEST(allocation_failure_is_clean) {
     assert_int_equal(ply_write_surface(path, &sample.surface, 3, &error), SINGE_ERROR_MEMORY);
     test_allocator_check(&counter);
 }
-
-static void make_folder(int argc, char **argv) {
-    (void)argc;
-    (void)argv;
-    folder = test_folder();
-    snprintf(path, sizeof path, "%s/a.0001.ply", folder);
-}
-
-static int remove_folder(void) { return rmdir(folder) != 0; }
-
-TEST_AROUND(make_folder, remove_folder)

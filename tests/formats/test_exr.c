@@ -7,8 +7,7 @@
 
 enum { WIDTH = 37, HEIGHT = 50, COUNT = WIDTH * HEIGHT };
 
-static char *folder;
-static char path[512];
+TEST_IN_FOLDER("a.exr")
 
 static void swallow(exr_const_context_t context, exr_result_t code, const char *message) {
     (void)context, (void)code, (void)message;
@@ -80,6 +79,7 @@ TEST(layers_read_back) {
     assert_memory_equal(got, depth, sizeof depth);
     read_channel("id.piece", EXR_PIXEL_UINT, got_id);
     assert_memory_equal(got_id, id, sizeof id);
+    unlink(path);
 }
 
 TEST(bad_layers_are_refused) {
@@ -97,14 +97,3 @@ TEST(bad_layers_are_refused) {
     assert_int_equal(exr_write(nowhere, WIDTH, HEIGHT, twice, 1, NULL, &error), SINGE_ERROR_FILE);
     assert_int_equal(exr_write(nowhere, WIDTH, HEIGHT, twice, 1, NULL, NULL), SINGE_ERROR_FILE);
 }
-
-static void make_folder(int argc, char **argv) {
-    (void)argc;
-    (void)argv;
-    folder = test_folder();
-    snprintf(path, sizeof path, "%s/a.exr", folder);
-}
-
-static int remove_folder(void) { return unlink(path) || rmdir(folder) != 0; }
-
-TEST_AROUND(make_folder, remove_folder)

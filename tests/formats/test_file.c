@@ -6,15 +6,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static char *folder;
+TEST_IN_FOLDER("any")
 static const SingeAllocator libc_allocator = {0};
 
 static const char *inside(const char *name) {
     static char paths[4][512];
     static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
+    char *target = paths[next++ % 4];
+    snprintf(target, sizeof paths[0], "%s/%s", folder, name);
+    return target;
 }
 
 static int files_in_folder(void) {
@@ -25,9 +25,9 @@ static int files_in_folder(void) {
     return count;
 }
 
-static void assert_contents(const char *path, const char *expected) {
+static void assert_contents(const char *target, const char *expected) {
     Bytes bytes;
-    assert_int_equal(file_read(path, libc_allocator, &bytes, NULL), SINGE_OK);
+    assert_int_equal(file_read(target, libc_allocator, &bytes, NULL), SINGE_OK);
     assert_string_equal((char *)bytes.data, expected);
     assert_int_equal(bytes.size, strlen(expected));
     bytes_free(&bytes);
@@ -35,13 +35,13 @@ static void assert_contents(const char *path, const char *expected) {
 
 TEST(writes_and_reads) {
     SingeError error;
-    const char *path = inside("a.txt");
-    assert_int_equal(file_write(path, "hello", 5, &error), SINGE_OK);
-    assert_contents(path, "hello");
-    assert_int_equal(file_write(path, "", 0, &error), SINGE_OK);
-    assert_contents(path, "");
-    assert_int_equal(file_write(path, "again", 5, &error), SINGE_OK);
-    assert_contents(path, "again");
+    const char *target = inside("a.txt");
+    assert_int_equal(file_write(target, "hello", 5, &error), SINGE_OK);
+    assert_contents(target, "hello");
+    assert_int_equal(file_write(target, "", 0, &error), SINGE_OK);
+    assert_contents(target, "");
+    assert_int_equal(file_write(target, "again", 5, &error), SINGE_OK);
+    assert_contents(target, "again");
     assert_int_equal(files_in_folder(), 1);
     // a name without a folder is in the working one
     char before[512];
@@ -51,28 +51,28 @@ TEST(writes_and_reads) {
     assert_contents("b.txt", "b");
     assert_int_equal(unlink("b.txt"), 0);
     assert_int_equal(chdir(before), 0);
-    assert_int_equal(unlink(path), 0);
+    assert_int_equal(unlink(target), 0);
 }
 
 /// As a stranger may do in a folder that all may write to.
 TEST(taken_names_are_no_obstacle) {
     SingeError error;
-    char *const path = strdup(inside("c.txt")), name[64];
+    char *const target = strdup(inside("c.txt")), name[64];
     for (int i = 0; i < 100; i++) {
         snprintf(name, sizeof name, "c.txt.%ld-%d.tmp", (long)getpid(), i);
         assert_int_equal(symlink("/nowhere", inside(name)), 0);
     }
 
-    assert_int_equal(file_write(path, "hello", 5, &error), SINGE_OK);
-    assert_contents(path, "hello");
+    assert_int_equal(file_write(target, "hello", 5, &error), SINGE_OK);
+    assert_contents(target, "hello");
 
     for (int i = 0; i < 100; i++) {
         snprintf(name, sizeof name, "c.txt.%ld-%d.tmp", (long)getpid(), i);
         assert_int_equal(unlink(inside(name)), 0);
     }
-    assert_int_equal(unlink(path), 0);
+    assert_int_equal(unlink(target), 0);
     assert_int_equal(files_in_folder(), 0);
-    free(path);
+    free(target);
 }
 
 TEST(reading_says_why) {
@@ -146,26 +146,26 @@ TEST(links_are_replaced) {
 
 TEST(drafts_take_the_place_later) {
     SingeError error;
-    const char *path = inside("film");
+    const char *target = inside("film");
     char *first, *second;
-    assert_int_equal(file_write(path, "old", 3, &error), SINGE_OK);
-    assert_int_equal(file_draft(path, &first, &error), SINGE_OK);
-    assert_int_equal(file_draft(path, &second, &error), SINGE_OK);
+    assert_int_equal(file_write(target, "old", 3, &error), SINGE_OK);
+    assert_int_equal(file_draft(target, &first, &error), SINGE_OK);
+    assert_int_equal(file_draft(target, &second, &error), SINGE_OK);
     assert_string_not_equal(first, second);
     assert_int_equal(file_write(first, "new", 3, &error), SINGE_OK);
-    assert_contents(path, "old");
-    assert_int_equal(file_publish(first, path, &error), SINGE_OK);
-    assert_contents(path, "new");
+    assert_contents(target, "old");
+    assert_int_equal(file_publish(first, target, &error), SINGE_OK);
+    assert_contents(target, "new");
     file_discard(second);
     file_discard(NULL);
     assert_int_equal(files_in_folder(), 1);
     // one whose file has gone leaves what was there
-    assert_int_equal(file_draft(path, &first, &error), SINGE_OK);
+    assert_int_equal(file_draft(target, &first, &error), SINGE_OK);
     assert_int_equal(unlink(first), 0);
-    assert_int_equal(file_publish(first, path, &error), SINGE_ERROR_FILE);
+    assert_int_equal(file_publish(first, target, &error), SINGE_ERROR_FILE);
     assert_message(&error, "film: cannot write: No such file");
-    assert_contents(path, "new");
-    assert_int_equal(unlink(path), 0);
+    assert_contents(target, "new");
+    assert_int_equal(unlink(target), 0);
     assert_int_equal(file_draft(inside("no/where"), &first, &error), SINGE_ERROR_FILE);
     assert_null(first);
     assert_int_equal(file_draft(folder, &first, &error), SINGE_ERROR_FILE);
@@ -174,24 +174,24 @@ TEST(drafts_take_the_place_later) {
 // The limit on a file's size makes the write fail in the middle, as a full disk does.
 TEST(failed_write_keeps_the_old_file) {
     SingeError error;
-    const char *path = inside("old.txt");
+    const char *target = inside("old.txt");
     enum { LARGE = 1 << 20 };
     char *data = calloc(1, LARGE);
-    assert_int_equal(file_write(path, "old", 3, &error), SINGE_OK);
+    assert_int_equal(file_write(target, "old", 3, &error), SINGE_OK);
     struct rlimit before, small;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     small = before;
     small.rlim_cur = 65536;
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
-    SingeResult result = file_write(path, data, LARGE, &error);
+    SingeResult result = file_write(target, data, LARGE, &error);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
     assert_int_equal(result, SINGE_ERROR_FILE);
     assert_message(&error, "old.txt: cannot write: File too large");
-    assert_contents(path, "old");
+    assert_contents(target, "old");
     assert_int_equal(files_in_folder(), 1);
     free(data);
-    unlink(path);
+    unlink(target);
 }
 
 TEST(allocation_failure_is_clean) {
@@ -206,13 +206,3 @@ TEST(allocation_failure_is_clean) {
     test_allocator_check(&counter);
     unlink(inside("a"));
 }
-
-static void make_folder(int argc, char **argv) {
-    (void)argc;
-    (void)argv;
-    folder = test_folder();
-}
-
-static int remove_folder(void) { return rmdir(folder) != 0; }
-
-TEST_AROUND(make_folder, remove_folder)

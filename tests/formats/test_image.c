@@ -6,8 +6,7 @@
 #include <jpeglib.h>
 #include <png.h>
 
-static char *folder;
-static char path[512];
+TEST_IN_FOLDER("a.png")
 
 static SingeResult read_copy(const uint8_t *data, size_t size, Image *image, SingeError *error) {
     uint8_t *copy = calloc(size ? size : 1, 1);
@@ -123,9 +122,8 @@ TEST(png_write_reads_back) {
     uint8_t rgb[WIDTH * HEIGHT * 3];
     for (size_t i = 0; i < sizeof rgb; i++) rgb[i] = (uint8_t)(i * i >> 3);
     SingeError error;
-    Bytes bytes;
     if (png_write(path, WIDTH, HEIGHT, rgb, &error)) fail_msg("%s", error.message);
-    assert_int_equal(file_read(path, (SingeAllocator){0}, &bytes, &error), SINGE_OK);
+    Bytes bytes = take_file(path);
     Image image;
     assert_int_equal(read_copy(bytes.data, bytes.size, &image, &error), SINGE_OK);
     assert_int_equal(image.width, WIDTH);
@@ -138,7 +136,6 @@ TEST(png_write_reads_back) {
         assert_true(error.message[0] != 0);
     }
     bytes_free(&bytes);
-    unlink(path);
     assert_int_equal(png_write(path, 0, 4, rgb, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(png_write(path, 4, 20000, rgb, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(png_write("/proc/nowhere/a.png", 4, 4, rgb, &error), SINGE_ERROR_FILE);
@@ -333,14 +330,3 @@ TEST(allocation_failure_is_clean) {
         test_allocations_fail(2, image_read("a", encoded[i].bytes, encoded[i].size, allocator, &image, &error),
                               image_free(&image));
 }
-
-static void make_folder(int argc, char **argv) {
-    (void)argc;
-    (void)argv;
-    folder = test_folder();
-    snprintf(path, sizeof path, "%s/a.png", folder);
-}
-
-static int remove_folder(void) { return rmdir(folder) != 0; }
-
-TEST_AROUND(make_folder, remove_folder)

@@ -2,27 +2,8 @@
 
 #include <math.h>
 
-static SingeResult parse_bytes(const void *data, size_t size, Polygons *mesh, SingeError *error) {
-    memset(error, 0, sizeof *error);
-    uint8_t *bytes = malloc(size ? size : 1);
-    memcpy(bytes, data, size);
-    SingeResult result = polygons_read("a.ply", bytes, size, (SingeAllocator){0}, mesh, error);
-    free(bytes);
-    return result;
-}
-
 static void expect_error(const char *text, SingeResult code, int64_t line, const char *part) {
-    Polygons mesh;
-    SingeError error;
-    SingeResult result = parse_bytes(text, strlen(text), &mesh, &error);
-
-    if (result != code) fail_msg("result %d, not %d, for %s (%s)", result, code, text, error.message);
-    assert_string_equal(error.stage, "ply");
-    if (line >= 0 && error.element != line)
-        fail_msg("line %d, not %d: %s", (int)error.element, (int)line, error.message);
-    assert_message(&error, part);
-    assert_null(mesh.positions);
-    assert_null(mesh.attributes);
+    assert_mesh_refused("a.ply", text, strlen(text), code, line, part);
 }
 
 #define HEADER "ply\nformat ascii 1.0\n"
@@ -49,7 +30,7 @@ TEST(reads_ascii) {
     Polygons mesh;
     SingeError error;
 
-    if (parse_bytes(text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);
+    if (read_mesh("a.ply", text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);
     static const float positions[] = {1, 2, 0.1f, 3, 4, -1e-3f, 5, 6, 0, 7, 8, 0};
     static const float uv[] = {0, 0, 1, 1, 1, 0, 0.75f, 0.25f}; // of the face's corners
     static const float red[] = {1, 0, 51 * (1 / 255.0f), 102 * (1 / 255.0f)}, wet[] = {-5, 32767, -32768, 0};
@@ -131,7 +112,7 @@ TEST(reads_binary_of_both_orders) {
         Maker maker = make_binary(big);
         Polygons mesh;
         SingeError error;
-        if (parse_bytes(maker.bytes, maker.size, &mesh, &error)) fail_msg("%s", error.message);
+        if (read_mesh("a.ply", maker.bytes, maker.size, &mesh, &error)) fail_msg("%s", error.message);
         assert_int_equal(mesh.vertex_count, 4);
         assert_memory_equal(mesh.positions, corners, sizeof corners);
         static const uint32_t cells[] = {0, 1, 2, 3, 3, 2, 1, 0};
@@ -148,7 +129,8 @@ TEST(reads_binary_of_both_orders) {
 
         // a cut anywhere is noticed
         for (size_t size = 0; size < maker.size; size++) {
-            if (parse_bytes(maker.bytes, size, &mesh, &error) == SINGE_OK) fail_msg("cut to %d bytes", (int)size);
+            if (read_mesh("a.ply", maker.bytes, size, &mesh, &error) == SINGE_OK)
+                fail_msg("cut to %d bytes", (int)size);
             assert_true(error.message[0] != 0);
         }
     }
@@ -227,7 +209,7 @@ TEST(refuses_bad_binary_values) {
         for (int k = 0; k < 40; k++) put(&maker, 0, 1);
         Polygons mesh;
         SingeError error;
-        assert_int_equal(parse_bytes(maker.bytes, maker.size, &mesh, &error), SINGE_ERROR_FORMAT);
+        assert_int_equal(read_mesh("a.ply", maker.bytes, maker.size, &mesh, &error), SINGE_ERROR_FORMAT);
         assert_true(error.element >= (int64_t)body && error.element <= (int64_t)body + 8);
     }
 }
@@ -266,7 +248,7 @@ TEST(faces_have_uv_of_their_own) {
     Polygons mesh;
     SingeError error;
 
-    if (parse_bytes(text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);
+    if (read_mesh("a.ply", text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);
     static const float uv[] = {0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1, 0.5f, 0.5f};
     static const uint32_t face_corners[] = {0, 1, 2, 0, 2, 3, 1}, first[] = {0, 3, 7};
     assert_int_equal(mesh.face_count, 2);
@@ -286,8 +268,8 @@ TEST(every_truncation_of_ascii_is_an_error) {
 
     // only the last newline may be missing
     for (size_t size = 0; size + 2 < sizeof text; size++)
-        assert_int_not_equal(parse_bytes(text, size, &mesh, &error), SINGE_OK);
-    assert_int_equal(parse_bytes(text, sizeof text - 2, &mesh, &error), SINGE_OK);
+        assert_int_not_equal(read_mesh("a.ply", text, size, &mesh, &error), SINGE_OK);
+    assert_int_equal(read_mesh("a.ply", text, sizeof text - 2, &mesh, &error), SINGE_OK);
     polygons_free(&mesh);
 }
 

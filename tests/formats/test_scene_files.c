@@ -9,7 +9,7 @@
 #include <math.h>
 #include <unistd.h>
 
-static char *folder, path[256];
+TEST_IN_FOLDER("scene")
 
 static const OutputPose still[2] = {{.position = {1, 2, 3}, .rotation = {0, 0, 0, 1}, .visible = true},
                                     {.position = {1, 2, 3}, .rotation = {0, 0, 0, 1}, .visible = true}};
@@ -189,9 +189,8 @@ TEST(one_file_has_all_frames) {
     scene.frames = 3, scene.shape_count = 0;
     const OutputCache cache = {.frames = 3, .read = read_frame, .context = &leaf.surface};
     SingeError error = {0};
-    Bytes bytes;
     if (usd_write_single(path, &scene, &cache, &error)) fail_msg("%s", error.message);
-    assert_int_equal(file_read(path, (SingeAllocator){0}, &bytes, &error), SINGE_OK);
+    Bytes bytes = take_file(path);
     CrateFile file;
     crate_open(&file, bytes.data, bytes.size);
     for (uint64_t i = 0; i < 2; i++) {
@@ -203,7 +202,6 @@ TEST(one_file_has_all_frames) {
     }
     assert_int_equal(series_value(&file, "/shapes/sheets/leaf.points", 3, 2), 0); // nothing is left
     crate_close(&file), bytes_free(&bytes);
-    unlink(path);
 }
 
 static SingeResult fail_frame(void *context, int number, OutputFrame *frame, SingeError *error) {
@@ -226,14 +224,3 @@ TEST(a_bad_frame_leaves_no_file) {
         assert_int_not_equal(access(path, F_OK), 0);
     }
 }
-
-static void make_path(int argc, char **argv) {
-    (void)argc;
-    (void)argv;
-    folder = test_folder();
-    snprintf(path, sizeof path, "%s/scene", folder);
-}
-
-static int remove_folder(void) { return rmdir(folder) != 0; }
-
-TEST_AROUND(make_path, remove_folder)

@@ -70,11 +70,8 @@ static SingeResult write_sheet(const SingeSurface *s, uint32_t sheets, const cha
 
 static Bytes written(const SingeSurface *s, uint32_t sheets, const char *picture) {
     SingeError error;
-    Bytes bytes;
     if (write_sheet(s, sheets, picture, &error)) fail_msg("%s", error.message);
-    assert_int_equal(file_read(path, (SingeAllocator){0}, &bytes, &error), SINGE_OK);
-    unlink(path);
-    return bytes;
+    return take_file(path);
 }
 
 /// Compares an attribute of a mesh with the values of the vertices that its sheet has.
@@ -310,8 +307,7 @@ TEST(is_fast_and_small) {
     const double ply_mean = (time_used(&ply_system[1]) - begun) / FRAMES;
     Bytes usd = written(&s, 1, NULL);
     assert_int_equal(ply_write_surface(path, &s, 1.5, &error), SINGE_OK);
-    assert_int_equal(file_read(path, (SingeAllocator){0}, &ply, &error), SINGE_OK);
-    unlink(path);
+    ply = take_file(path);
     const double share = (double)usd.size / (double)ply.size;
     const double bar = 5e-3 * fmax(1, yard / usual);
     printf(

@@ -6,16 +6,12 @@
 
 #include <unistd.h>
 
-static char *folder;
-static char path[512];
+TEST_IN_FOLDER("a.vdb")
 
 static Bytes written(const Gas *gas, double time) {
     SingeError error;
-    Bytes bytes;
     if (vdb_write_gas(path, gas, time, &error)) fail_msg("%s", error.message);
-    assert_int_equal(file_read(path, (SingeAllocator){0}, &bytes, &error), SINGE_OK);
-    unlink(path);
-    return bytes;
+    return take_file(path);
 }
 
 static void make(uint32_t nx, uint32_t ny, uint32_t nz, Gas *gas) {
@@ -170,14 +166,3 @@ TEST(no_memory_is_reported) {
     bytes_free(&bytes);
     gas_sample_free(&sample);
 }
-
-static void make_folder(int argc, char **argv) {
-    (void)argc;
-    (void)argv;
-    folder = test_folder();
-    snprintf(path, sizeof path, "%s/a.vdb", folder);
-}
-
-static int remove_folder(void) { return rmdir(folder) != 0; }
-
-TEST_AROUND(make_folder, remove_folder)
