@@ -69,7 +69,35 @@ void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int
     free(uv), free(along);
 }
 
+SingeMaterialDef bench_plain_material(void) {
+    SingeMaterialDef material = singe_default_material();
+    material.drag = singe_param(0);
+    material.damping = singe_param(0);
+    return material;
+}
+
+void bench_open_plain(Bench *bench, Quads quads) {
+    const SingeMaterialDef material = bench_plain_material();
+    bench_open(bench, quads, &material, 1);
+}
+
+void bench_add_collider(Bench *bench, SingeColliderDef def, uint32_t count, const SingePoseKey *keys) {
+    bench->colliders = (ColliderList){1, 1, calloc(1, sizeof(Collider))};
+    Collider *collider = bench->colliders.items;
+    def.path_count = count, def.path = keys;
+    if (collider_create(&bench->memory, &def, collider, &bench->error)) fail_msg("%s", bench->error.message);
+    collider->generation = 1;
+    assert_true(dynamics_plan_reserve(&bench->memory, bench->plan, 1));
+}
+
+void bench_prepare(Bench *bench) {
+    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, NULL, bench->pool,
+                     &bench->state.dynamics);
+}
+
 void bench_close(Bench *bench) {
+    if (bench->colliders.items) collider_free(&bench->memory, bench->colliders.items);
+    free(bench->colliders.items);
     pool_destroy(&bench->memory, bench->pool);
     dynamics_plan_free(&bench->memory, &bench->shell, bench->plan);
     state_free(&bench->memory, &bench->state);

@@ -34,7 +34,15 @@ void quads_free(Quads *quads);
 /// Builds everything; frees the quads. Asserts success. u and v go from 0 to 1 along x and y, and so does the attribute
 /// "along" along x.
 void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int threads);
+/// The same with a material without drag and damping, on one thread.
+void bench_open_plain(Bench *bench, Quads quads);
+SingeMaterialDef bench_plain_material(void);
+/// Adds the only collider.
+void bench_add_collider(Bench *bench, SingeColliderDef def, uint32_t count, const SingePoseKey *keys);
 void bench_close(Bench *bench);
+
+/// What a step begins with.
+void bench_prepare(Bench *bench);
 /// One step of h seconds; asserts success.
 void bench_step(Bench *bench, float h);
 /// m, of a cell's centre over its corners; negative where the cell is inverted.

@@ -20,8 +20,7 @@ static void hold(Bench *bench, const SingeMaterialDef *material, int count, cons
     bench_open(bench, quads_grid(SIDE, SIDE, cell, cell, false), material, 1);
     for (int k = 0; k < count; k++) bench->state.dynamics.pinned[held[k]] = 1;
     dynamics_plan_hold(bench->plan, &bench->shell, &bench->state);
-    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, NULL, bench->pool,
-                     &bench->state.dynamics);
+    bench_prepare(bench);
 }
 
 /// Throws what is free about, up to 10 cm.
@@ -139,8 +138,7 @@ TEST(removed_pins_and_burnt_particles_hold_nothing) {
             assert_int_equal(bench.plan->attachments.source[0][0], SHELL_NONE);
         }
 
-        dynamics_prepare(bench.plan, &bench.shell, STATE_INPUT(&bench.state), &bench.wind, NULL, bench.pool,
-                         &bench.state.dynamics);
+        bench_prepare(&bench);
         for (uint32_t v = 1; v < bench.shell.vertex_count; v++) bench.state.dynamics.position[v][2] = -1;
         project(&bench);
         for (uint32_t v = 1; v < bench.shell.vertex_count; v++) assert_true(bench.state.dynamics.position[v][2] == -1);

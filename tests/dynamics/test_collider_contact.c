@@ -16,28 +16,6 @@
 
 static const float STEP = 1.0f / 480;
 
-static SingeMaterialDef plain(void) {
-    SingeMaterialDef material = singe_default_material();
-    material.drag = singe_param(0);
-    material.damping = singe_param(0);
-    return material;
-}
-
-static void add_collider(Bench *bench, SingeColliderDef def, uint32_t count, const SingePoseKey *keys) {
-    bench->colliders = (ColliderList){1, 1, calloc(1, sizeof(Collider))};
-    Collider *collider = bench->colliders.items;
-    def.path_count = count, def.path = keys;
-    if (collider_create(&bench->memory, &def, collider, &bench->error)) fail_msg("%s", bench->error.message);
-    collider->generation = 1;
-    assert_true(dynamics_plan_reserve(&bench->memory, bench->plan, 1));
-}
-
-static void close_all(Bench *bench) {
-    collider_free(&bench->memory, bench->colliders.items);
-    free(bench->colliders.items);
-    bench_close(bench);
-}
-
 static Float3 centroid(const Bench *bench) {
     Float3 sum = {0, 0, 0};
     for (uint32_t i = 0; i < bench->shell.vertex_count; i++)
@@ -56,11 +34,10 @@ static void position(Bench *bench, const float rotation[4], Float3 at) {
 /// A sheet of 2 mm cells thrown at a plate of 6 cm: how many particles are behind it at last.
 static int passed(SingeColliderDef plate, float sheet_speed, float plate_speed, const float rotation[4]) {
     Bench bench;
-    SingeMaterialDef material = plain();
-    bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
+    bench_open_plain(&bench, quads_grid(16, 16, 0.002f, 0.002f, false));
     SingePoseKey keys[2] = {{0, {0, 0, 0}, {0, 0, 0, 1}}, {1, {0, 0, plate_speed}, {0, 0, 0, 1}}};
     for (int k = 0; k < 4; k++) keys[0].rotation[k] = keys[1].rotation[k] = rotation[k];
-    add_collider(&bench, plate, 2, keys);
+    bench_add_collider(&bench, plate, 2, keys);
     const float none[4] = {0, 0, 0, 1};
     position(&bench, none, float3(-0.016f, -0.016f, 0.02f));
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.dynamics.velocity[i][2] = -sheet_speed;
@@ -71,7 +48,7 @@ static int passed(SingeColliderDef plate, float sheet_speed, float plate_speed, 
         Float3 local = pose_unapply(&pose, float3_load(bench.state.dynamics.position[i]));
         count += local.z < 0 && fabsf(local.x) < 0.03f && fabsf(local.y) < 0.03f;
     }
-    close_all(&bench);
+    bench_close(&bench);
     return count;
 }
 
@@ -112,11 +89,10 @@ static SingeColliderDef slab(SingeColliderKind kind, Triangles *triangles, const
 /// m that a sheet of 4 cm slides in 0.5 s on a slab of that slope, and in the second half of it.
 static double slide(SingeColliderDef def, float slope, double *late) {
     Bench bench;
-    SingeMaterialDef material = plain();
-    bench_open(&bench, quads_grid(8, 8, 0.005f, 0.005f, false), &material, 1);
+    bench_open_plain(&bench, quads_grid(8, 8, 0.005f, 0.005f, false));
     SingePoseKey key = {0, {0, 0, 0}, {0, sinf(slope / 2), 0, cosf(slope / 2)}};
     float top = def.kind == SINGE_COLLIDER_BOX || def.kind == SINGE_COLLIDER_MESH ? 0.05f : 0;
-    add_collider(&bench, def, 1, &key);
+    bench_add_collider(&bench, def, 1, &key);
     position(&bench, key.rotation, quat_rotate(key.rotation, float3(0, 0, top + def.offset)));
     Float3 start = centroid(&bench), half = start;
     for (int step = 0; step < 240; step++) {
@@ -125,7 +101,7 @@ static double slide(SingeColliderDef def, float slope, double *late) {
     }
     double displacement = (double)float3_length(float3_sub(centroid(&bench), start));
     if (late) *late = (double)float3_length(float3_sub(centroid(&bench), half));
-    close_all(&bench);
+    bench_close(&bench);
     return displacement;
 }
 
@@ -169,18 +145,17 @@ TEST(resting_sheets_do_not_creep) {
 static double behind_belt(SingeColliderDef def, float acceleration) {
     enum { KEYS = 100 };
     Bench bench;
-    SingeMaterialDef material = plain();
-    bench_open(&bench, quads_grid(8, 8, 0.005f, 0.005f, false), &material, 1);
+    bench_open_plain(&bench, quads_grid(8, 8, 0.005f, 0.005f, false));
     SingePoseKey keys[KEYS];
     for (int k = 0; k < KEYS; k++) {
         float t = 0.45f * (float)k / (KEYS - 1);
         keys[k] = (SingePoseKey){t, {acceleration * t * t / 2, 0, -0.05f - def.offset}, {0, 0, 0, 1}};
     }
-    add_collider(&bench, def, KEYS, keys);
+    bench_add_collider(&bench, def, KEYS, keys);
     float start = centroid(&bench).x;
     for (int step = 0; step < 192; step++) bench_step(&bench, STEP);
     double displacement = (double)(centroid(&bench).x - start), belt = 0.5 * (double)acceleration * 0.16;
-    close_all(&bench);
+    bench_close(&bench);
     return belt - displacement;
 }
 
@@ -230,14 +205,14 @@ static double rests(SingeColliderDef def, const char *name, float height) {
     SingeMaterialDef material = singe_default_material();
     bench_open(&bench, quads_grid(CELLS, CELLS, cell, cell, false), &material, 2);
     SingePoseKey key = {0, {0, 0, 0}, {0, 0, 0, 1}};
-    add_collider(&bench, def, 1, &key);
+    bench_add_collider(&bench, def, 1, &key);
     const float turned[4] = {0, 0, 0.2588f, 0.9659f};
     position(&bench, turned, float3_add(float3(0, 0, height), quat_rotate(turned, float3(-0.04f, -0.04f, 0))));
     for (int step = 0; step < 480; step++) bench_step(&bench, STEP);
     double speed, worst = deepest(&bench, &speed);
     printf("%s: after 1 s the deepest point of the sheet is %.3f mm in (%.1f %% of a cell), mean speed %.1f mm/s\n",
            name, 1e3 * worst, 100 * worst / (double)cell, 1e3 * speed);
-    close_all(&bench);
+    bench_close(&bench);
     return worst / (double)cell;
 }
 
@@ -265,7 +240,7 @@ TEST(small_spheres_hold) {
         SingeColliderDef def = singe_default_collider();
         def.kind = SINGE_COLLIDER_SPHERE, def.radius = radius;
         SingePoseKey key = {0, {0.0153f, 0.0147f, -radius - 0.002f}, {0, 0, 0, 1}}; // below the inside of a cell
-        add_collider(&bench, def, 1, &key);
+        bench_add_collider(&bench, def, 1, &key);
         double speed, worst = -INFINITY;
         for (int step = 0; step < 40; step++) {
             bench_step(&bench, STEP);
@@ -273,7 +248,7 @@ TEST(small_spheres_hold) {
         }
         printf("sphere of %.1f mm under cells of 2 mm: %.2f mm in at the worst\n", 1e3 * (double)radius, 1e3 * worst);
         if (radius > 1.5e-3f) assert_true(worst < 0);
-        close_all(&bench);
+        bench_close(&bench);
     }
 }
 
@@ -304,7 +279,7 @@ TEST(pressed_sheets_stay_and_rest) {
                                {0.25f, {x, x, low}, {0, 0, 0, 1}},
                                {0.3f, {x, x, high}, {0, 0, 0, 1}},
                                {0.31f, {x, x, 2 * high}, {0, 0, 0, 1}}};
-        add_collider(&bench, def, 5, keys);
+        bench_add_collider(&bench, def, 5, keys);
         Collider *both = calloc(2, sizeof *both);
         both[0] = bench.colliders.items[0];
         free(bench.colliders.items);
@@ -329,7 +304,7 @@ TEST(pressed_sheets_stay_and_rest) {
                1e3 * (double)gap, max, last, ever);
         assert_true(ever == 0 && max < 2 && last < 0.02);
         collider_free(&bench.memory, &both[1]);
-        close_all(&bench);
+        bench_close(&bench);
         triangles_free(&triangles);
     }
 }
@@ -337,8 +312,7 @@ TEST(pressed_sheets_stay_and_rest) {
 /// A plate that turns about its edge hits a sheet in flight: nothing gets through.
 TEST(swung_plates_let_nothing_through) {
     Bench bench;
-    SingeMaterialDef material = plain();
-    bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
+    bench_open_plain(&bench, quads_grid(16, 16, 0.002f, 0.002f, false));
     Triangles triangles = triangles_box(6, 0.1f, 0.1f, 0.0005f);
     for (uint32_t v = 0; v < triangles.vertex_count; v++) triangles.vertices[3 * (size_t)v] += 0.06f; // about its edge
     enum { KEYS = 40 };
@@ -348,7 +322,7 @@ TEST(swung_plates_let_nothing_through) {
         keys[k] = (SingePoseKey){0.03f * (float)k / (KEYS - 1), {0, 0, 0}, {0, -sinf(angle / 2), 0, cosf(angle / 2)}};
     }
 
-    add_collider(&bench, triangles_def(&triangles), KEYS, keys);
+    bench_add_collider(&bench, triangles_def(&triangles), KEYS, keys);
     const float none[4] = {0, 0, 0, 1};
     position(&bench, none, float3(0.04f, -0.016f, 0.004f));
     for (int step = 0; step < 15; step++) bench_step(&bench, STEP);
@@ -363,7 +337,7 @@ TEST(swung_plates_let_nothing_through) {
     printf("swat: %d of %u particles hit, %d through\n", hit, bench.shell.particle_count, through);
     assert_true(hit > 400 && through == 0);
     triangles_free(&triangles);
-    close_all(&bench);
+    bench_close(&bench);
 }
 
 // ---- in lanes
@@ -381,15 +355,14 @@ TEST(particles_move_in_lanes_as_one_by_one) {
     for (int trial = 0; trial < 12; trial++) {
         // at rest as it is, at rest but turned, moving
         Bench bench;
-        SingeMaterialDef material = plain();
-        bench_open(&bench, quads_grid(29, 31, 0.002f, 0.002f, false), &material, 1); // 1859 particles: lanes leave some
+        bench_open_plain(&bench, quads_grid(29, 31, 0.002f, 0.002f, false)); // 1859 particles: lanes leave some
         SingeColliderDef def = singe_default_collider();
         def.kind = kinds[trial % 4];
         def.radius = 0.01f;
         def.height = 0.02f;
         def.friction = 0.1f; // some stick, some slide
         memcpy(def.half_size, (float[]){0.01f, 0.012f, 0.008f}, sizeof def.half_size);
-        add_collider(&bench, def, trial < 4 ? 0 : trial < 8 ? 1 : 2, trial < 4 ? NULL : keys);
+        bench_add_collider(&bench, def, trial < 4 ? 0 : trial < 8 ? 1 : 2, trial < 4 ? NULL : keys);
 
         const uint32_t count = bench.shell.particle_count;
         DynamicsState *dynamics = &bench.state.dynamics;
@@ -424,7 +397,7 @@ TEST(particles_move_in_lanes_as_one_by_one) {
         }
         all += contacts;
         free(one);
-        close_all(&bench);
+        bench_close(&bench);
     }
 
     assert_true(all > 1000);
@@ -438,8 +411,7 @@ TEST(of_many_colliders_none_is_missed) {
     for (int trial = 0; trial < 6; trial++) {
         const uint32_t near = trial < 3 ? 40 : 400, count = near + 200;
         Bench bench;
-        SingeMaterialDef material = plain();
-        bench_open(&bench, quads_grid(40, 40, 0.002f, 0.002f, false), &material, 1);
+        bench_open_plain(&bench, quads_grid(40, 40, 0.002f, 0.002f, false));
         assert_true(dynamics_plan_reserve(&bench.memory, bench.plan, MOST));
         Collider *colliders = calloc(MOST, sizeof *colliders);
         for (uint32_t c = 0; c < count; c++) {
@@ -523,12 +495,12 @@ static double look(Bench *bench, Float3 at, uint64_t *contacts) {
 /// A mesh of 10,000 triangles: a sheet that is far from it, above it, and one of which all particles touch it.
 TEST(far_colliders_cost_almost_nothing) {
     Bench bench;
-    SingeMaterialDef material = plain();
+    SingeMaterialDef material = bench_plain_material();
     material.thickness = singe_param(0.0004f); // both layers in reach
     bench_open(&bench, quads_grid(70, 70, 0.001f, 0.001f, false), &material, 1);
     Triangles triangles = triangles_box(29, 0.1f, 0.1f, 0.02f);
     SingePoseKey key = {0, {0.035f, 0.035f, -0.01f}, {0, 0, 0, 1}};
-    add_collider(&bench, triangles_def(&triangles), 1, &key);
+    bench_add_collider(&bench, triangles_def(&triangles), 1, &key);
     uint64_t none, some, all;
     double far = look(&bench, float3(0, 0, 0.1f), &none), above = look(&bench, float3(0, 0, 0.005f), &some);
     double touching = look(&bench, float3(0, 0, 0.00005f), &all);
@@ -537,5 +509,5 @@ TEST(far_colliders_cost_almost_nothing) {
     assert_true(none == 0 && some == 0 && all == bench.shell.particle_count);
     assert_true(far < touching / 20);
     triangles_free(&triangles);
-    close_all(&bench);
+    bench_close(&bench);
 }

@@ -35,11 +35,6 @@ static void fold(Bench *bench, float angle, int turns) {
     }
 }
 
-static void prepare(Bench *bench) {
-    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, NULL, NULL,
-                     &bench->state.dynamics);
-}
-
 /// The largest |r| of three vertices in a row along x, over what an arc of the limit has.
 static double sharpest(const Bench *bench) {
     double max = 0;
@@ -77,7 +72,7 @@ static float (*copy_positions(const Bench *bench))[4] {
 }
 
 static bool is_touched(Bench *bench) {
-    prepare(bench);
+    bench_prepare(bench);
     float(*before)[4] = copy_positions(bench);
     curvature_project(bench->plan, bench->pool, &bench->state.dynamics);
     bool touched = memcmp(before, bench->state.dynamics.position, bench->shell.particle_count * sizeof *before) != 0;
@@ -89,7 +84,7 @@ TEST(sharp_folds_are_rounded) {
     Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
-    prepare(&bench);
+    bench_prepare(&bench);
     assert_true(sharpest(&bench) > 2);
     for (int i = 0; i < 400; i++) curvature_project(bench.plan, bench.pool, &bench.state.dynamics);
     assert_true(sharpest(&bench) < 1.02);
@@ -100,7 +95,7 @@ TEST(momenta_are_kept) {
     Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
-    prepare(&bench);
+    bench_prepare(&bench);
     float(*start)[4] = copy_positions(&bench);
     curvature_project(bench.plan, bench.pool, &bench.state.dynamics);
     double sums[6], moved = 0;
@@ -193,7 +188,7 @@ TEST(rings_are_limited_all_around) {
             p[0] = cell * (float)(i < 16 ? i : 32 - i), p[2] = 0;
         }
 
-        prepare(&bench);
+        bench_prepare(&bench);
         for (int i = 0; i < 300; i++) curvature_project(bench.plan, bench.pool, &bench.state.dynamics);
         for (uint32_t v = 0; v < 32; v++) {
             const float(*x)[4] = (const float(*)[4])bench.state.dynamics.position;

@@ -10,18 +10,6 @@
 
 static const float pi = 3.14159265f;
 
-static SingeMaterialDef plain(void) {
-    SingeMaterialDef material = singe_default_material();
-    material.drag = singe_param(0);
-    material.damping = singe_param(0);
-    return material;
-}
-
-static void prepare(Bench *bench) {
-    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, NULL, bench->pool,
-                     &bench->state.dynamics);
-}
-
 static void momentum(const Bench *bench, double p[3]) {
     p[0] = p[1] = p[2] = 0;
     for (uint32_t i = 0; i < bench->shell.particle_count; i++)
@@ -32,11 +20,10 @@ static void momentum(const Bench *bench, double p[3]) {
 /// Share of a standing wave across the sheet that is left after `steps` of friction, measured off the margins.
 static double wave_left(float cell, float wavelength, int steps) {
     Bench bench;
-    SingeMaterialDef material = plain();
     uint32_t n = (uint32_t)lroundf(0.4f / cell);
 
-    bench_open(&bench, quads_grid(n, 4, cell, cell, false), &material, 1);
-    prepare(&bench);
+    bench_open_plain(&bench, quads_grid(n, 4, cell, cell, false));
+    bench_prepare(&bench);
     float(*v)[4] = bench.state.dynamics.velocity;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         v[i][2] = sinf(2 * pi * bench.shell.rest_position[i][0] / wavelength);
@@ -66,11 +53,10 @@ TEST(waves_decay_by_their_length) {
 
 TEST(friction_keeps_momentum) {
     Bench bench;
-    SingeMaterialDef material = plain();
-    bench_open(&bench, quads_grid(20, 16, 0.004f, 0.004f, false), &material, 1);
+    bench_open_plain(&bench, quads_grid(20, 16, 0.004f, 0.004f, false));
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         bench.state.burn.mass[i] = 0.3f + 0.7f * (float)(i % 7) / 6;
-    prepare(&bench);
+    bench_prepare(&bench);
     float(*v)[4] = bench.state.dynamics.velocity;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         for (int k = 0; k < 3; k++) v[i][k] = 0.1f * (float)k + sinf((float)(i * (uint32_t)(k + 1)));
@@ -92,15 +78,14 @@ TEST(friction_keeps_momentum) {
 /// Friction does not act across a spring that is gone.
 TEST(friction_stops_at_cuts) {
     Bench bench;
-    SingeMaterialDef material = plain();
-    bench_open(&bench, quads_grid(20, 1, 0.01f, 0.01f, false), &material, 1);
+    bench_open_plain(&bench, quads_grid(20, 1, 0.01f, 0.01f, false));
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t k = 0; k < bench.shell.springs[c].count; k++) {
             const uint32_t *ends = bench.shell.springs[c].ends[k];
             float a = bench.shell.rest_position[ends[0]][0], b = bench.shell.rest_position[ends[1]][0];
             if ((a < 0.1001f) != (b < 0.1001f)) bench.state.ablate.spring_flags[c][k] = 0;
         }
-    prepare(&bench);
+    bench_prepare(&bench);
     float(*v)[4] = bench.state.dynamics.velocity;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         v[i][2] = bench.shell.rest_position[i][0] < 0.1001f ? 0 : 1;
@@ -113,12 +98,11 @@ TEST(friction_stops_at_cuts) {
 
 TEST(inverted_cells_are_mended) {
     Bench bench;
-    SingeMaterialDef material = plain();
-    bench_open(&bench, quads_grid(8, 8, 0.005f, 0.005f, false), &material, 1);
+    bench_open_plain(&bench, quads_grid(8, 8, 0.005f, 0.005f, false));
     double thickness = (double)field_at(bench.shell.matter.thickness, shell_centre(&bench.shell, 0));
     for (uint32_t c = 0; c < bench.shell.cell_count; c += 9) // the diagonal: centres pushed through their corners
         bench.state.dynamics.position[shell_centre(&bench.shell, c)][2] -= (float)(1.5 * thickness);
-    prepare(&bench);
+    bench_prepare(&bench);
     double before = 0, after = 0;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         before += (double)bench.state.dynamics.position[i][2] / (double)bench.plan->inverse_mass[i];
@@ -150,10 +134,9 @@ static double longest_side(const Bench *bench) {
 /// A vertex that was pulled away by three cells returns to a quarter more than a side and flies off no further;
 /// momentum is conserved.
 TEST(sides_have_a_max) {
-    SingeMaterialDef material = plain();
     Bench bench;
-    bench_open(&bench, quads_grid(12, 12, 0.01f, 0.01f, false), &material, 1);
-    prepare(&bench);
+    bench_open_plain(&bench, quads_grid(12, 12, 0.01f, 0.01f, false));
+    bench_prepare(&bench);
     float(*x)[4] = bench.state.dynamics.position, (*v)[4] = bench.state.dynamics.velocity;
     const uint32_t at = 6 * 13 + 6;
     x[at][2] += 0.03f, v[at][2] = 5, x[0][0] -= 0.02f;
@@ -179,11 +162,11 @@ TEST(sides_have_a_max) {
 /// apart.
 TEST(some_sides_have_no_max) {
     for (int kind = 0; kind < 5; kind++) {
-        SingeMaterialDef material = plain();
+        SingeMaterialDef material = bench_plain_material();
         if (kind == 1) material.compliance[SINGE_BLUE].value = 1e-3f;
         Bench bench;
         bench_open(&bench, quads_grid(3, 1, 0.01f, 0.01f, false), &material, 1);
-        prepare(&bench);
+        bench_prepare(&bench);
         float(*x)[4] = bench.state.dynamics.position;
         const float far = x[7][0] + 0.02f;
         x[3][0] += 0.02f, x[7][0] += 0.02f; // the end of the strip
@@ -204,14 +187,14 @@ TEST(some_sides_have_no_max) {
 /// Eq 19 by hand: the mean of the ends' weights, softened by how far they are burnt; none where a spring is gone.
 TEST(weights_follow_eq_19) {
     Bench bench;
-    SingeMaterialDef material = plain();
+    SingeMaterialDef material = bench_plain_material();
     material.weight[SINGE_BLUE].value = 0.8f, material.char_weight.value = 0.4f, material.mass_min.value = 0.2f;
     bench_open(&bench, quads_grid(3, 3, 0.005f, 0.005f, false), &material, 1);
     const SpringSet *blue = &bench.shell.springs[SINGE_BLUE];
     bench.state.burn.mass[blue->ends[0][0]] = 0.2f; // ash
     bench.state.burn.mass[blue->ends[0][1]] = 0.6f; // half burnt
     bench.state.ablate.spring_flags[SINGE_BLUE][1] = 0;
-    prepare(&bench);
+    bench_prepare(&bench);
     assert_true(fabsf(bench_weight(&bench, SINGE_BLUE, 0) - 0.8f * (1 - 0.6f * 0.75f)) < 1e-6f);
     assert_true(bench_weight(&bench, SINGE_BLUE, 1) == 0);
     assert_true(fabsf(bench_weight(&bench, SINGE_BLUE, blue->count - 1) - 0.8f) < 1e-6f);
@@ -223,7 +206,7 @@ TEST(compliance_does_not_depend_on_substeps) {
     double stretch[2];
     for (int run = 0; run < 2; run++) {
         Bench bench;
-        SingeMaterialDef material = plain();
+        SingeMaterialDef material = bench_plain_material();
         material.damping = singe_param(6);
         for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = singe_param(5);
         bench_open(&bench, quads_grid(1, 10, 0.01f, 0.01f, false), &material, 1);
@@ -248,7 +231,7 @@ TEST(compliance_does_not_depend_on_substeps) {
 /// back all that the projection takes.
 TEST(compliant_springs_swing_with_their_period_and_energy) {
     Bench bench;
-    SingeMaterialDef material = plain();
+    SingeMaterialDef material = bench_plain_material();
     const double compliance = 20, h = 1.0 / 40000;
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = singe_param(c == SINGE_BLUE ? 20 : 1e6f);
     bench_open(&bench, quads_grid(1, 1, 0.01f, 0.01f, false), &material, 1);
@@ -286,13 +269,13 @@ TEST(compliant_springs_swing_with_their_period_and_energy) {
 /// Springs burnt to ash keep a share of their weight that varies: here from 0.2 at the left to 0.8 at the right.
 TEST(char_weight_follows_an_attribute) {
     Bench bench;
-    SingeMaterialDef material = plain();
+    SingeMaterialDef material = bench_plain_material();
     material.char_weight =
         singe_param_field(0.2f, 0.8f, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "along"});
     bench_open(&bench, quads_grid(10, 2, 0.01f, 0.01f, false), &material, 1);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         bench.state.burn.mass[i] = field_at(bench.shell.matter.mass_min, i);
-    prepare(&bench);
+    bench_prepare(&bench);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         for (uint32_t k = 0; k < bench.shell.springs[colour].count; k++) {
             const uint32_t *ends = bench.shell.springs[colour].ends[k];
@@ -307,7 +290,7 @@ TEST(damping_and_drag_follow_a_texture) {
     static const float halves[] = {0, 1};
     for (int drag = 0; drag < 2; drag++) {
         Bench bench;
-        SingeMaterialDef material = plain();
+        SingeMaterialDef material = bench_plain_material();
         SingeParam param =
             singe_param_field(0, 4, &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}});
         if (drag) material.drag = param;
@@ -316,7 +299,7 @@ TEST(damping_and_drag_follow_a_texture) {
         for (int k = 0; k < 3; k++) bench.plan->settings.gravity[k] = 0;
         float h = 0.01f;
         for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.dynamics.velocity[i][2] = 2;
-        prepare(&bench);
+        bench_prepare(&bench);
         dynamics_move(bench.plan, &bench.shell, bench.pool, h, &(Between){.opens = true}, &bench.state.dynamics);
         for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
             float f = fminf(fmaxf(2 * bench.shell.rest_position[i][0] / 0.08f - 0.5f, 0), 1);
@@ -333,7 +316,7 @@ TEST(damping_and_drag_follow_a_texture) {
 /// A ribbon whose lower half gives and whose upper half does not: the stretch of its two ends as it hangs.
 static void hang(SingeParam compliance, double stretch[2]) {
     Bench bench;
-    SingeMaterialDef material = plain();
+    SingeMaterialDef material = bench_plain_material();
     material.damping = singe_param(6);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = compliance;
     bench_open(&bench, quads_grid(1, 20, 0.01f, 0.01f, false), &material, 1);

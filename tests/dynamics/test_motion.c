@@ -10,13 +10,6 @@
 
 #include "support/test.h"
 
-static SingeMaterialDef plain(void) {
-    SingeMaterialDef material = singe_default_material();
-    material.drag = singe_param(0);
-    material.damping = singe_param(0);
-    return material;
-}
-
 static Float3 centre_of_mass(const Bench *bench) {
     double sum[3] = {0, 0, 0}, mass = 0;
     for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
@@ -40,24 +33,9 @@ static double blue_strain(const Bench *bench) {
     return worst;
 }
 
-static void add_collider(Bench *bench, SingeColliderDef def, uint32_t count, const SingePoseKey *keys) {
-    bench->colliders = (ColliderList){1, 1, calloc(1, sizeof(Collider))};
-    bench->colliders.items[0].generation = 1;
-    bench->colliders.items[0].def = def;
-    assert_int_equal(path_set(&bench->colliders.items[0].path, &bench->memory, count, keys, "collider", &bench->error),
-                     SINGE_OK);
-    assert_true(dynamics_plan_reserve(&bench->memory, bench->plan, 1));
-}
-
-static void drop_collider(Bench *bench) {
-    path_free(&bench->colliders.items[0].path, &bench->memory);
-    free(bench->colliders.items);
-}
-
 TEST(a_sheet_falls_freely) {
     Bench bench;
-    SingeMaterialDef material = plain();
-    bench_open(&bench, quads_grid(10, 10, 0.02f, 0.02f, false), &material, 1);
+    bench_open_plain(&bench, quads_grid(10, 10, 0.02f, 0.02f, false));
     float start = centre_of_mass(&bench).z;
     for (int step = 0; step < 240; step++) bench_step(&bench, 1.0f / 480);
 
@@ -70,7 +48,7 @@ TEST(a_sheet_falls_freely) {
 
 TEST(drag_gives_a_terminal_speed) {
     Bench bench;
-    SingeMaterialDef material = plain();
+    SingeMaterialDef material = bench_plain_material();
     material.drag = singe_param(1.3f);
     bench_open(&bench, quads_grid(6, 6, 0.02f, 0.02f, false), &material, 1);
     for (int step = 0; step < 960; step++) bench_step(&bench, 1.0f / 480);
@@ -88,7 +66,7 @@ TEST(free_pieces_flutter) {
     double turned[PIECES];
     for (int freed = 0; freed < PIECES; freed++) {
         Bench bench;
-        SingeMaterialDef material = plain();
+        SingeMaterialDef material = bench_plain_material();
         material.drag = singe_param(1.3f);
         material.grammage = singe_param(0.020f);
         Quads quads = quads_grid(8, 5, 0.0015f, 0.0015f, false);
@@ -122,8 +100,7 @@ TEST(free_pieces_flutter) {
 /// A thrown, spinning sheet: lengths kept, momentum kept.
 TEST(free_flight_keeps_lengths_and_momentum) {
     Bench bench;
-    SingeMaterialDef material = plain();
-    bench_open(&bench, quads_grid(20, 20, 0.01f, 0.01f, false), &material, 1);
+    bench_open_plain(&bench, quads_grid(20, 20, 0.01f, 0.01f, false));
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
         const float *r = bench.shell.rest_position[i];
         float ripple = 0.3f * sinf(40 * r[0]) * sinf(30 * r[1]);
@@ -145,7 +122,7 @@ TEST(free_flight_keeps_lengths_and_momentum) {
 /// Damping takes exp(-d t) of a free motion, by (1 + h d)^-1 in every substep.
 TEST(damping_decays_exponentially) {
     Bench bench;
-    SingeMaterialDef material = plain();
+    SingeMaterialDef material = bench_plain_material();
     material.damping = singe_param(2);
     bench_open(&bench, quads_grid(4, 4, 0.01f, 0.01f, false), &material, 1);
     bench.plan->settings.gravity[2] = 0;
@@ -194,7 +171,7 @@ static void angular_momentum(const Bench *bench, double spin[3]) {
 /// Share of its spin that a free sheet has left after a second of one turn, about x (along the arc) or z (normal).
 static double spin_left(int axis, float smoothing, bool bent) {
     Bench bench;
-    SingeMaterialDef material = plain();
+    SingeMaterialDef material = bench_plain_material();
     material.compliance[SINGE_GREEN] = singe_param(1); // a cloth: what is stiff swings between bends as it turns
     Quads quads = quads_grid(20, 20, 0.01f, 0.01f, false);
     for (uint32_t v = 0; bent && v < quads.vertex_count; v++) { // an arc of 1 rad
@@ -237,8 +214,7 @@ TEST(spin_decays_as_predicted) {
 /// The largest strain after a second of a sheet crushed to 1 % of its size, and a little thrown about.
 static double open_crushed(uint32_t seed) {
     Bench bench;
-    SingeMaterialDef material = plain();
-    bench_open(&bench, quads_grid(12, 12, 0.01f, 0.01f, false), &material, 1);
+    bench_open_plain(&bench, quads_grid(12, 12, 0.01f, 0.01f, false));
     bench.plan->settings.gravity[2] = 0;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
         float *x = bench.state.dynamics.position[i];
@@ -271,22 +247,20 @@ TEST(a_crushed_sheet_opens) {
 /// Distance that a small sheet slides in 0.5 s down a plane of this slope.
 static double slide(float slope, float friction) {
     Bench bench;
-    SingeMaterialDef material = plain();
-    bench_open(&bench, quads_grid(4, 4, 0.01f, 0.01f, false), &material, 1);
+    bench_open_plain(&bench, quads_grid(4, 4, 0.01f, 0.01f, false));
     SingeColliderDef plane = singe_default_collider();
     plane.friction = friction;
     plane.offset = 0;
 
     // the plane turned about y, so that it falls towards +x; the sheet laid on it
     SingePoseKey key = {0, {0, 0, 0}, {0, sinf(slope / 2), 0, cosf(slope / 2)}};
-    add_collider(&bench, plane, 1, &key);
+    bench_add_collider(&bench, plane, 1, &key);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         float3_store(bench.state.dynamics.position[i],
                      quat_rotate(key.rotation, float3_load(bench.shell.rest_position[i])));
     Float3 start = centre_of_mass(&bench);
     for (int step = 0; step < 240; step++) bench_step(&bench, 1.0f / 480);
     double displacement = (double)float3_length(float3_sub(centre_of_mass(&bench), start));
-    drop_collider(&bench);
     bench_close(&bench);
     return displacement;
 }
@@ -304,30 +278,27 @@ TEST(friction_holds_a_block_on_a_slope) {
 
 TEST(a_moving_plane_carries_the_sheet) {
     Bench bench;
-    SingeMaterialDef material = plain();
-    bench_open(&bench, quads_grid(4, 4, 0.01f, 0.01f, false), &material, 1);
+    bench_open_plain(&bench, quads_grid(4, 4, 0.01f, 0.01f, false));
     SingeColliderDef plane = singe_default_collider();
     plane.friction = 0.8f;
     SingePoseKey keys[] = {{0, {0, 0, -0.0005f}, {0, 0, 0, 1}}, {1, {0.2f, 0, -0.0005f}, {0, 0, 0, 1}}};
-    add_collider(&bench, plane, 2, keys);
+    bench_add_collider(&bench, plane, 2, keys);
     float start = centre_of_mass(&bench).x;
     for (int step = 0; step < 480; step++) bench_step(&bench, 1.0f / 480);
     assert_true(fabsf(centre_of_mass(&bench).x - start - 0.2f) <
                 0.006f); // slips while it gathers speed: v^2/(2 mu g) = 2.5 mm
-    drop_collider(&bench);
     bench_close(&bench);
 }
 
 TEST(no_vertex_is_inside_a_collider) {
     for (SingeColliderKind kind = SINGE_COLLIDER_SPHERE; kind <= SINGE_COLLIDER_CAPSULE; kind++) {
         Bench bench;
-        SingeMaterialDef material = plain();
-        bench_open(&bench, quads_grid(20, 20, 0.01f, 0.01f, false), &material, 1);
+        bench_open_plain(&bench, quads_grid(20, 20, 0.01f, 0.01f, false));
         SingeColliderDef def = singe_default_collider();
         def.kind = kind;
         def.radius = 0.04f;
         SingePoseKey keys[] = {{0, {0.1f, 0.1f, -0.06f}, {0.3f, 0, 0, 1}}, {1, {0.12f, 0.1f, 0.04f}, {0, 0.2f, 0, 1}}};
-        add_collider(&bench, def, 2, keys);
+        bench_add_collider(&bench, def, 2, keys);
         for (int step = 0; step < 360; step++) bench_step(&bench, 1.0f / 480);
         Pose pose = path_pose(&bench.colliders.items[0].path, bench.state.time);
         for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
@@ -336,7 +307,6 @@ TEST(no_vertex_is_inside_a_collider) {
             assert_true(collider_distance(bench.colliders.items, local, INFINITY, &normal) > def.offset - 1e-5f);
         }
 
-        drop_collider(&bench);
         bench_close(&bench);
     }
 }

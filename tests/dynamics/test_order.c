@@ -118,8 +118,7 @@ TEST(pinned_and_crushed_cells_stay_ordered) {
     float(*x)[4] = bench.state.dynamics.position, *pinned = x[shell_centre(&bench.shell, 0)];
     float *crushed = x[shell_centre(&bench.shell, 8)];
     bench.state.dynamics.pinned[shell_centre(&bench.shell, 0)] = 1;
-    dynamics_prepare(bench.plan, &bench.shell, STATE_INPUT(&bench.state), &bench.wind, NULL, bench.pool,
-                     &bench.state.dynamics);
+    bench_prepare(&bench);
     pinned[2] = -0.002f;
     for (int i = 0; i < 4; i++) x[bench.shell.cells[8][i]][1] = x[bench.shell.cells[8][i]][2] = 0;
     crushed[2] = -0.002f;

@@ -85,8 +85,7 @@ static void disturb(Bench *bench) {
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         for (uint32_t k = 0; k < bench->shell.springs[colour].count; k++)
             if (random_hash(k, (uint32_t)colour, 4, 4) % 16 == 0) bench->state.ablate.spring_flags[colour][k] = 0;
-    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, NULL, NULL,
-                     &bench->state.dynamics);
+    bench_prepare(bench);
 }
 
 static void project(Bench *bench, SingeInstructions instructions, Pool *pool, const float *start, float *result) {

@@ -114,8 +114,7 @@ static void compare(Quads quads, bool pin_some) {
     if (pin_some)
         for (uint32_t i = 0; i < bench.shell.particle_count; i += 5) bench.state.dynamics.pinned[i] = 1;
     shake(&bench, 0.002f);
-    dynamics_prepare(bench.plan, &bench.shell, STATE_INPUT(&bench.state), &bench.wind, NULL, NULL,
-                     &bench.state.dynamics);
+    bench_prepare(&bench);
     double(*x)[3] = malloc(bench.shell.particle_count * sizeof *x);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         for (uint32_t i = 0; i < bench.shell.particle_count; i++)
@@ -150,8 +149,7 @@ TEST(gone_springs_decouple) {
     shake(&bench, 0.002f);
     const SpringSet *blue = &bench.shell.springs[SINGE_BLUE];
     for (uint32_t k = 0; k < blue->count; k++) bench.state.ablate.spring_flags[SINGE_BLUE][k] = 0;
-    dynamics_prepare(bench.plan, &bench.shell, STATE_INPUT(&bench.state), &bench.wind, NULL, NULL,
-                     &bench.state.dynamics);
+    bench_prepare(&bench);
     float before[4], (*x)[4] = bench.state.dynamics.position;
     memcpy(before, x[3], sizeof before);
     strand_project(bench.plan, SINGE_BLUE, NULL, 1e-3f, &bench.state.dynamics, &counters);
