@@ -236,11 +236,12 @@ static const char *const verdict_words[][3] = {[REPORT_HOLDS] = {"holds", "holds
                                                [REPORT_MISSES] = {"MISSES, as known", "misses", "bad"},
                                                [REPORT_FAILS] = {"FAILS", "fails", "bad"}};
 
-void report_bar(Report *report, const ReportBar *bar) {
+void report_bar(Report *report, const char *name, const char *what, double value, double low, double high, double bad,
+                const char *bad_what) {
     const bool graded = report->page->grade;
-    const ReportGrade grade = graded ? report->page->grade(report->name, bar->name) : (ReportGrade){0};
-    const bool blind = bar->bad_what && within(bar->bad, bar->low, bar->high);
-    const bool good = within(bar->value, bar->low, bar->high) && !blind;
+    const ReportGrade grade = graded ? report->page->grade(report->name, name) : (ReportGrade){0};
+    const bool blind = bad_what && within(bad, low, high);
+    const bool good = within(value, low, high) && !blind;
     const ReportVerdict verdict =
         good != grade.misses && (grade.word || !graded) ? (good ? REPORT_HOLDS : REPORT_MISSES) : REPORT_FAILS;
     const char *const *words = verdict_words[verdict];
@@ -254,42 +255,41 @@ void report_bar(Report *report, const ReportBar *bar) {
                 "<div class=\"wide\"><table><tr><th>measure</th><th>is</th><th>bar</th><th></th><th>%s</th></tr>\n",
                 graded ? "grade" : "a case that fails it");
     FILE *file = body(report, BLOCK_MEASURES);
-    fprintf(file, "<tr><td>%s</td><td>%.4g</td><td>", bar->what, bar->value);
-    print_bar(file, bar->low, bar->high, "&ge; %.4g", "&le; %.4g", "%.4g to %.4g");
+    fprintf(file, "<tr><td>%s</td><td>%.4g</td><td>", what, value);
+    print_bar(file, low, high, "&ge; %.4g", "&le; %.4g", "%.4g to %.4g");
     fprintf(file, "</td><td class=\"%s\">%s</td><td>%s", words[2], words[1], grade.word ? grade.word : "");
-    if (bar->bad_what) fprintf(file, "%.4g: %s", bar->bad, bar->bad_what);
+    if (bad_what) fprintf(file, "%.4g: %s", bad, bad_what);
     fprintf(file, "</td></tr>\n");
     FILE *echo = echo_file(report);
-    fprintf(echo, "  %-26s %11.4g  ", bar->name, bar->value);
-    print_bar(echo, bar->low, bar->high, "at least %.4g", "at most %.4g", "%.4g to %.4g");
+    fprintf(echo, "  %-26s %11.4g  ", name, value);
+    print_bar(echo, low, high, "at least %.4g", "at most %.4g", "%.4g to %.4g");
     fprintf(echo, "  %s", said);
     if (grade.word) fprintf(echo, "; %s", grade.word);
-    if (bar->bad_what) fprintf(echo, "; not %.4g (%s)", bar->bad, bar->bad_what);
+    if (bad_what) fprintf(echo, "; not %.4g (%s)", bad, bad_what);
     fprintf(echo, "\n");
     fflush(echo);
 
     FILE *csv = report->csv.file;
-    fprintf(csv, "%s,%s,%.9g,%.9g,%.9g,%s,\"%s\",", report->name, bar->name, bar->value, bar->low, bar->high, words[1],
-            bar->what);
-    if (bar->bad_what) fprintf(csv, "%.9g,\"%s\"", bar->bad, bar->bad_what);
+    fprintf(csv, "%s,%s,%.9g,%.9g,%.9g,%s,\"%s\",", report->name, name, value, low, high, words[1], what);
+    if (bad_what) fprintf(csv, "%.9g,\"%s\"", bad, bad_what);
     else fprintf(csv, ",");
     fprintf(csv, "%s%s\n", graded ? "," : "", grade.word ? grade.word : "");
 
     FILE *json = report->json.file;
     fprintf(json, "%s\n  {\"item\": \"%s\", \"measure\": \"%s\", \"value\": ", report->measures ? "," : "",
-            report->name, bar->name);
-    text_json_number(json, bar->value);
+            report->name, name);
+    text_json_number(json, value);
     fprintf(json, ", \"low\": ");
-    text_json_number(json, bar->low);
+    text_json_number(json, low);
     fprintf(json, ", \"high\": ");
-    text_json_number(json, bar->high);
+    text_json_number(json, high);
     fprintf(json, ", \"holds\": %s, \"what\": ", verdict == REPORT_HOLDS ? "true" : "false");
-    text_json_string(json, bar->what);
-    if (bar->bad_what) {
+    text_json_string(json, what);
+    if (bad_what) {
         fprintf(json, ", \"bad\": ");
-        text_json_number(json, bar->bad);
+        text_json_number(json, bad);
         fprintf(json, ", \"bad_what\": ");
-        text_json_string(json, bar->bad_what);
+        text_json_string(json, bad_what);
     }
     if (grade.word)
         fprintf(json, ", \"grade\": \"%s\", \"known_to_miss\": %s", grade.word, grade.misses ? "true" : "false");
@@ -299,9 +299,8 @@ void report_bar(Report *report, const ReportBar *bar) {
     ReportTaken *larger = realloc(report->taken, ((size_t)report->measures + 1) * sizeof *larger);
     if (larger) {
         report->taken = larger;
-        larger[report->measures] =
-            (ReportTaken){text_format("%s", report->name), text_format("%s", bar->name), bar->value, verdict,
-                          text_format("%s", bar->bad_what ? bar->bad_what : "")};
+        larger[report->measures] = (ReportTaken){text_format("%s", report->name), text_format("%s", name), value,
+                                                 verdict, text_format("%s", bad_what ? bad_what : "")};
         report->measures++;
     } else {
         report->result = SINGE_ERROR_MEMORY;
@@ -312,7 +311,7 @@ void report_bar(Report *report, const ReportBar *bar) {
 }
 
 void report_measure(Report *report, const char *name, const char *what, double value, double low, double high) {
-    report_bar(report, &(ReportBar){name, what, value, low, high, 0, NULL});
+    report_bar(report, name, what, value, low, high, 0, NULL);
 }
 
 const ReportTaken *report_find(const Report *report, const char *item, const char *name) {

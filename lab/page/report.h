@@ -58,13 +58,9 @@ FILE *report_drawing(Report *report);
 void report_measure(Report *report, const char *name, const char *what, double value, double low, double high);
 
 /// The same, with a case that must not hold: if `bad` passes the bar, too, the bar cannot fail, and the measure fails.
-/// `bad_what` describes the bad case.
-typedef struct ReportBar {
-    const char *name, *what;
-    double value, low, high, bad;
-    const char *bad_what;
-} ReportBar;
-void report_bar(Report *report, const ReportBar *bar);
+/// `bad_what` describes the bad case; NULL: there is none.
+void report_bar(Report *report, const char *name, const char *what, double value, double low, double high, double bad,
+                const char *bad_what);
 
 typedef enum ReportVerdict { REPORT_HOLDS, REPORT_MISSES, REPORT_FAILS } ReportVerdict;
 

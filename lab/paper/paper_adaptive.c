@@ -157,10 +157,10 @@ static SingeResult fans_report(Lab *lab, SingeError *error) {
     }
 
     report_text(lab->report, "Discs held in their centre, where 8, 12 and 16 springs of a colour meet, after 0.4 s.");
-    report_bar(lab->report, &(ReportBar){"fans",
-                                         "largest mean strain of a disc with 8, 12 or 16 springs of a colour at a "
-                                         "point, by the paper's solver",
-                                         worst, 0, 0.02, literal, "to its letter"});
+    report_bar(lab->report, "fans",
+               "largest mean strain of a disc with 8, 12 or 16 springs of a colour at a "
+               "point, by the paper's solver",
+               worst, 0, 0.02, literal, "to its letter");
     return SINGE_OK;
 }
 
@@ -193,24 +193,20 @@ SingeResult paper_adaptive(Lab *lab, SingeError *error) {
         "%.0f degrees). That is not worth meshing again at every step, so cells are uniform.",
         saving, s[FINE].look.step_ms / s[GRADED].look.step_ms, look_curl(&s[EQUAL].look, 0.5),
         look_curl(&s[FINE].look, 0.5));
-    report_bar(lab->report,
-               &(ReportBar){"speed", "fastest front over slowest, over these cells", high / low, 1, 1.15,
-                            high / fmax(s[PLAIN].speed, 1e-3), "coarse cells whose front is not thickened"});
-    report_bar(lab->report, &(ReportBar){"cost", "ms a step, uniform cells of 1.8 mm over graded ones", cost, 0.5, 1.5,
-                                         s[COARSE].look.step_ms / s[GRADED].look.step_ms, "uniform cells of 4.5 mm"});
+    report_bar(lab->report, "speed", "fastest front over slowest, over these cells", high / low, 1, 1.15,
+               high / fmax(s[PLAIN].speed, 1e-3), "coarse cells whose front is not thickened");
+    report_bar(lab->report, "cost", "ms a step, uniform cells of 1.8 mm over graded ones", cost, 0.5, 1.5,
+               s[COARSE].look.step_ms / s[GRADED].look.step_ms, "uniform cells of 4.5 mm");
     const double fine = look_curl(&s[FINE].look, 0.9), coarse = look_curl(&s[COARSE].look, 0.9);
-    report_bar(lab->report,
-               &(ReportBar){"curl", "curl of the rim, 90 of 100 have less, uniform cells of 1.8 mm over 1.5 mm",
-                            look_curl(&s[EQUAL].look, 0.9) / fine, 0.8, 1.25, coarse / fine,
-                            "uniform cells of 4.5 mm"});
-    report_bar(lab->report,
-               &(ReportBar){"graded", "the same, graded cells over 1.5 mm", look_curl(&s[GRADED].look, 0.9) / fine, 0.8,
-                            1.25, coarse / fine, "uniform cells of 4.5 mm"});
-    report_bar(lab->report, &(ReportBar){"saving", "the most that refining saves over this burn, a factor", saving, 1,
-                                         2.5, 1 / s[FINE].first, "as it begins to burn"});
-    report_bar(lab->report, &(ReportBar){"irregular",
-                                         "steps of 96 on the graded strip, whose springs have up to 8 "
-                                         "neighbours, by the paper's solver",
-                                         steps[0], IRREGULAR_STEPS, IRREGULAR_STEPS, steps[1], "to its letter"});
+    report_bar(lab->report, "curl", "curl of the rim, 90 of 100 have less, uniform cells of 1.8 mm over 1.5 mm",
+               look_curl(&s[EQUAL].look, 0.9) / fine, 0.8, 1.25, coarse / fine, "uniform cells of 4.5 mm");
+    report_bar(lab->report, "graded", "the same, graded cells over 1.5 mm", look_curl(&s[GRADED].look, 0.9) / fine, 0.8,
+               1.25, coarse / fine, "uniform cells of 4.5 mm");
+    report_bar(lab->report, "saving", "the most that refining saves over this burn, a factor", saving, 1, 2.5,
+               1 / s[FINE].first, "as it begins to burn");
+    report_bar(lab->report, "irregular",
+               "steps of 96 on the graded strip, whose springs have up to 8 "
+               "neighbours, by the paper's solver",
+               steps[0], IRREGULAR_STEPS, IRREGULAR_STEPS, steps[1], "to its letter");
     return fans_report(lab, error);
 }

@@ -54,14 +54,13 @@ static SingeResult ranks_print(Lab *lab, const SingeSim *sim, SingeNetwork *all,
         colour_spare += more;
     }
 
-    report_bar(lab->report,
-               &(ReportBar){"ratio", "constraints over degrees of freedom, all at once", springs / (3.0 * free_count),
-                            1.0001, INFINITY, singe_network_set_size(colours, SINGE_BLUE) / (1.5 * free_count),
-                            "blue springs over those of the corners"});
-    report_bar(lab->report, &(ReportBar){"deficit_all", "constraints beyond the rank, all at once", spare, 1, INFINITY,
-                                         colour_spare, "of the four colours, each in a system of its own"});
-    report_bar(lab->report, &(ReportBar){"deficit_colours", "the same of the four colours, each in a system of its own",
-                                         colour_spare, 0, 0, spare, "all at once"});
+    report_bar(lab->report, "ratio", "constraints over degrees of freedom, all at once", springs / (3.0 * free_count),
+               1.0001, INFINITY, singe_network_set_size(colours, SINGE_BLUE) / (1.5 * free_count),
+               "blue springs over those of the corners");
+    report_bar(lab->report, "deficit_all", "constraints beyond the rank, all at once", spare, 1, INFINITY, colour_spare,
+               "of the four colours, each in a system of its own");
+    report_bar(lab->report, "deficit_colours", "the same of the four colours, each in a system of its own",
+               colour_spare, 0, 0, spare, "all at once");
     return result;
 }
 
@@ -143,15 +142,14 @@ SingeResult paper_all_at_once(Lab *lab, SingeError *error) {
                 "mends it, and all at once then ends at %.2g of the error that colour after colour ends at with the same "
                 "floor, for %.1f times the iterations.",
                 ends[2] / ends[3], (double)iterations[2] / iterations[3]);
-            report_bar(lab->report,
-                       &(ReportBar){"all_diverges", "no floor: error after 7 steps over that before, all at once",
-                                    ends[0], 1, INFINITY, ends[1], names[1]});
-            report_bar(lab->report, &(ReportBar){"colours_converge", "no floor: the same, colour after colour", ends[1],
-                                                 0, 0.9, ends[0], names[0]});
-            report_bar(lab->report, &(ReportBar){"floor_converges", "with a floor: the same, all at once", ends[2], 0,
-                                                 0.5, ends[0], "all at once without"});
-            report_bar(lab->report, &(ReportBar){"floor_colours", "with a floor: the same, colour after colour",
-                                                 ends[3], 0, 0.9, ends[0], "all at once without"});
+            report_bar(lab->report, "all_diverges", "no floor: error after 7 steps over that before, all at once",
+                       ends[0], 1, INFINITY, ends[1], names[1]);
+            report_bar(lab->report, "colours_converge", "no floor: the same, colour after colour", ends[1], 0, 0.9,
+                       ends[0], names[0]);
+            report_bar(lab->report, "floor_converges", "with a floor: the same, all at once", ends[2], 0, 0.5, ends[0],
+                       "all at once without");
+            report_bar(lab->report, "floor_colours", "with a floor: the same, colour after colour", ends[3], 0, 0.9,
+                       ends[0], "all at once without");
         }
 
         for (int i = 0; i < CONTENDERS; i++) singe_network_destroy(contenders[i].network);

@@ -63,20 +63,20 @@ SingeResult paper_fig1(Lab *lab, SingeError *error) {
     if (result) return result;
     const Fig1 *fig = &runs[0], *flat = &runs[1];
     static const char *const without = "the same sheet without shrinkage";
-    report_bar(lab->report, &(ReportBar){"correlation", "correlation of the texture with the mass lost after 0.1 s",
-                                         fig->correlation, 0.9, 1, fig->mirrored, "with its mirror image"});
-    report_bar(lab->report, &(ReportBar){"curl", "curl of the rim over 10 mm, 90 of 100 have less, degrees",
-                                         look_curl(&fig->look, 0.9), 25, 180, look_curl(&flat->look, 0.9), without});
-    report_bar(lab->report, &(ReportBar){"slope", "slope of the last 4 mm, median, degrees",
-                                         look_slope(&fig->look, 0.5), 15, 90, look_slope(&flat->look, 0.5), without});
-    report_bar(lab->report, &(ReportBar){"bend", "degrees from cell to cell, at most", fig->look.bend, 8, INFINITY,
-                                         flat->look.bend, without});
-    report_bar(lab->report, &(ReportBar){"inner",
-                                         "the same of cells that have most of their mass: \"interior regions "
-                                         "... also wrinkle\"",
-                                         fig->inner, 3, INFINITY, flat->inner, without});
-    report_bar(lab->report, &(ReportBar){"burnt", "share of cells gone after 3 s", 1 - fig->look.left, 0.3, 1,
-                                         fig->gone, "after 0.1 s"});
+    report_bar(lab->report, "correlation", "correlation of the texture with the mass lost after 0.1 s",
+               fig->correlation, 0.9, 1, fig->mirrored, "with its mirror image");
+    report_bar(lab->report, "curl", "curl of the rim over 10 mm, 90 of 100 have less, degrees",
+               look_curl(&fig->look, 0.9), 25, 180, look_curl(&flat->look, 0.9), without);
+    report_bar(lab->report, "slope", "slope of the last 4 mm, median, degrees", look_slope(&fig->look, 0.5), 15, 90,
+               look_slope(&flat->look, 0.5), without);
+    report_bar(lab->report, "bend", "degrees from cell to cell, at most", fig->look.bend, 8, INFINITY, flat->look.bend,
+               without);
+    report_bar(lab->report, "inner",
+               "the same of cells that have most of their mass: \"interior regions "
+               "... also wrinkle\"",
+               fig->inner, 3, INFINITY, flat->inner, without);
+    report_bar(lab->report, "burnt", "share of cells gone after 3 s", 1 - fig->look.left, 0.3, 1, fig->gone,
+               "after 0.1 s");
     return SINGE_OK;
 }
 
@@ -103,22 +103,22 @@ static void fig4_report(Report *report, const Look *look) {
     report_text(report, "Curl: of the rim over 10 mm, degrees; slope: of the last 4 mm, from the plane of the sheet, "
                         "degrees; both over 2.3, 2.7 and 3.6 s. (b) loses nothing: its rim is where that of (c) would "
                         "be, at m_loss. Border: over the root of the area, at rest.");
-    report_bar(report, &(ReportBar){"b_whole", "(b) share of cells left", b->left, 1, 1, c->left, "(c)"});
-    report_bar(report, &(ReportBar){"a_parts", "(a) pieces of more than 5 %: the shell separates into two parts",
-                                    a->pieces, 2, INFINITY, b->pieces, whole});
-    report_bar(report, &(ReportBar){"c_parts", "(c) the same", c->pieces, 2, INFINITY, b->pieces, whole});
-    report_bar(report, &(ReportBar){"b_curl", "curl of the rim, median, (b) over (a)",
-                                    look_curl(b, 0.5) / look_curl(a, 0.5), 2, INFINITY, 1, same});
-    report_bar(report, &(ReportBar){"c_curl", "the same, (c) over (a): more detail with shrinkage",
-                                    look_curl(c, 0.5) / look_curl(a, 0.5), 2, INFINITY, 1, same});
-    report_bar(report, &(ReportBar){"b_slope", "slope of the last 4 mm, median, (b) over (a)",
-                                    look_slope(b, 0.5) / look_slope(a, 0.5), 1.5, INFINITY, 1, same});
-    report_bar(report, &(ReportBar){"c_slope", "the same, (c) over (a)", look_slope(c, 0.5) / look_slope(a, 0.5), 1.5,
-                                    INFINITY, 1, same});
+    report_bar(report, "b_whole", "(b) share of cells left", b->left, 1, 1, c->left, "(c)");
+    report_bar(report, "a_parts", "(a) pieces of more than 5 %: the shell separates into two parts", a->pieces, 2,
+               INFINITY, b->pieces, whole);
+    report_bar(report, "c_parts", "(c) the same", c->pieces, 2, INFINITY, b->pieces, whole);
+    report_bar(report, "b_curl", "curl of the rim, median, (b) over (a)", look_curl(b, 0.5) / look_curl(a, 0.5), 2,
+               INFINITY, 1, same);
+    report_bar(report, "c_curl", "the same, (c) over (a): more detail with shrinkage",
+               look_curl(c, 0.5) / look_curl(a, 0.5), 2, INFINITY, 1, same);
+    report_bar(report, "b_slope", "slope of the last 4 mm, median, (b) over (a)",
+               look_slope(b, 0.5) / look_slope(a, 0.5), 1.5, INFINITY, 1, same);
+    report_bar(report, "c_slope", "the same, (c) over (a)", look_slope(c, 0.5) / look_slope(a, 0.5), 1.5, INFINITY, 1,
+               same);
     const double ragged = fire_border(c, b);
-    report_bar(report, &(ReportBar){"d_border", "borders that fire makes by what it takes, (d) over (c): it is ragged",
-                                    fire_border(d, b) / ragged, 1.5, INFINITY, fire_border(mean, b) / ragged,
-                                    "the texture's mean all over, over (c)"});
+    report_bar(report, "d_border", "borders that fire makes by what it takes, (d) over (c): it is ragged",
+               fire_border(d, b) / ragged, 1.5, INFINITY, fire_border(mean, b) / ragged,
+               "the texture's mean all over, over (c)");
 }
 
 SingeResult paper_fig4(Lab *lab, SingeError *error) {
@@ -210,18 +210,16 @@ SingeResult paper_fig11(Lab *lab, SingeError *error) {
         play_close(&play);
     }
     if (result) return result;
-    report_bar(lab->report, &(ReportBar){"start", "of 12 sectors around the hole, those alight after 1.5 s", lit[1], 1,
-                                         6, lit[FIG11_SHOTS - 1], "after 8 s"});
-    report_bar(lab->report, &(ReportBar){"end", "after 8 s: the fire went both ways around", lit[FIG11_SHOTS - 1], 12,
-                                         12, lit[1], "after 1.5 s"});
-    report_bar(lab->report,
-               &(ReportBar){"left", "share of cells left then", looks[0].left, 0, 0.8, first, "after 0.5 s"});
-    report_bar(lab->report, &(ReportBar){"shrunk", "area of the last 4 mm at the rim over that at rest, from 3 to 6 s",
-                                         look_area(&looks[0]), 0.3, 0.8, look_area(&looks[1]), flat});
+    report_bar(lab->report, "start", "of 12 sectors around the hole, those alight after 1.5 s", lit[1], 1, 6,
+               lit[FIG11_SHOTS - 1], "after 8 s");
+    report_bar(lab->report, "end", "after 8 s: the fire went both ways around", lit[FIG11_SHOTS - 1], 12, 12, lit[1],
+               "after 1.5 s");
+    report_bar(lab->report, "left", "share of cells left then", looks[0].left, 0, 0.8, first, "after 0.5 s");
+    report_bar(lab->report, "shrunk", "area of the last 4 mm at the rim over that at rest, from 3 to 6 s",
+               look_area(&looks[0]), 0.3, 0.8, look_area(&looks[1]), flat);
     const double in = stats.heat_in + stats.heat_of_combustion, kept = stats.heat_stored;
-    report_bar(lab->report,
-               &(ReportBar){"ledger", "error of the heat ledger", stats.ledger_error, 0, 1e-4,
-                            fabs(in - kept) / fmax(fabs(in), fabs(kept)), "without what is lost to the air in it"});
+    report_bar(lab->report, "ledger", "error of the heat ledger", stats.ledger_error, 0, 1e-4,
+               fabs(in - kept) / fmax(fabs(in), fabs(kept)), "without what is lost to the air in it");
     return SINGE_OK;
 }
 
@@ -262,15 +260,15 @@ SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
     Plot plot = {.title = "Cells left", .x_label = "s", .y_label = "share"};
     for (int i = 0; i < CASES; i++) plot_add(&plot, (PlotLine){names[i], inks[i], time, left[i], LOOKS, false, false});
     report_plot(lab->report, &plot);
-    report_bar(lab->report, &(ReportBar){"whole", "m_loss below m_min: share of cells left after 3 s",
-                                         left[0][LOOKS - 1], 1, 1, left[1][LOOKS - 1], "m_loss 30 %"});
-    report_bar(lab->report, &(ReportBar){"one_piece", "the same: pieces", pieces[0], 1, 1, pieces[1], "m_loss 30 %"});
-    report_bar(lab->report, &(ReportBar){"wrinkles", "the same: degrees from cell to cell", bend, 5, INFINITY, before,
-                                         "after 0.1 s"});
-    report_bar(lab->report, &(ReportBar){"quick",
-                                         "m_loss near m_init: a fifth is gone in this share of the time of m_loss "
-                                         "30 %",
-                                         fifth[2] / fifth[1], 0, 0.4, fifth[1] / fifth[1], "m_loss 30 % itself"});
+    report_bar(lab->report, "whole", "m_loss below m_min: share of cells left after 3 s", left[0][LOOKS - 1], 1, 1,
+               left[1][LOOKS - 1], "m_loss 30 %");
+    report_bar(lab->report, "one_piece", "the same: pieces", pieces[0], 1, 1, pieces[1], "m_loss 30 %");
+    report_bar(lab->report, "wrinkles", "the same: degrees from cell to cell", bend, 5, INFINITY, before,
+               "after 0.1 s");
+    report_bar(lab->report, "quick",
+               "m_loss near m_init: a fifth is gone in this share of the time of m_loss "
+               "30 %",
+               fifth[2] / fifth[1], 0, 0.4, fifth[1] / fifth[1], "m_loss 30 % itself");
     return SINGE_OK;
 }
 
@@ -376,11 +374,9 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
     plot_add(&plot, (PlotLine){"by shrinkage (here)", "#2166ac", time, curvature, RIVAL_LOOKS, false, false});
     report_plot(lab->report, &plot);
     const double rival_end = difference[RIVAL_LOOKS - 1], here_end = curvature[RIVAL_LOOKS - 1];
-    report_bar(lab->report, &(ReportBar){"curl", "largest curvature, 1/m", max, 3, INFINITY, max * curvature[0],
-                                         "before it is heated"});
-    report_bar(lab->report,
-               &(ReportBar){"rival_end", "rival: curl left in the end", rival_end, 0, 0.05, here_end, "by shrinkage"});
-    report_bar(lab->report,
-               &(ReportBar){"here_end", "here: curl left in the end", here_end, 0.8, 1, rival_end, "by temperature"});
+    report_bar(lab->report, "curl", "largest curvature, 1/m", max, 3, INFINITY, max * curvature[0],
+               "before it is heated");
+    report_bar(lab->report, "rival_end", "rival: curl left in the end", rival_end, 0, 0.05, here_end, "by shrinkage");
+    report_bar(lab->report, "here_end", "here: curl left in the end", here_end, 0.8, 1, rival_end, "by temperature");
     return SINGE_OK;
 }

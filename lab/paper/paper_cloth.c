@@ -49,10 +49,9 @@ SingeResult paper_fig7ab(Lab *lab, SingeError *error) {
     }
 
     for (int i = 0; i < 4 && !result; i++) // the cloth that stays up against the soft one, and vice versa
-        report_bar(lab->report,
-                   &(ReportBar){toruses[i].measure, toruses[i].what, lowest[i], toruses[i].held ? 0.05 : -INFINITY,
-                                toruses[i].held ? INFINITY : 0.02, lowest[toruses[i].held ? 2 : 0],
-                                toruses[toruses[i].held ? 2 : 0].caption});
+        report_bar(lab->report, toruses[i].measure, toruses[i].what, lowest[i], toruses[i].held ? 0.05 : -INFINITY,
+                   toruses[i].held ? INFINITY : 0.02, lowest[toruses[i].held ? 2 : 0],
+                   toruses[toruses[i].held ? 2 : 0].caption);
     report_text(lab->report,
                 "The sphere stands free above the ground. What the mass-spring model does is a matter of its "
                 "stiffness, of which the paper says nothing: springs of 1 N/m stretch under the torus' weight of 0.13 "
@@ -175,27 +174,21 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
                 "in those, which stay flat. What wrinkles is higher than by the paper's method, because it gives in "
                 "its plane, too.",
                 weight * pow(0.2 / n, 4), weight * pow(0.2 / FINER, 4), FINER, weight * pow(0.2 / FINER, 4) / 0.04);
-    report_bar(lab->report, &(ReportBar){"soft",
-                                         "share of the moments in which the paper's method has higher wrinkles than "
-                                         "springs of 1 N/m",
-                                         soft, 0.9, 1, 1 - firm, "than springs of 100 N/m"});
-    report_bar(
-        lab->report,
-        &(ReportBar){"wrinkles", "m, height of the wrinkles by the paper's method at the end, of a sheet of 200 mm",
-                     w[SHRINK_PAPER].height[last], 2e-4, INFINITY, w[SHRINK_SOFT].height[last], "springs of 1 N/m"});
-    report_bar(lab->report,
-               &(ReportBar){"soft_finer", "m, the same of springs of 1 N/m, in 60 cells a side", finer.height[last],
-                            2e-4, INFINITY, w[SHRINK_SOFT].height[last], "in the cells of the others"});
-    report_bar(lab->report,
-               &(ReportBar){"pressed", "m, the same of springs of 0.04 N/m in these finer cells: they lie flat",
-                            pressed.height[last], 0, 1e-5, finer.height[last], "of 1 N/m"});
-    report_bar(lab->report,
-               &(ReportBar){"strand", "the same of our strands", shrink_share(&w[SHRINK_STRAND], &w[SHRINK_SOFT], 0),
-                            0.9, 1, shrink_share(&w[SHRINK_STRAND], &w[SHRINK_STIFF], 0), "than springs of 100 N/m"});
-    report_bar(lab->report,
-               &(ReportBar){"stiff", "m, the least height from 0.2 s on of springs of 100 N/m: they do not lose them",
-                            least_height(&w[SHRINK_STIFF]), 1e-4, INFINITY, least_height(&w[SHRINK_SOFT]),
-                            "springs of 1 N/m"});
+    report_bar(lab->report, "soft",
+               "share of the moments in which the paper's method has higher wrinkles than "
+               "springs of 1 N/m",
+               soft, 0.9, 1, 1 - firm, "than springs of 100 N/m");
+    report_bar(lab->report, "wrinkles",
+               "m, height of the wrinkles by the paper's method at the end, of a sheet of 200 mm",
+               w[SHRINK_PAPER].height[last], 2e-4, INFINITY, w[SHRINK_SOFT].height[last], "springs of 1 N/m");
+    report_bar(lab->report, "soft_finer", "m, the same of springs of 1 N/m, in 60 cells a side", finer.height[last],
+               2e-4, INFINITY, w[SHRINK_SOFT].height[last], "in the cells of the others");
+    report_bar(lab->report, "pressed", "m, the same of springs of 0.04 N/m in these finer cells: they lie flat",
+               pressed.height[last], 0, 1e-5, finer.height[last], "of 1 N/m");
+    report_bar(lab->report, "strand", "the same of our strands", shrink_share(&w[SHRINK_STRAND], &w[SHRINK_SOFT], 0),
+               0.9, 1, shrink_share(&w[SHRINK_STRAND], &w[SHRINK_STIFF], 0), "than springs of 100 N/m");
+    report_bar(lab->report, "stiff", "m, the least height from 0.2 s on of springs of 100 N/m: they do not lose them",
+               least_height(&w[SHRINK_STIFF]), 1e-4, INFINITY, least_height(&w[SHRINK_SOFT]), "springs of 1 N/m");
     return SINGE_OK;
 }
 
@@ -297,14 +290,14 @@ SingeResult paper_fig10(Lab *lab, SingeError *error) {
             "across the border. By strands both are means over sheets of 24, 28, 32 and 36 cells a side, which fold "
             "in different ways; by the paper's solver the sheet has 16.");
         const double near = more[0] / bend[0][SHELL_B], weak = more[1] / bend[0][SHELL_C];
-        report_bar(lab->report, &(ReportBar){"sag_b_a", "sag, (b) over (a)", sag[0][SHELL_B] / sag[0][SHELL_A], 1.5,
-                                             INFINITY, sag[0][SHELL_C] / sag[0][SHELL_B], "(c) over (b)"});
-        report_bar(lab->report, &(ReportBar){"bend_b_a", "bend, (b) over (a)", bend[0][SHELL_B] / bend[0][SHELL_A], 1.5,
-                                             INFINITY, bend[0][SHELL_C] / bend[0][SHELL_B], "(c) over (b)"});
-        report_bar(lab->report, &(ReportBar){"bend_c_b", "bend, (c) over (b)", bend[0][SHELL_C] / bend[0][SHELL_B],
-                                             1.05, INFINITY, near, "(b) with weights of 0.9 over (b)"});
-        report_bar(lab->report, &(ReportBar){"bend_d_c", "bend, (d) over (c)", bend[0][SHELL_D] / bend[0][SHELL_C], 1.1,
-                                             INFINITY, weak, "(c) with weights of 0.9 over (c)"});
+        report_bar(lab->report, "sag_b_a", "sag, (b) over (a)", sag[0][SHELL_B] / sag[0][SHELL_A], 1.5, INFINITY,
+                   sag[0][SHELL_C] / sag[0][SHELL_B], "(c) over (b)");
+        report_bar(lab->report, "bend_b_a", "bend, (b) over (a)", bend[0][SHELL_B] / bend[0][SHELL_A], 1.5, INFINITY,
+                   bend[0][SHELL_C] / bend[0][SHELL_B], "(c) over (b)");
+        report_bar(lab->report, "bend_c_b", "bend, (c) over (b)", bend[0][SHELL_C] / bend[0][SHELL_B], 1.05, INFINITY,
+                   near, "(b) with weights of 0.9 over (b)");
+        report_bar(lab->report, "bend_d_c", "bend, (d) over (c)", bend[0][SHELL_D] / bend[0][SHELL_C], 1.1, INFINITY,
+                   weak, "(c) with weights of 0.9 over (c)");
     }
 
     return result;
@@ -345,8 +338,7 @@ SingeResult paper_weights(Lab *lab, SingeError *error) {
     if (result) return result;
     report_text(lab->report, "The outer 2 cm hang %.1f mm on the soft side and %.1f mm on the stiff one.",
                 1e3 * fall[0][1], 1e3 * fall[0][0]);
-    report_bar(lab->report,
-               &(ReportBar){"ratio", "fall of the soft end over that of the stiff one", fall[0][1] / fall[0][0], 1.5,
-                            INFINITY, fall[1][1] / fall[1][0], "with one weight all over"});
+    report_bar(lab->report, "ratio", "fall of the soft end over that of the stiff one", fall[0][1] / fall[0][0], 1.5,
+               INFINITY, fall[1][1] / fall[1][0], "with one weight all over");
     return SINGE_OK;
 }

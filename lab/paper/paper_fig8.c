@@ -132,15 +132,13 @@ SingeResult paper_fig8(Lab *lab, SingeError *error) {
     }
     if (result) return result;
     const double rises = (double)all.rises[1] / all.states, lower = (double)all.lower / all.states;
-    report_bar(
-        lab->report,
-        &(ReportBar){"rises",
-                     "share of all states in which the sum rises in one of 7 steps, with nothing on the diagonal, "
-                     "as the paper has it: \"always decreases\" is refuted",
-                     rises, 0.25, 1, (double)all.rises[0] / all.states, "with our floor of 1e-4"});
-    report_bar(lab->report, &(ReportBar){"shrunk", "sum after 7 steps over that before, the sheet that shrinks evenly",
-                                         fell[1], 0, 0.05, fell[0], "the sheet that swings"});
-    report_bar(lab->report, &(ReportBar){"lower", "share of all states in which the sum is lower after 7 steps", lower,
-                                         0.95, 1, 1 - rises, "in which it falls in each of them, without the floor"});
+    report_bar(lab->report, "rises",
+               "share of all states in which the sum rises in one of 7 steps, with nothing on the diagonal, "
+               "as the paper has it: \"always decreases\" is refuted",
+               rises, 0.25, 1, (double)all.rises[0] / all.states, "with our floor of 1e-4");
+    report_bar(lab->report, "shrunk", "sum after 7 steps over that before, the sheet that shrinks evenly", fell[1], 0,
+               0.05, fell[0], "the sheet that swings");
+    report_bar(lab->report, "lower", "share of all states in which the sum is lower after 7 steps", lower, 0.95, 1,
+               1 - rises, "in which it falls in each of them, without the floor");
     return SINGE_OK;
 }

@@ -121,13 +121,12 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
             MARCH_CELLS, MARCH_CELLS);
         report_heads(lab->report, "corners left|drawn as|triangles");
         for (int k = 3; k >= 0; k--) report_row(lab->report, "%d|%s|%d", k, shapes[k], march.cases[k]);
-        report_bar(lab->report, &(ReportBar){"cases", "triangles of the rarest case", march_fewest(&march), 1, INFINITY,
-                                             march_fewest(&fresh), "the sheet before it burns"});
+        report_bar(lab->report, "cases", "triangles of the rarest case", march_fewest(&march), 1, INFINITY,
+                   march_fewest(&fresh), "the sheet before it burns");
         double whole = 0; // what the bar must not pass: cells drawn whole where any of their triangles is
         for (int i = 0; i < march.count; i++) whole += march.centroids[i][2] > 0 ? cell * cell / 4 : 0;
-        report_bar(lab->report,
-                   &(ReportBar){"area", "drawn area over that of eq 7", drawn_area(&surface) / march.expected, 0.999,
-                                1.001, whole / march.expected, "whole triangles wherever a corner is left"});
+        report_bar(lab->report, "area", "drawn area over that of eq 7", drawn_area(&surface) / march.expected, 0.999,
+                   1.001, whole / march.expected, "whole triangles wherever a corner is left");
     }
 
     singe_surface_free(&surface);

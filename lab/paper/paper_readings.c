@@ -157,21 +157,18 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
     report_row(lab->report,
                "sections 5, 8|balls in Figs 1, 11, textures in 4; or a hot start in 1, balls in 4, 11|section 8|all of "
                "these sources are there");
-    report_bar(lab->report, &(ReportBar){"literal_steps", "eq 9 to the letter: steps that the sheet lasts", literal, 0,
-                                         100, ours, "with h, as read here"});
-    report_bar(lab->report,
-               &(ReportBar){"ours_steps", "as read: steps of 200", ours, 200, 200, literal, "to the letter"});
-    report_bar(lab->report, &(ReportBar){"mass_centre", "eq 16 with M: how far the centre moves", with_mass, 0, 1e-6,
-                                         without, "without M"});
-    report_bar(lab->report,
-               &(ReportBar){"divided", "section 7.2's division: error after 7 projections over that before",
-                            divided / 0.2, 10, INFINITY, multiplied / 0.2, "eq 19"});
-    report_bar(lab->report, &(ReportBar){"multiplied", "eq 19: the same", multiplied / 0.2, 0.2, 0.8, divided / 0.2,
-                                         "section 7.2's division"});
-    report_bar(lab->report, &(ReportBar){"removal", "longest side of a cell with one corner left, over that at rest",
-                                         by_cells, 0.9, 1.1, by_triangles, "by section 6's rule of triangles"});
-    report_bar(lab->report,
-               &(ReportBar){"row", "entries in a row of the matrix", row, 7, 7, narrow, "a strip one cell wide"});
+    report_bar(lab->report, "literal_steps", "eq 9 to the letter: steps that the sheet lasts", literal, 0, 100, ours,
+               "with h, as read here");
+    report_bar(lab->report, "ours_steps", "as read: steps of 200", ours, 200, 200, literal, "to the letter");
+    report_bar(lab->report, "mass_centre", "eq 16 with M: how far the centre moves", with_mass, 0, 1e-6, without,
+               "without M");
+    report_bar(lab->report, "divided", "section 7.2's division: error after 7 projections over that before",
+               divided / 0.2, 10, INFINITY, multiplied / 0.2, "eq 19");
+    report_bar(lab->report, "multiplied", "eq 19: the same", multiplied / 0.2, 0.2, 0.8, divided / 0.2,
+               "section 7.2's division");
+    report_bar(lab->report, "removal", "longest side of a cell with one corner left, over that at rest", by_cells, 0.9,
+               1.1, by_triangles, "by section 6's rule of triangles");
+    report_bar(lab->report, "row", "entries in a row of the matrix", row, 7, 7, narrow, "a strip one cell wide");
     return SINGE_OK;
 }
 
@@ -214,18 +211,16 @@ SingeResult paper_readings(Lab *lab, SingeError *error) {
                "eq 4|a straight line to m_min|slower near the end, p = 0.5|the last tenth above m_min takes 10 %% of "
                "the time by the line, %.0f %% by ours: ash is seen before it goes",
                100 * sqrt(0.1));
-    report_bar(lab->report, &(ReportBar){"eq1_printed", "eq 1 as printed: share of mass at which fire puts itself out",
-                                         printed, 0.9, 1, read, "with the sign turned, as read here"});
-    report_bar(lab->report,
-               &(ReportBar){"eq1_read", "eq 1 as read: share of mass left", read, 0.149, 0.151, printed, "as printed"});
-    report_bar(lab->report,
-               &(ReportBar){"losses", "K of the hottest without losses over that with them", hot.hottest / ours.hottest,
-                            1.1, INFINITY, radiating.hottest / ours.hottest, "without convection alone"});
+    report_bar(lab->report, "eq1_printed", "eq 1 as printed: share of mass at which fire puts itself out", printed, 0.9,
+               1, read, "with the sign turned, as read here");
+    report_bar(lab->report, "eq1_read", "eq 1 as read: share of mass left", read, 0.149, 0.151, printed, "as printed");
+    report_bar(lab->report, "losses", "K of the hottest without losses over that with them", hot.hottest / ours.hottest,
+               1.1, INFINITY, radiating.hottest / ours.hottest, "without convection alone");
     double stays = NAN;
     if ((result = length_after(lab, &stays, error))) return result;
-    report_bar(lab->report, &(ReportBar){"l_rest", "eq 6 from l_init: share of its length after 200 steps at v = 0.9",
-                                         stays, 0.8999, 0.9001, pow(0.9, 200), "from the length that it has"});
-    report_bar(lab->report, &(ReportBar){"umbrella_long", "the umbrella on cells of 2 : 1, along x over along y",
-                                         aspect, 1.2, INFINITY, square, "on squares"});
+    report_bar(lab->report, "l_rest", "eq 6 from l_init: share of its length after 200 steps at v = 0.9", stays, 0.8999,
+               0.9001, pow(0.9, 200), "from the length that it has");
+    report_bar(lab->report, "umbrella_long", "the umbrella on cells of 2 : 1, along x over along y", aspect, 1.2,
+               INFINITY, square, "on squares");
     return readings_of_motion(lab, error);
 }

@@ -104,8 +104,8 @@ SingeResult paper_fig3(Lab *lab, SingeError *error) {
     view = singe_sim_view(sim);
     const double worst = spring_counts(lab->report, &view);
     singe_sim_destroy(sim);
-    report_bar(lab->report, &(ReportBar){"counts", "largest difference of the springs a cell from 4, 2, 2, 2", worst, 0,
-                                         2.0 / LARGE + 1e-6, few, "4 x 3 cells, which are half border"});
+    report_bar(lab->report, "counts", "largest difference of the springs a cell from 4, 2, 2, 2", worst, 0,
+               2.0 / LARGE + 1e-6, few, "4 x 3 cells, which are half border");
     return SINGE_OK;
 }
 
@@ -190,10 +190,10 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
     plot_add(&plot, (PlotLine){"shell, exact", "#2166ac", percent, exact, CURL_CASES, false, false});
     plot_add(&plot, (PlotLine){"simulated", "#b2182b", percent, measured, CURL_CASES, true, false});
     report_plot(lab->report, &plot);
-    report_bar(lab->report, &(ReportBar){"exact", "largest difference from the shell's exact curvature", worst, 0, 0.02,
-                                         apart, "that of a shell whose red springs keep their length"});
-    report_bar(lab->report, &(ReportBar){"beam", "largest difference from the two-layer beam", off, 0, 0.15, flat,
-                                         "a strip that stays flat"});
+    report_bar(lab->report, "exact", "largest difference from the shell's exact curvature", worst, 0, 0.02, apart,
+               "that of a shell whose red springs keep their length");
+    report_bar(lab->report, "beam", "largest difference from the two-layer beam", off, 0, 0.15, flat,
+               "a strip that stays flat");
     return SINGE_OK;
 }
 
@@ -314,10 +314,10 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
 
         fprintf(file, "</svg>\n");
 
-        report_bar(lab->report, &(ReportBar){"lengths", "largest difference of the lengths, removed counting as -1",
-                                             worst, 0, 1e-4, one_end, "v of the first end alone in eq 6"});
-        report_bar(lab->report, &(ReportBar){"cuts", "largest difference of the cuts of c and d from eq 7", worst_cut,
-                                             0, 1e-3, worst_centre, "cuts in the middle"});
+        report_bar(lab->report, "lengths", "largest difference of the lengths, removed counting as -1", worst, 0, 1e-4,
+                   one_end, "v of the first end alone in eq 6");
+        report_bar(lab->report, "cuts", "largest difference of the cuts of c and d from eq 7", worst_cut, 0, 1e-3,
+                   worst_centre, "cuts in the middle");
     }
 
     singe_surface_free(&surface);

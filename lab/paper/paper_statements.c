@@ -129,9 +129,8 @@ SingeResult paper_statements(Lab *lab, SingeError *error) {
         counts[REPRODUCED], counts[CORRECTED], counts[CHOICE], counts[NOT_REPRODUCED], counts[NOT_FOLLOWED],
         counts[REFUTED], counts[OURS]);
     if (taken)
-        report_bar(lab->report,
-                   &(ReportBar){"measures", "share of these measures that hold, of those taken",
-                                (double)holding / taken, 1, 1, (double)(holding - 1) / taken, "one that does not"});
+        report_bar(lab->report, "measures", "share of these measures that hold, of those taken",
+                   (double)holding / taken, 1, 1, (double)(holding - 1) / taken, "one that does not");
 
     return result;
 }

@@ -80,7 +80,7 @@ SingeResult paper_table1(Lab *lab, SingeError *error) {
     report_text(lab->report,
                 "The paper's digits are cut, not rounded, and come out when the system takes the two fixed points for "
                 "free and they are put back after each projection.");
-    report_bar(lab->report, &(ReportBar){"largest_difference", "largest difference of the ten positions", worst, 0,
-                                         5e-5, other, "blue projected before green"});
+    report_bar(lab->report, "largest_difference", "largest difference of the ten positions", worst, 0, 5e-5, other,
+               "blue projected before green");
     return result;
 }

@@ -177,21 +177,18 @@ SingeResult paper_table2(Lab *lab, SingeError *error) {
         table.full[last] / table.full[0] * table.springs[0] / table.springs[last],
         table.paper[1][last] / table.paper[1][0] * table.springs[0] / table.springs[last], CAP, table.capped[0],
         table.capped[last], table.rest.projections, table.moving.projections);
-    report_bar(lab->report,
-               &(ReportBar){"iterations",
-                            "iterations a step grow with the springs to the power, on top of their own time",
-                            iterations, 0.2, 1, paper - 1, "what the paper's (c)/(a) leaves for them"});
-    report_bar(lab->report,
-               &(ReportBar){"capped", "the same power where conjugate gradients end after 20 iterations at most",
-                            capped, -0.05, 0.1, iterations, "ended at the threshold"});
-    report_bar(lab->report, &(ReportBar){"early_exit", "iterations, (c) over (b), at the largest size",
-                                         table.iterations[last] / table.early_iterations[last], 1.01, 4,
-                                         table.paper[1][last] / table.paper[0][last], "the paper's times"});
-    report_bar(lab->report, &(ReportBar){"rest", "projections, (c) over (b), of a sheet at rest under the cap",
-                                         7 / table.rest.projections, 6.9, 22, 7 / table.moving.projections,
-                                         "of a sheet that swings"});
-    report_bar(lab->report, &(ReportBar){"strand_gain", "(c) over strands at the largest size",
-                                         table.full[last] / table.strand[last], 10, INFINITY,
-                                         table.full[last] / table.early[last], "(c) over (b)"});
+    report_bar(lab->report, "iterations",
+               "iterations a step grow with the springs to the power, on top of their own time", iterations, 0.2, 1,
+               paper - 1, "what the paper's (c)/(a) leaves for them");
+    report_bar(lab->report, "capped", "the same power where conjugate gradients end after 20 iterations at most",
+               capped, -0.05, 0.1, iterations, "ended at the threshold");
+    report_bar(lab->report, "early_exit", "iterations, (c) over (b), at the largest size",
+               table.iterations[last] / table.early_iterations[last], 1.01, 4,
+               table.paper[1][last] / table.paper[0][last], "the paper's times");
+    report_bar(lab->report, "rest", "projections, (c) over (b), of a sheet at rest under the cap",
+               7 / table.rest.projections, 6.9, 22, 7 / table.moving.projections, "of a sheet that swings");
+    report_bar(lab->report, "strand_gain", "(c) over strands at the largest size",
+               table.full[last] / table.strand[last], 10, INFINITY, table.full[last] / table.early[last],
+               "(c) over (b)");
     return SINGE_OK;
 }

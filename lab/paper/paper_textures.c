@@ -37,11 +37,10 @@ SingeResult paper_heat(Lab *lab, SingeError *error) {
     }
     if (result) return result;
     report_text(lab->report, "%.0f %% has burnt after 1.6 s.", 100 * burnt);
-    report_bar(lab->report, &(ReportBar){"correlation", "correlation of the texture with the temperature after 0.3 s",
-                                         correlation[0], 0.9, 1, correlation[1], "with its mirror image"});
-    report_bar(lab->report, &(ReportBar){"curl", "curl of the rim over 10 mm, 90 of 100 have less, degrees",
-                                         look_curl(&looks[0], 0.9), 15, 180, look_curl(&looks[1], 0.9),
-                                         "the same sheet without shrinkage"});
+    report_bar(lab->report, "correlation", "correlation of the texture with the temperature after 0.3 s",
+               correlation[0], 0.9, 1, correlation[1], "with its mirror image");
+    report_bar(lab->report, "curl", "curl of the rim over 10 mm, 90 of 100 have less, degrees",
+               look_curl(&looks[0], 0.9), 15, 180, look_curl(&looks[1], 0.9), "the same sheet without shrinkage");
     return SINGE_OK;
 }
 
@@ -76,8 +75,8 @@ SingeResult paper_alpha(Lab *lab, SingeError *error) {
     }
     if (result) return result;
     report_text(lab->report, "Speed goes with the root of the diffusivity, which is four times as high on the left.");
-    report_bar(lab->report, &(ReportBar){"ratio", "way of the fire to the left over that to the right", ratio[0], 1.2,
-                                         2.2, ratio[1], "one diffusivity all over"});
+    report_bar(lab->report, "ratio", "way of the fire to the left over that to the right", ratio[0], 1.2, 2.2, ratio[1],
+               "one diffusivity all over");
     return SINGE_OK;
 }
 
@@ -109,12 +108,11 @@ SingeResult paper_crossing(Lab *lab, SingeError *error) {
         report_row(lab->report, "%s|%.1f|%.2f|%.2f", names[i], 100 * looks[i].inverted, look_wrinkles(&looks[i]),
                    looks[i].bend);
     const double apart = look_wrinkles(&looks[1]), added = look_wrinkles(&looks[0]) / apart;
-    report_bar(lab->report, &(ReportBar){"turned", "share of cells turned over where layers may cross",
-                                         looks[0].inverted, 0.01, 1, looks[1].inverted, "where they are kept apart"});
-    report_bar(lab->report,
-               &(ReportBar){"added",
-                            "normal at 3 to 15 mm where layers may cross, over where they are kept "
-                            "apart",
-                            added, 1.05, 1.3, look_wrinkles(&looks[2]) / apart, "a sheet of 2 mm over one of 1 mm"});
+    report_bar(lab->report, "turned", "share of cells turned over where layers may cross", looks[0].inverted, 0.01, 1,
+               looks[1].inverted, "where they are kept apart");
+    report_bar(lab->report, "added",
+               "normal at 3 to 15 mm where layers may cross, over where they are kept "
+               "apart",
+               added, 1.05, 1.3, look_wrinkles(&looks[2]) / apart, "a sheet of 2 mm over one of 1 mm");
     return SINGE_OK;
 }

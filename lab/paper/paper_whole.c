@@ -160,32 +160,28 @@ SingeResult paper_whole(Lab *lab, SingeError *error) {
         "figures do. It does not keep lengths: seven projections of colours that contradict each other leave the "
         "mean strain as shown, and much of the sheet has its layers on the wrong sides, as section 8.2 says. "
         "Without losses the sheet gets hotter than any fire of paper.");
-    report_bar(lab->report, &(ReportBar){"reached", "share of the marks that the paper's system reaches",
-                                         (double)reached / (FIGURES * MARKS), 1, 1, (double)literal.reached / MARKS,
-                                         "to its letter, Fig 4"});
-    report_bar(lab->report,
-               &(ReportBar){"strain_all", "Fig 1, mean strain of all four colours, the least of the orders of colours",
-                            fmin(mean[0], fmin(mean[1], mean[2])), 0.04, 1, orders[LAST_BLUE].strain[SINGE_BLUE],
-                            "of blue alone, where it is the last"});
-    report_bar(lab->report,
-               &(ReportBar){"curl", "Fig 1, the paper's system: curl of the rim, 90 of 100 have less, degrees",
-                            look_curl(&runs[0][PAPERS].look, 0.9), 40, 180, look_curl(&plain.look, 0.9),
-                            "the same without shrinkage"});
-    report_bar(lab->report, &(ReportBar){"strain_paper", "mean strain of the paper's system, the least of the figures",
-                                         over_figures(runs, PAPERS, strain_of, false), 0.005, 1,
-                                         over_figures(runs, OURS, strain_of, false), "ours"});
-    report_bar(lab->report, &(ReportBar){"strain_ours", "mean strain of ours, the largest of the figures",
-                                         over_figures(runs, OURS, strain_of, true), 0, 0.02,
-                                         over_figures(runs, PAPERS, strain_of, true), "the paper's system"});
-    report_bar(lab->report, &(ReportBar){"inverted", "share of cells turned over, the paper's system, the largest",
-                                         over_figures(runs, PAPERS, inverted_of, true), 0.05, 1,
-                                         over_figures(runs, OURS, inverted_of, true), "ours"});
-    report_bar(lab->report, &(ReportBar){"hottest", "K of the hottest, ours, the largest",
-                                         over_figures(runs, OURS, hottest_of, true), 900, 1600,
-                                         over_figures(runs, PAPERS, hottest_of, true), "the paper's system"});
-    report_bar(lab->report,
-               &(ReportBar){"dynamics", "share of a step's time in dynamics, the paper's system, the least",
-                            over_figures(runs, PAPERS, dynamics_of, false), 0.5, 1,
-                            over_figures(runs, PAPERS, heat_of, true), "in heat, the most"});
+    report_bar(lab->report, "reached", "share of the marks that the paper's system reaches",
+               (double)reached / (FIGURES * MARKS), 1, 1, (double)literal.reached / MARKS, "to its letter, Fig 4");
+    report_bar(lab->report, "strain_all", "Fig 1, mean strain of all four colours, the least of the orders of colours",
+               fmin(mean[0], fmin(mean[1], mean[2])), 0.04, 1, orders[LAST_BLUE].strain[SINGE_BLUE],
+               "of blue alone, where it is the last");
+    report_bar(lab->report, "curl", "Fig 1, the paper's system: curl of the rim, 90 of 100 have less, degrees",
+               look_curl(&runs[0][PAPERS].look, 0.9), 40, 180, look_curl(&plain.look, 0.9),
+               "the same without shrinkage");
+    report_bar(lab->report, "strain_paper", "mean strain of the paper's system, the least of the figures",
+               over_figures(runs, PAPERS, strain_of, false), 0.005, 1, over_figures(runs, OURS, strain_of, false),
+               "ours");
+    report_bar(lab->report, "strain_ours", "mean strain of ours, the largest of the figures",
+               over_figures(runs, OURS, strain_of, true), 0, 0.02, over_figures(runs, PAPERS, strain_of, true),
+               "the paper's system");
+    report_bar(lab->report, "inverted", "share of cells turned over, the paper's system, the largest",
+               over_figures(runs, PAPERS, inverted_of, true), 0.05, 1, over_figures(runs, OURS, inverted_of, true),
+               "ours");
+    report_bar(lab->report, "hottest", "K of the hottest, ours, the largest",
+               over_figures(runs, OURS, hottest_of, true), 900, 1600, over_figures(runs, PAPERS, hottest_of, true),
+               "the paper's system");
+    report_bar(lab->report, "dynamics", "share of a step's time in dynamics, the paper's system, the least",
+               over_figures(runs, PAPERS, dynamics_of, false), 0.5, 1, over_figures(runs, PAPERS, heat_of, true),
+               "in heat, the most");
     return SINGE_OK;
 }

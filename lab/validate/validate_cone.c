@@ -166,9 +166,8 @@ SingeResult validate_cone(Lab *lab, SingeError *error) {
                 "much as on the sheet; which one it was is not reported.");
     static const char *const names[FLUXES] = {"ignition_25", "ignition_50", "ignition_75"};
     for (int i = 0; i < FLUXES; i++)
-        report_bar(lab->report,
-                   &(ReportBar){names[i], "time to ignition over the measured one", runs[i].ignition / measured[i],
-                                VALIDATE_LOW, VALIDATE_HIGH, all[AIR][i].ignition / measured[i], "without the board"});
+        report_bar(lab->report, names[i], "time to ignition over the measured one", runs[i].ignition / measured[i],
+                   VALIDATE_LOW, VALIDATE_HIGH, all[AIR][i].ignition / measured[i], "without the board");
     const double power = log(runs[2].ignition / runs[0].ignition) / log(cone_flux[2] / cone_flux[0]);
     report_measure(lab->report, "power", "exponent of the time to ignition over the flux, less the measured one",
                    power - log(measured[2] / measured[0]) / log(cone_flux[2] / cone_flux[0]), -0.25, 0.25);

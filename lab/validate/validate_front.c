@@ -215,9 +215,8 @@ SingeResult validate_oxygen(Lab *lab, SingeError *error) {
         "Oxygen is no quantity of the model. Here it scales what air limits, and the heat that the flame gives "
         "to the sheet, <code>heat_share</code>, as the flame's temperature above that of ignition: oxygen gives "
         "13.1 MJ/kg (Huggett 1980), which heats the products. Nothing was set by the measured limit.");
-    report_bar(lab->report,
-               &(ReportBar){"limit", "least oxygen in which cotton burns, over the measured 13.5 %", least / 13.5,
-                            VALIDATE_LOW, VALIDATE_HIGH, as_hot / 13.5, "with a flame as hot as in air"});
+    report_bar(lab->report, "limit", "least oxygen in which cotton burns, over the measured 13.5 %", least / 13.5,
+               VALIDATE_LOW, VALIDATE_HIGH, as_hot / 13.5, "with a flame as hot as in air");
     return SINGE_OK;
 }
 
