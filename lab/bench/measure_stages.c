@@ -2,6 +2,7 @@
 #include "bench/bench.h"
 #include "bench/burning.h"
 #include "bench/timing.h"
+#include "common/store.h"
 
 #include <math.h>
 
@@ -19,10 +20,8 @@ static SingeResult stages_judge(const BenchOptions *options, const Timing *timin
                 "limit %.4g ms\n",
                 step, slowness, limit);
     if (step <= limit) return SINGE_OK;
-    *error = (SingeError){.code = SINGE_ERROR_LIMIT, .element = -1};
-    snprintf(error->message, sizeof error->message,
-             "%.2f ms per step at the pace of the reference machine, above the limit of %.4g ms", step, limit);
-    return SINGE_ERROR_LIMIT;
+    return refuse(error, SINGE_ERROR_LIMIT, "", -1,
+                  "%.2f ms per step at the pace of the reference machine, above the limit of %.4g ms", step, limit);
 }
 
 static SingeResult stages_measure(const BenchOptions *options, double springs, Yardstick *yardstick, BenchTable *table,

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "common/store.h"
+
 enum { RIM_NEAR = 3 }; ///< bands: 4 mm
 
 SingeResult look_take(Play *play, double cut, Look *look, SingeError *error) {
@@ -39,8 +41,7 @@ SingeResult look_take(Play *play, double cut, Look *look, SingeError *error) {
     }
 
     if (rim_add(&play->surface, &look->rim) && wrinkles_add(&play->surface, &look->wrinkles)) return SINGE_OK;
-    *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
-    return SINGE_ERROR_MEMORY;
+    return refuse(error, SINGE_ERROR_MEMORY, "", -1, "out of memory");
 }
 
 double look_curl(const Look *look, double share) { return rim_percentile(look->rim.curl, share); }

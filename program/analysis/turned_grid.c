@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/store.h"
+
 /// Min depth of a cell's centroid within the outline, in cells: with less, the cell would be a sliver.
 static const double inside_min = 0.25;
 
@@ -33,8 +35,7 @@ SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error) {
     uint32_t *number = calloc(mesh->vertex_count, sizeof *number), cells = 0, vertices = 0;
     if (!number) {
         mesh_free(mesh);
-        *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
-        return SINGE_ERROR_MEMORY;
+        return refuse(error, SINGE_ERROR_MEMORY, "", -1, "out of memory");
     }
 
     for (uint32_t q = 0; q < mesh->cell_count; q++) {

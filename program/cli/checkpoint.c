@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "cli/text.h"
+#include "common/store.h"
 
 /// At the end of the file, so that the snapshot need not be copied. The byte order is the machine's, as in the
 /// snapshot.
@@ -125,8 +126,7 @@ SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets,
         return SINGE_OK;
     }
 
-    *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "checkpoint", .element = -1};
-    return SINGE_ERROR_MEMORY;
+    return refuse(error, SINGE_ERROR_MEMORY, "checkpoint", -1, "out of memory");
 }
 
 /// The result's hash with the frames of moving meshes up to there; a longer run has more of them. Unchanged if there
@@ -161,8 +161,7 @@ SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator
     uint8_t *grown = allocator.resize(allocator.context, taken->bytes, size, size + sizeof(Trailer));
     if (!grown) {
         checkpoint_drop(sim, taken);
-        *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "checkpoint", .element = -1};
-        return SINGE_ERROR_MEMORY;
+        return refuse(error, SINGE_ERROR_MEMORY, "checkpoint", -1, "out of memory");
     }
 
     Trailer trailer = {.snapshot_size = size,
@@ -183,9 +182,7 @@ SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator
 }
 
 static SingeResult checkpoint_refuse(const char *path, SingeResult code, const char *why, SingeError *error) {
-    *error = (SingeError){.code = code, .stage = "resume", .element = -1};
-    snprintf(error->message, sizeof error->message, "%.150s: %.180s", path, why);
-    return code;
+    return refuse(error, code, "resume", -1, "%.150s: %.180s", path, why);
 }
 
 static SingeResult read_trailer(const char *path, const Bytes *bytes, SceneHash hash, const SceneAssets *assets,

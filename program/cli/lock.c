@@ -12,6 +12,7 @@
 
 #include "cli/folder.h"
 #include "cli/text.h"
+#include "common/store.h"
 
 enum { HOLDER_SIZE = 320, ATTEMPTS = 100 };
 
@@ -36,10 +37,9 @@ static SingeResult refuse_held(int fd, const char *path, const char *what, bool 
     }
 
     const char *slash = strrchr(path, '/');
-    *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "output", .element = -1};
-    snprintf(error->message, sizeof error->message, "%.*s: its %s are being written by %.100s; wait for it to end",
-             slash ? (int)(slash - path < 120 ? slash - path : 120) : 0, path, what, holder);
-    return SINGE_ERROR_STATE;
+    return refuse(error, SINGE_ERROR_STATE, "output", -1,
+                  "%.*s: its %s are being written by %.100s; wait for it to end",
+                  slash ? (int)(slash - path < 120 ? slash - path : 120) : 0, path, what, holder);
 }
 
 SingeResult lock_take(Lock *lock, const char *path, const char *what, bool shared, Console *console,

@@ -21,6 +21,7 @@
 #include "cli/folder.h"
 #include "cli/job.h"
 #include "cli/pictures.h"
+#include "common/store.h"
 #include "formats/formats.h"
 
 enum { EMBER_FRAMES = 4, EMBER_SCALE = 3, EMBER_WIDE = 4096, RUN = 64 };
@@ -227,9 +228,7 @@ static void fill_row(const Wrinkles *frame, const Folds *folds, const Rim *rim, 
 }
 
 static SingeResult out_of_memory(SingeError *error) {
-    *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
-    snprintf(error->message, sizeof error->message, "out of memory while a frame was measured");
-    return SINGE_ERROR_MEMORY;
+    return refuse(error, SINGE_ERROR_MEMORY, "", -1, "out of memory while a frame was measured");
 }
 
 static SingeResult measure_frame(Measure *measure, int frame, SingeError *error) {

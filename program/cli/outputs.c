@@ -6,12 +6,12 @@
 
 #include "cli/pictures.h"
 #include "cli/text.h"
+#include "common/store.h"
 #include "formats/gas_grid.h"
 #include "scene/faults.h"
 
 static SingeResult no_memory(SingeError *error) {
-    *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "output", .element = -1};
-    return SINGE_ERROR_MEMORY;
+    return refuse(error, SINGE_ERROR_MEMORY, "output", -1, "out of memory");
 }
 
 // ---- the scene, as passed to writers
@@ -313,11 +313,9 @@ SingeResult gas_detail_shape(const SingeGas *coarse, int detail, SingeGas *fine,
     fine->cell = coarse->cell / (float)detail;
     for (int c = 0; c < 3; c++) fine->size[c] *= (uint32_t)detail;
     if (gas_shape_is_good(fine)) return SINGE_OK;
-    *error = (SingeError){.code = SINGE_ERROR_LIMIT, .stage = "gas", .element = -1};
-    snprintf(error->message, sizeof error->message,
-             "the gas with detail %d has %u x %u x %u cells: at most 4096 a side and %d in all are possible", detail,
-             fine->size[0], fine->size[1], fine->size[2], GAS_CELL_LIMIT);
-    return SINGE_ERROR_LIMIT;
+    return refuse(error, SINGE_ERROR_LIMIT, "gas", -1,
+                  "the gas with detail %d has %u x %u x %u cells: at most 4096 a side and %d in all are possible",
+                  detail, fine->size[0], fine->size[1], fine->size[2], GAS_CELL_LIMIT);
 }
 
 SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Pictures *pictures, int detail,
@@ -325,9 +323,7 @@ SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Picture
     Gas fine = {0};
     const SingeGas *coarse = &frame->gas.view;
     if (!coarse->size[0]) {
-        *error = (SingeError){.code = SINGE_ERROR_FILE, .stage = "output", .element = -1};
-        snprintf(error->message, sizeof error->message, "%.200s: the frame has no gas", path);
-        return SINGE_ERROR_FILE;
+        return refuse(error, SINGE_ERROR_FILE, "output", -1, "%.200s: the frame has no gas", path);
     }
 
     SingeResult result = gas_detail_shape(coarse, detail, &fine.view, error);

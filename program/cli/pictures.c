@@ -8,6 +8,7 @@
 
 #include "cli/cryptomatte.h"
 #include "cli/interrupt.h"
+#include "common/store.h"
 
 struct Pictures {
     const Scene *scene;
@@ -24,8 +25,7 @@ struct Pictures {
 bool pictures_available(void) { return preview_draws(); }
 
 static SingeResult no_memory(SingeError *error) {
-    *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "preview", .element = -1};
-    return SINGE_ERROR_MEMORY;
+    return refuse(error, SINGE_ERROR_MEMORY, "preview", -1, "out of memory");
 }
 
 static SingeResult open_def(const Job *job, const PreviewDef *def, Pictures **made, SingeError *error) {
@@ -71,9 +71,7 @@ SingeResult pictures_open_baker(const Job *job, Pictures **pictures, SingeError 
 SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error) {
     if (pictures_available()) return pictures_open_baker(job, pictures, error);
     *pictures = NULL;
-    *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "preview", .element = -1};
-    snprintf(error->message, sizeof error->message, "this singe was built without the preview");
-    return SINGE_ERROR_STATE;
+    return refuse(error, SINGE_ERROR_STATE, "preview", -1, "this singe was built without the preview");
 }
 
 SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, SingeError *error) {
@@ -331,8 +329,7 @@ SingeResult contact_sheet_make(ContactSheet *sheet, int columns, int rows, int f
                             .height = rows * (frame_height / shrink)};
     sheet->rgb = calloc((size_t)sheet->width * 3, (size_t)sheet->height);
     if (sheet->rgb) return SINGE_OK;
-    *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "sheet.png", .element = -1};
-    return SINGE_ERROR_MEMORY;
+    return refuse(error, SINGE_ERROR_MEMORY, "sheet.png", -1, "out of memory");
 }
 
 void contact_sheet_put(ContactSheet *sheet, int tile, const uint8_t *rgb) {

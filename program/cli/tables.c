@@ -36,8 +36,7 @@ const char *tables_unit(const char *column) {
 }
 
 static SingeResult tables_no_memory(SingeError *error) {
-    *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "output", .element = -1};
-    return SINGE_ERROR_MEMORY;
+    return refuse(error, SINGE_ERROR_MEMORY, "output", -1, "out of memory");
 }
 
 // ---- files of lines
@@ -105,10 +104,8 @@ static SingeResult lines_read(const char *path, const char *header, uint64_t cou
     if (good) return SINGE_OK;
 
     bytes_free(bytes);
-    *error = (SingeError){.code = SINGE_ERROR_FORMAT, .stage = "resume", .element = -1};
-    snprintf(error->message, sizeof error->message,
-             "%.200s lacks %s, which the checkpoint needs; run without --resume to start over", path, what);
-    return SINGE_ERROR_FORMAT;
+    return refuse(error, SINGE_ERROR_FORMAT, "resume", -1,
+                  "%.200s lacks %s, which the checkpoint needs; run without --resume to start over", path, what);
 }
 
 /// Truncates the file to them.

@@ -15,6 +15,7 @@
 #include "cli/job.h"
 #include "cli/text.h"
 #include "common/printable.h"
+#include "common/store.h"
 
 typedef struct Row {
     uint32_t vertices, triangles;
@@ -114,9 +115,7 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
         }
 
         if (!check_surface(&cache, findings)) {
-            *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
-            snprintf(error->message, sizeof error->message, "out of memory while frame %d was verified", frame);
-            result = SINGE_ERROR_MEMORY;
+            result = refuse(error, SINGE_ERROR_MEMORY, "", -1, "out of memory while frame %d was verified", frame);
         }
 
         *row = (Row){.vertices = cache.vertex_count,

@@ -3,6 +3,7 @@
 #define PREVIEW_INTERNAL_H
 
 #include "common/allocator.h"
+#include "common/store.h"
 #include "preview/fire.h"
 #include "preview/lens.h"
 #include "preview/light.h"
@@ -127,8 +128,8 @@ typedef struct Point {
 } Point;
 
 // preview.c
-SingeResult preview_fail(SingeError *error, SingeResult code, int64_t element, const char *format, ...)
-    SINGE_PRINTF(4, 5);
+/// Fills *error and returns `code`.
+#define preview_fail(error, code, element, ...) refuse(error, code, "preview", element, __VA_ARGS__)
 
 // texture.c
 SingeResult texture_create(Preview *preview, Texture *texture, const Image *image, SingeError *error);

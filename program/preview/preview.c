@@ -2,20 +2,9 @@
 
 #include "preview/airborne.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-SingeResult preview_fail(SingeError *error, SingeResult code, int64_t element, const char *format, ...) {
-    if (!error) return code;
-    *error = (SingeError){.code = code, .stage = "preview", .element = element};
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(error->message, sizeof error->message, format, arguments);
-    va_end(arguments);
-    return code;
-}
 
 PreviewDef preview_default(void) {
     return (PreviewDef){

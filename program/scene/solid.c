@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/store.h"
+
 static SingeResult solid_fail(SingeError *error, SingeResult code, int64_t element, const char *text) {
-    *error = (SingeError){.code = code, .stage = "scene", .element = element};
-    snprintf(error->message, sizeof error->message, "%s", text);
-    return code;
+    return refuse(error, code, "scene", element, "%s", text);
 }
 
 static SingeResult solid_no_memory(SingeError *error) {

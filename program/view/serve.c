@@ -4,6 +4,7 @@
 // 127.0.0.1 is not), Origin and Sec-Fetch-Site, where a browser sends them, must be ours too, and the token stands in each
 // path. Only GET is answered, and no body is read. Memory is bounded: so many connections, so many bytes of a request, so
 // many frames on their way. A client that takes too long to ask, or to take its answer, is cut off.
+#include "common/store.h"
 #include "view/view.h"
 
 #include <arpa/inet.h>
@@ -128,8 +129,7 @@ static enum MHD_Result respond(void *context, struct MHD_Connection *connection,
 SingeResult server_open(View *view, Server **out, SingeError *error) {
     Server *server = calloc(1, sizeof *server);
     if (!server) {
-        *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "view", .element = -1};
-        return SINGE_ERROR_MEMORY;
+        return refuse(error, SINGE_ERROR_MEMORY, "view", -1, "out of memory");
     }
     server->view = view;
     const struct sockaddr_in address = {
@@ -144,12 +144,10 @@ SingeResult server_open(View *view, Server **out, SingeError *error) {
     if (!port) {
         const int wanted = view->port;
         server_close(server);
-        *error = (SingeError){.code = SINGE_ERROR_FILE, .stage = "view", .element = -1};
-        snprintf(error->message, sizeof error->message,
-                 wanted ? "port %d of the loopback is taken or not allowed; --port chooses another"
-                        : "no port of the loopback can be opened",
-                 wanted);
-        return SINGE_ERROR_FILE;
+        return refuse(error, SINGE_ERROR_FILE, "view", -1,
+                      wanted ? "port %d of the loopback is taken or not allowed; --port chooses another"
+                             : "no port of the loopback can be opened",
+                      wanted);
     }
 
     view->port = port->port;
