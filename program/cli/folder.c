@@ -13,38 +13,40 @@
 #include "cli/text.h"
 #include "formats/formats.h"
 
+/// The files that are not of a frame.
+static const struct {
+    size_t field;
+    const char *name;
+} run_files[] = {
+    {offsetof(Folder, stats), "stats.csv"},
+    {offsetof(Folder, events), "events.csv"},
+    {offsetof(Folder, probes), "probes.csv"},
+    {offsetof(Folder, record), "run.json"},
+    {offsetof(Folder, checkpoint), "checkpoint.singe"},
+    {offsetof(Folder, previous_checkpoint), "checkpoint.previous.singe"},
+    {offsetof(Folder, video), "preview.mp4"},
+    {offsetof(Folder, sheet), "sheet.png"},
+    {offsetof(Folder, gif), "preview.gif"},
+    {offsetof(Folder, cache_lock), "cache.lock"},
+    {offsetof(Folder, pictures_lock), "pictures.lock"},
+};
+
+enum { RUN_FILES = sizeof run_files / sizeof *run_files };
+
+static char **run_file(Folder *folder, int file) { return (char **)(void *)((char *)folder + run_files[file].field); }
+
 Folder folder_name(const char *path, const char *name) {
     Folder folder = {.name = text_format("%s", name)};
     folder.path = path ? text_format("%s", *path ? path : ".") : text_format("out/%s", name);
     for (size_t n = strlen(folder.path); n > 1 && folder.path[n - 1] == '/'; n--) folder.path[n - 1] = 0;
-    folder.stats = text_format("%s/stats.csv", folder.path);
-    folder.events = text_format("%s/events.csv", folder.path);
-    folder.probes = text_format("%s/probes.csv", folder.path);
-    folder.record = text_format("%s/run.json", folder.path);
-    folder.checkpoint = text_format("%s/checkpoint.singe", folder.path);
-    folder.previous_checkpoint = text_format("%s/checkpoint.previous.singe", folder.path);
-    folder.video = text_format("%s/preview.mp4", folder.path);
-    folder.sheet = text_format("%s/sheet.png", folder.path);
-    folder.gif = text_format("%s/preview.gif", folder.path);
-    folder.cache_lock = text_format("%s/cache.lock", folder.path);
-    folder.pictures_lock = text_format("%s/pictures.lock", folder.path);
+    for (int i = 0; i < RUN_FILES; i++) *run_file(&folder, i) = text_format("%s/%s", folder.path, run_files[i].name);
     return folder;
 }
 
 void folder_free(Folder *folder) {
     free(folder->path);
     free(folder->name);
-    free(folder->stats);
-    free(folder->events);
-    free(folder->probes);
-    free(folder->record);
-    free(folder->checkpoint);
-    free(folder->previous_checkpoint);
-    free(folder->video);
-    free(folder->sheet);
-    free(folder->gif);
-    free(folder->cache_lock);
-    free(folder->pictures_lock);
+    for (int i = 0; i < RUN_FILES; i++) free(*run_file(folder, i));
     *folder = (Folder){0};
 }
 
@@ -238,8 +240,6 @@ SingeResult folder_thin(const Folder *folder, int every, int last, int *removed,
 }
 
 SingeResult folder_sweep(const Folder *folder, SingeError *error) {
-    static const char *const names[] = {"run.json",  "checkpoint.singe", "checkpoint.previous.singe",
-                                        "sheet.png", "preview.mp4",      "preview.gif"};
     int removed = 0;
     SingeResult result = SINGE_OK;
     for (int i = 0; i < FOLDER_COUNT && !result; i++) result = clean_frames(folder, i, NULL, &removed, error);
@@ -251,9 +251,9 @@ SingeResult folder_sweep(const Folder *folder, SingeError *error) {
     for (struct dirent *entry; !result && (entry = next_entry(dir, folder->path, &result, error));) {
         const char *file = entry->d_name;
         bool ours = false;
-        for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-            const size_t length = strlen(names[i]);
-            ours = ours || (strncmp(file, names[i], length) == 0 && is_temporary(file + length));
+        for (int i = 0; i < RUN_FILES; i++) {
+            const size_t length = strlen(run_files[i].name);
+            ours = ours || (strncmp(file, run_files[i].name, length) == 0 && is_temporary(file + length));
         }
         const size_t length = strlen(folder->name);
         for (int i = 0; i < OUTPUT_COUNT && strncmp(file, folder->name, length) == 0; i++) {
