@@ -66,6 +66,31 @@ enum {
     SAMPLES_STILL = 64, ///< of a still: every pixel gets all of them, and nothing is smoothed
 };
 
+// points.c
+/// A sample's position in the pixel: a tent of radius 0.9 pixel, softer than a box and without ringing.
+void sample_offset(int sample, float at[2]);
+
+/// Rays of a sample through the pixels, each with its position on the lens and its time: SAMPLE_CENTRE of both.
+void block_aim(const Preview *preview, Block *block, int sample, const float at[2]);
+
+/// Distance to the ground along a ray; infinite: it is not met.
+float ground_hit(const Preview *preview, Float3 origin, Float3 direction);
+
+/// The point of a lane's ray where nothing is above the ground: that, or the background.
+void block_see_ground(const Preview *preview, Block *block, int lane);
+
+/// The nearest points of the rays of active lanes; widens block->spread.
+void block_find_points(const Preview *preview, Block *block, const int *active);
+
+size_t block_pixel(const Preview *preview, const Block *block, int lane);
+
+// samples.c
+/// Adds the colour of block->point in one sample and its layers. `ask`: whether rays test what lights it.
+void block_add_light(const Preview *preview, Block *block, const int *active, int sample, bool ask);
+
+/// Takes as many samples of the pixels as they need, and writes the picture and its layers.
+void block_draw(Preview *preview, Block *block);
+
 // lighting.c
 /// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
 Float3 light_reflect(const Point *point, Float3 l);

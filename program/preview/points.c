@@ -1,0 +1,162 @@
+// What the rays of a block see: the ground, a shape, a sheet through its holes, or the background.
+
+#include "preview/block.h"
+
+enum { HOLE_LIMIT = 4 };
+
+void sample_offset(int sample, float at[2]) {
+    sample_square((uint32_t)sample, 0.5f, 0.5f, at);
+    for (int c = 0; c < 2; c++) at[c] = 0.9f * (at[c] < 0.5f ? sqrtf(2 * at[c]) - 1 : 1 - sqrtf(2 - 2 * at[c]));
+}
+
+void block_aim(const Preview *preview, Block *block, int sample, const float at[2]) {
+    bool lens = preview->camera.lens > 0 && sample >= 0, shutter = preview->def.shutter > 0 && sample >= 0;
+    for (int i = 0; i < LANES; i++) {
+        float x = 2 * ((float)block->x[i] + 0.5f + at[0]) / (float)preview->def.width - 1;
+        float y = 1 - 2 * ((float)block->y[i] + 0.5f + at[1]) / (float)preview->def.height;
+        float square[2], disc[2] = {0, 0};
+        if (lens) {
+            sample_lens((uint32_t)sample, block->key[i], square);
+            sample_disc(square, disc);
+        }
+
+        camera_ray(&preview->camera, x, y, disc, &block->origin[i], &block->direction[i]);
+        block->time[i] = shutter ? sample_time((uint32_t)sample, block->key[i]) : 0.5f;
+    }
+}
+
+static void start_point(Point *point, const Preview *preview, Float3 origin, Float3 direction, float distance) {
+    *point = (Point){.lit = true, .view = float3_scale(direction, -1), .distance = distance, .sheet = -1, .piece = -1};
+    point->position = float3_mad(origin, direction, distance);
+    point->footprint = preview->camera.pixel * distance;
+}
+
+static void miss_point(Point *point, const Preview *preview, Float3 direction) {
+    *point = (Point){.glow = background_colour(preview, direction), .distance = INFINITY, .sheet = -1, .piece = -1};
+}
+
+float ground_hit(const Preview *preview, Float3 origin, Float3 direction) {
+    float height = origin.z - preview->def.ground_height;
+    if (!isfinite(preview->def.ground_height) || height <= 0 || direction.z >= -1e-5f) return INFINITY;
+    float t = -height / direction.z;
+    return t < 1e4f ? t : INFINITY;
+}
+
+size_t block_pixel(const Preview *preview, const Block *block, int lane) {
+    return (size_t)block->y[lane] * (size_t)preview->def.width + (size_t)block->x[lane];
+}
+
+void block_see_ground(const Preview *preview, Block *block, int lane) {
+    Float3 d = block->direction[lane];
+    Point *point = &block->point[lane];
+    float distance = ground_hit(preview, block->origin[lane], d);
+
+    if (!isfinite(distance)) {
+        miss_point(point, preview, d);
+        return;
+    }
+
+    start_point(point, preview, block->origin[lane], d, distance);
+    ground_shade(preview, distance, &preview->table[block_pixel(preview, block, lane)], point);
+    point->mirrored = mirror_see(preview, block->x[lane], block->y[lane]);
+    point->glow = float3_scale(point->mirrored.light, light_mirrored(point));
+}
+
+/// The length of a motion as the eye sees it, along a unit ray.
+static float moved_across(Float3 motion, Float3 ray) {
+    return float3_length(float3_mad(motion, ray, -float3_dot(motion, ray)));
+}
+
+/// The point that a lane's ray sees; false if it passes through a hole and must continue.
+static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
+    Float3 o = block->origin[lane], d = block->direction[lane], normal = {0, 0, 1}, found = {0, 0, 1};
+    Point *point = &block->point[lane];
+    const struct RTCHit16 *hit = &block->rays.hit;
+    bool paper = hit->geomID[lane] != RTC_INVALID_GEOMETRY_ID;
+    float distance = paper ? block->rays.ray.tfar[lane] : INFINITY;
+    const PreviewShape *shape = NULL;
+    float moment = shutter_moment(preview, block->time[lane]);
+
+    for (uint32_t k = 0; k < preview->shape_count; k++) {
+        float t = shape_intersect(&preview->shapes[k], moment, o, d, 0, distance, &normal);
+        if (t > 0) {
+            distance = t;
+            shape = &preview->shapes[k];
+            found = normal;
+        }
+    }
+
+    if (ground_hit(preview, o, d) < distance) {
+        block_see_ground(preview, block, lane);
+        return true;
+    }
+
+    if (!shape && !paper) {
+        miss_point(point, preview, d);
+        return true;
+    }
+
+    start_point(point, preview, o, d, distance);
+    if (shape) {
+        point->hit = true;
+        point->temperature = shape->temperature;
+        point->moved = preview->def.shutter * moved_across(float3_load(shape->velocity), d);
+        point->normal = point->geometric = float3_dot(found, point->view) >= 0 ? found : float3_scale(found, -1);
+        shape_shade(preview, shape, moment, point);
+        return true;
+    }
+
+    const uint32_t *t = preview->scene.triangles[hit->primID[lane]];
+    const PaperVertex *vertices = preview->scene.vertices;
+    const PaperVertex *a = &vertices[t[0]], *b = &vertices[t[1]], *c = &vertices[t[2]];
+    float u = hit->u[lane], v = hit->v[lane];
+    Float3 geometric = float3_unit_or(float3(hit->Ng_x[lane], hit->Ng_y[lane], hit->Ng_z[lane]), point->view);
+    Float3 smooth = float3_unit_or(float3_blend(a->normal, b->normal, c->normal, u, v), geometric);
+    point->geometric = float3_dot(geometric, point->view) >= 0 ? geometric : float3_scale(geometric, -1);
+    point->normal = float3_dot(smooth, point->geometric) >= 0 ? smooth : float3_scale(smooth, -1);
+    PaperState state;
+    paper_state(&preview->scene, hit->primID[lane], u, v, &state);
+    if (cloth_weave(preview, state.sheet)) cloth_frame(&preview->scene, hit->primID[lane], point);
+    point->hit = true;
+    point->sheet = state.sheet;
+    point->piece = state.piece;
+    point->temperature = state.temperature;
+    point->burn = state.burn;
+    if (preview->def.shutter > 0)
+        point->moved = moved_across(
+            float3_sub(float3_load(preview->scene.moved[1][t[0]]), float3_load(preview->scene.moved[0][t[0]])), d);
+
+    return paper_shade(preview, &state, point) || last;
+}
+
+void block_find_points(const Preview *preview, Block *block, const int *active) {
+    int left = 0;
+    for (int i = 0; i < LANES; i++) {
+        aim_ray(&block->rays.ray, i, block->origin[i], block->direction[i], 0, INFINITY, block->time[i]);
+        block->valid[i] = active[i];
+        left += active[i] != 0;
+    }
+
+    for (int pass = 0; pass < HOLE_LIMIT && left; pass++) {
+        tracer_intersect(preview, block->valid, &block->rays);
+        left = 0;
+        for (int i = 0; i < LANES; i++) {
+            if (!block->valid[i]) continue;
+            if (!resolve(preview, block, i, pass == HOLE_LIMIT - 1)) {
+                block->rays.ray.tnear[i] = block->rays.ray.tfar[i] + preview->scene.epsilon;
+                block->rays.ray.tfar[i] = INFINITY;
+                left++;
+                continue;
+            }
+            block->valid[i] = 0;
+
+            // the pixels over which the lens and the shutter spread the point
+            const Point *point = &block->point[i];
+            if (!point->hit) continue;
+            const float depth = point->distance * float3_dot(block->direction[i], preview->camera.forward);
+            block->spread = maxf(block->spread, camera_blur(&preview->camera, depth));
+            if (preview->def.shutter > 0)
+                block->spread = maxf(block->spread, point->moved / (preview->camera.pixel * depth));
+        }
+    }
+}

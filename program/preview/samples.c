@@ -1,0 +1,251 @@
+// The samples of a block of 4 x 4 pixels: a packet of 16 rays each.
+//
+// A sample is: the nearest surface (points.c); its appearance; the light of sun, sky (lighting.c) and lamps (lamps.c)
+// before occlusion, whose visible shares the first samples test by rays; they are smoothed over neighbours last (seen.c).
+// Pixels whose first samples agree get no more. Blocks that no sheet or shape can touch show only the table or the
+// background: nothing is intersected, and where no shadow can fall one sample is enough. Random numbers depend only on
+// the pixel's position and the sample's number, not on threads.
+
+#include "preview/block.h"
+
+#include <string.h>
+
+static const float CALM = 0.026f; ///< range of a pixel's first samples, as l / (1 + l), that needs no more of them
+
+static void store(float (*layer)[3], size_t pixel, Float3 value) {
+    if (layer) float3_store(layer[pixel], value);
+}
+
+/// Writes the layers of a pixel whose samples are done.
+static void layers_write(const Preview *preview, size_t pixel, const LayerSum *sum) {
+    const PreviewLayers *layers = &preview->layers;
+    float sample = 1 / maxf((float)sum->samples, 1), hit = 1 / maxf((float)sum->hits, 1);
+    store(layers->glow, pixel, float3_scale(sum->glow, sample));
+
+    if (layers->fire) {
+        float *fire = layers->fire[pixel];
+        float3_store(fire, float3_scale(sum->fire, sample));
+        fire[3] = sum->fire_hides * sample;
+    }
+
+    store(layers->normal, pixel, float3_unit_or(sum->normal, float3(0, 0, 0)));
+    if (layers->coverage) layers->coverage[pixel] = (float)sum->hits * sample;
+    if (layers->temperature) layers->temperature[pixel] = sum->temperature * hit;
+    if (layers->burn) layers->burn[pixel] = sum->burn * hit;
+    if (layers->depth) layers->depth[pixel] = sum->depth;
+    if (layers->sheet) layers->sheet[pixel] = sum->sheet;
+    if (layers->piece) layers->piece[pixel] = sum->piece;
+    for (int k = 0; layers->mattes && k < PREVIEW_MATTES; k++) {
+        layers->mattes[pixel][k] = sum->mattes[k];
+        layers->mattes[pixel][k].share *= sample;
+    }
+}
+
+static bool is_still(const Preview *preview) { return preview->def.samples >= SAMPLES_STILL; }
+
+void block_add_light(const Preview *preview, Block *block, const int *active, int sample, bool ask) {
+    float through[LANES], known[LANES];
+    for (int i = 0; i < LANES; i++) {
+        through[i] = known[i] = 0;
+        if (!active[i]) continue;
+        const Point *point = &block->point[i];
+        Float3 colour = point->glow, fire = {0, 0, 0};
+        float clear = 1;
+        for (int k = 0; k < LIT_KINDS; k++) known[i] += float3_luminance(block->lit[k][i]);
+        if (point->fade > 0)
+            colour = float3_mad(float3_scale(colour, 1 - point->fade), background_colour(preview, block->direction[i]),
+                                point->fade);
+
+        // the fire in front of the point; a pixel's points mostly have nearly the same distance
+        if (block->tile) {
+            const float same = 1e-3f; // m, less than flames are thick
+            if (point->distance < block->fire_from[i] || point->distance > block->fire_to[i]) {
+                block->fire_from[i] = point->distance - same;
+                block->fire_to[i] = point->distance + same;
+                fire_until(block->tile, block->x[i] % TILE, block->y[i] % TILE, point->distance, &block->fire_light[i],
+                           &block->fire_clear[i]);
+            }
+
+            fire = block->fire_light[i];
+            clear = block->fire_clear[i];
+            colour = float3_mad(fire, colour, clear);
+        }
+
+        through[i] = clear * (1 - point->fade);
+        colour = float3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
+        block->sum[i] = float3_add(block->sum[i], colour);
+
+        LayerSum *sum = &block->layer[i];
+        if (!sum->samples++) {
+            sum->depth = point->distance * float3_dot(block->direction[i], preview->camera.forward);
+            sum->sheet = point->sheet;
+            sum->piece = point->piece;
+        }
+
+        sum->fire = float3_add(sum->fire, fire);
+        sum->fire_hides += 1 - clear;
+        if (!point->hit) continue;
+        sum->hits++;
+
+        // a sample of the piece counts if that is among the first that the pixel has met
+        for (int k = 0; k < PREVIEW_MATTES && preview->layers.mattes && point->sheet >= 0; k++) {
+            PreviewMatte *matte = &sum->mattes[k];
+            if (matte->share > 0 && (matte->sheet != point->sheet || matte->piece != point->piece)) continue;
+            *matte = (PreviewMatte){point->sheet, point->piece, matte->share + 1};
+            break;
+        }
+
+        sum->glow = float3_mad(sum->glow, point->glow, clear);
+        sum->normal = float3_add(sum->normal, point->normal);
+        sum->temperature += point->temperature;
+        sum->burn += point->burn;
+    }
+
+    // sky and lamps change slowly enough for every second sample, but not where faces meet
+    const bool all = sample < 0 || sample >= SAMPLES_FIRST || preview->def.samples == 1 || is_still(preview);
+    lamps_add(preview, block, active, sample, through, ask && (all || sample % 2 != 0));
+    light_add_sun(preview, block, active, sample, through, ask);
+    light_add_sky(preview, block, active, sample, through, ask && (all || sample % 2 == 0));
+
+    // how much the samples differ, but for what hides the light
+    for (int i = 0; i < LANES; i++) {
+        if (!active[i]) continue;
+        float l = through[i] * float3_luminance(block->point[i].glow) - known[i];
+        for (int k = 0; k < LIT_KINDS; k++) l += float3_luminance(block->lit[k][i]);
+        float shown = l / (1 + l);
+        block->low[i] = minf(block->low[i], shown);
+        block->high[i] = maxf(block->high[i], shown);
+        block->shown[i] += shown;
+        block->squares[i] += shown * shown;
+    }
+}
+
+/// In a bare block the rays stay the same, unless the lens spreads them.
+static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, bool ask) {
+    if (!bare || preview->camera.lens > 0) {
+        float at[2];
+        sample_offset(sample, at);
+        block_aim(preview, block, sample, at);
+        if (!bare) block_find_points(preview, block, active);
+        for (int i = 0; bare && i < LANES; i++)
+            if (active[i]) block_see_ground(preview, block, i);
+    }
+
+    block_add_light(preview, block, active, sample, ask);
+}
+
+/// Whether some of a pixel's samples hit a sheet or a shape and some do not.
+static bool is_edge(const LayerSum *sum) { return sum->hits > 0 && sum->hits < sum->samples; }
+
+/// Whether a sheet or a shape ends between the lane's pixel and one beside it in the block.
+static bool is_beside_edge(const Block *block, int lane) {
+    const int x = lane % BLOCK, y = lane / BLOCK, step[4] = {-1, 1, -BLOCK, BLOCK};
+    const bool inside[4] = {x > 0, x<BLOCK - 1, y> 0, y < BLOCK - 1};
+    const LayerSum *sum = &block->layer[lane];
+    for (int k = 0; k < 4; k++)
+        if (inside[k] && sum->samples && block->layer[lane + step[k]].samples &&
+            (sum->hits > 0) != (block->layer[lane + step[k]].hits > 0))
+            return true;
+    return false;
+}
+
+/// The lanes whose first samples differ by more than `calm`, or from their neighbours'. Returns how many.
+static int find_restless(const Block *block, const int *active, float calm, int *more) {
+    int count = 0;
+    float low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < LANES; i++) {
+        low = minf(low, block->low[i]);
+        high = maxf(high, block->high[i]);
+    }
+
+    for (int i = 0; i < LANES; i++) {
+        bool rests = !is_edge(&block->layer[i]) && block->high[i] - block->low[i] < calm;
+        if (block->spread > 1) rests = rests && block->high[i] - block->low[i] < 0.4f * calm;
+        else rests = rests && !is_beside_edge(block, i) && high - low < 0.15f;
+        more[i] = active[i] && !rests ? -1 : 0;
+        count += more[i] != 0;
+    }
+
+    return count;
+}
+
+/// Takes SAMPLES_FIRST samples of every pixel, and the rest of pixels that need it. Bare blocks get the first only. Where
+/// nothing blocks the light two are enough, in bare blocks and in those that are evenly lit.
+static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
+    int more[LANES], samples = preview->def.samples, first = SAMPLES_FIRST;
+    if (samples < first || is_still(preview)) first = samples;
+    for (int s = 0; s < first; s++) {
+        add_sample(preview, block, active, bare, s, true);
+        if (s != 1 || block->hidden || is_still(preview)) continue;
+        if (bare || (block->spread <= 1 && !find_restless(block, active, 0.5f * CALM, more))) first = s + 1;
+    }
+
+    bool on = first < samples && !bare && first > 2 && find_restless(block, active, CALM, more);
+    bool ask = block->spread > 1; // only pixels that show several faces need more rays
+    for (int i = 0; i < LANES; i++) {
+        ask = ask || (active[i] && is_edge(&block->layer[i]));
+        taken[i] = on && more[i] ? samples : first;
+    }
+
+    for (int s = first; s < samples && on; s++) {
+        // after half of the samples: only lanes whose samples still differ visibly; soften.c smooths what lenses blur
+        if (s == samples / 2) {
+            on = false;
+            for (int i = 0; i < LANES; i++) {
+                if (more[i] && !is_edge(&block->layer[i]) && block->high[i] - block->low[i] < 0.22f) {
+                    more[i] = 0;
+                    taken[i] = s;
+                }
+
+                on = on || more[i];
+            }
+        }
+
+        if (on) add_sample(preview, block, more, bare, s, ask);
+    }
+}
+
+void block_draw(Preview *preview, Block *block) {
+    const PreviewDef *def = &preview->def;
+    int active[LANES], taken[LANES];
+    block->hidden = false;
+    block->spread = 0;
+    memset(block->lit, 0, sizeof block->lit);
+    memset(block->lit_seen, 0, sizeof block->lit_seen);
+    memset(block->lit_asked, 0, sizeof block->lit_asked);
+
+    for (int i = 0; i < LANES; i++) {
+        active[i] = block->x[i] < def->width && block->y[i] < def->height ? -1 : 0;
+        sample_pixel(block->x[i], block->y[i], def->seed, block->turn[i]);
+        block->key[i] = sample_key(block->x[i], block->y[i], def->seed);
+        block->sum[i] = float3(0, 0, 0);
+        block->low[i] = block->fire_from[i] = INFINITY;
+        block->high[i] = block->fire_to[i] = -INFINITY;
+        block->shown[i] = block->squares[i] = 0;
+        block->time[i] = 0.5f;
+        block->layer[i] = (LayerSum){.depth = INFINITY, .sheet = -1, .piece = -1};
+    }
+
+    bool bare = !mask_covers(preview, block->x[0], block->y[0]);
+    if (bare) {
+        block_aim(preview, block, SAMPLE_CENTRE, (const float[2]){0, 0});
+        for (int i = 0; i < LANES; i++)
+            if (active[i]) block_see_ground(preview, block, i);
+    }
+
+    if (bare && !light_may_be_hidden(preview, block, active)) {
+        block_add_light(preview, block, active, SAMPLE_CENTRE, true);
+        for (int i = 0; i < LANES; i++) taken[i] = 1;
+    } else {
+        add_samples(preview, block, active, bare, taken);
+    }
+
+    // the picture gets the mean of the sums
+    for (int i = 0; i < LANES; i++) {
+        if (!active[i]) continue;
+        size_t pixel = block_pixel(preview, block, i);
+        preview->picture[pixel] = float3_scale(block->sum[i], 1 / (float)taken[i]);
+        layers_write(preview, pixel, &block->layer[i]);
+        seen_write(preview, pixel, block, i, taken[i], is_still(preview) || is_edge(&block->layer[i]));
+    }
+}
