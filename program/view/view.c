@@ -25,7 +25,8 @@ static const ArgOption view_options[] = {
     {"threads", 0, "N", "threads of the burn [all]", .read = args_int, offsetof(ViewOptions, threads), 1,
      JOB_THREADS_MAX},
     {"port", 0, "N", "port on this machine [a free one]", .read = args_int, offsetof(ViewOptions, port), 1, 65535},
-    {"quiet", 'q', NULL, "prints only the address, warnings and errors", .read = args_switch, offsetof(ViewOptions, quiet)},
+    {"quiet", 'q', NULL, "prints only the address, warnings and errors", .read = args_switch,
+     offsetof(ViewOptions, quiet)},
 };
 
 const ArgCommand view_command = {
