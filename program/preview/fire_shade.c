@@ -253,17 +253,17 @@ FirePoint fire_at_point(const Preview *preview, Float3 p, int what) {
         }
     }
 
-    // smoke is cloudy: eddies as tall as wide move and thin it; what is inside of flames is bare of them
+    // smoke rises in streaks: eddies three times as tall as wide move and thin it; what is inside of flames is bare of them
     if (!(what & FIRE_SMOKE)) return point;
     point.smoke = cell.smoke;
     if (point.depth < 0) {
         const float passed = (SMOKE_SPEED * fire->moment - p.z) / SMOKE_EDDY;
-        Noise wide = eddies(fire, p, passed, SMOKE_EDDY, 0.8f);
-        Noise small = eddies(fire, p, passed, SMOKE_EDDY / 2.6f, 2.2f);
+        Noise wide = eddies(fire, p, passed, SMOKE_EDDY, 0.35f);
+        Noise small = eddies(fire, p, passed, SMOKE_EDDY / 2.6f, 0.9f);
         Float3 moved = float3_mad(float3_mad(p, float3(wide.a, wide.b, wide.c), SMOKE_WARP),
                                   float3(small.a, small.b, small.c), 0.5f * SMOKE_WARP);
         cell = cell_at(fire, moved, NULL);
-        point.smoke = cell.smoke * maxf(1 + 2 * wide.d + 1.1f * small.d, 0);
+        point.smoke = cell.smoke * maxf(1 + 1.2f * wide.d + 0.7f * small.d, 0);
     }
 
     // soot and tar scatter about a third, in all directions
