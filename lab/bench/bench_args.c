@@ -9,17 +9,13 @@
 #include "cli/job.h"
 #include "common/printable.h"
 
-static bool refuse_text(const ArgCommand *command, const ArgOption *option, const char *expected, const char *text) {
-    return args_complain(command, "--%s %s: expected %s, got '%s'", option->name, option->value, expected,
-                         shown(text).text);
-}
+#define FIELD(name) offsetof(BenchRequest, options.name)
 
-/// Reads "1,2,3", each times `unit`.
-static bool read_list(const ArgCommand *command, const ArgOption *option, const char *text, bool whole, double unit,
-                      BenchList *list) {
-    char expected[96];
-    snprintf(expected, sizeof expected, "%snumbers from %.10g to %.10g, separated by commas", whole ? "whole " : "",
-             option->low, option->high);
+/// Reads "1,2,3": whole numbers, or what the value's name in the help says.
+static bool read_list(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    const bool whole = option->value[0] == 'N';
+    const double unit = option->value[0] == 'M' ? 1e-3 : 1; // millimetres
+    BenchList *list = field;
     list->count = 0;
     for (const char *at = text;; at++) {
         char *end;
@@ -27,108 +23,72 @@ static bool read_list(const ArgCommand *command, const ArgOption *option, const 
         const double number = strtod(at, &end);
         const bool inside = number >= option->low && number <= option->high; // NaN is not
         if (errno || end == at || !inside || (whole && number != floor(number)) || (*end && *end != ','))
-            return refuse_text(command, option, expected, text);
-        if (list->count == BENCH_LIST_MAX) return refuse_text(command, option, "at most 16 numbers", text);
+            return args_complain(command, "--%s: expected %snumbers from %.10g to %.10g as %s, got '%s'", option->name,
+                                 whole ? "whole " : "", option->low, option->high, option->value, shown(text).text);
+        if (list->count == BENCH_LIST_MAX)
+            return args_complain(command, "--%s: expected at most 16 numbers, got '%s'", option->name,
+                                 shown(text).text);
         list->values[list->count++] = number * unit;
         if (*end == 0) return true;
         at = end;
     }
 }
 
-static bool read_wholes(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
-    return read_list(command, option, text, true, 1, field);
-}
-
-static bool read_numbers(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
-    return read_list(command, option, text, false, 1, field);
-}
-
-static bool read_millimetres(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
-    return read_list(command, option, text, false, 1e-3, field);
-}
-
-static bool read_number(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
-    char expected[64], *end;
-    errno = 0;
-    const double number = strtod(text, &end);
-    snprintf(expected, sizeof expected, "a number from %.10g to %.10g", option->low, option->high);
-    if (errno || end == text || *end || !(number >= option->low && number <= option->high))
-        return refuse_text(command, option, expected, text);
-    *(double *)field = number;
-    return true;
-}
-
-/// The number of one of the words, which end with NULL. The message lists them.
-static bool read_word(const ArgCommand *command, const ArgOption *option, const char *text, const char *const *words,
-                      int *value) {
+/// The number of one of the option's words. The message lists them.
+static bool read_word(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    static const char *const states[] = {"swing", "shrink", NULL}, *const outlines[] = {"square", "disc", NULL};
+    const char *const *words = option->field == FIELD(solver)         ? enum_words.SingeSolverMethod
+                               : option->field == FIELD(instructions) ? enum_words.SingeInstructions
+                               : option->field == FIELD(state)        ? states
+                                                                      : outlines;
     char expected[160] = "";
-    for (*value = 0; words[*value]; ++*value) {
-        if (strcmp(words[*value], text) == 0) return true;
-        const char *before = *value == 0 ? "" : words[*value + 1] ? ", " : " or ";
+    for (int i = 0; words[i]; i++) {
+        if (strcmp(words[i], text) == 0) {
+            *(int *)field = i + (words == outlines); // no outline is 0
+            return true;
+        }
+        const char *before = i == 0 ? "" : words[i + 1] ? ", " : " or ";
         const size_t length = strlen(expected);
-        snprintf(expected + length, sizeof expected - length, "%s%s", before, words[*value]);
+        snprintf(expected + length, sizeof expected - length, "%s%s", before, words[i]);
     }
 
-    return refuse_text(command, option, expected, text);
+    return args_complain(command, "--%s: expected %s, got '%s'", option->name, expected, shown(text).text);
 }
-
-static bool read_solver(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
-    return read_word(command, option, text, enum_words.SingeSolverMethod, field);
-}
-
-static bool read_instructions(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
-    return read_word(command, option, text, enum_words.SingeInstructions, field);
-}
-
-static bool read_state(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
-    static const char *const words[] = {"swing", "shrink", NULL};
-    return read_word(command, option, text, words, field);
-}
-
-static bool read_outline(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
-    static const char *const words[] = {"square", "disc", NULL};
-    int word;
-    if (!read_word(command, option, text, words, &word)) return false;
-    *(BenchOutline *)field = word ? BENCH_DISC : BENCH_SQUARE;
-    return true;
-}
-
-#define FIELD(name) offsetof(BenchRequest, options.name)
 
 const ArgOption bench_all_options[BENCH_OPTION_COUNT] = {
-    {"cells", 0, "N,N,...", "cells per side of the sheet, 2 to 2000", .read = read_wholes, FIELD(cells), 2, 2000},
-    {"sheets", 0, "N,N,...", "sheets on top of each other, 1 to 1000", .read = read_wholes, FIELD(sheets), 1, 1000},
-    {"thickness", 0, "MM,MM,...", "distance between the two layers, 0.01 to 100 mm", .read = read_millimetres,
+    {"cells", 0, "N,N,...", "cells per side of the sheet, 2 to 2000", .read = read_list, FIELD(cells), 2, 2000},
+    {"sheets", 0, "N,N,...", "sheets on top of each other, 1 to 1000", .read = read_list, FIELD(sheets), 1, 1000},
+    {"thickness", 0, "MM,MM,...", "distance between the two layers, 0.01 to 100 mm", .read = read_list,
      FIELD(thickness), 0.01, 100},
     {"pins", 0, "1|2", "number of corners that are held [2]", .read = args_int, FIELD(pins), 1, 2},
-    {"time", 0, "S", "seconds of motion, 0.01 to 60", .read = read_number, FIELD(time), 0.01, 60},
+    {"time", 0, "S", "seconds of motion, 0.01 to 60", .read = args_number, FIELD(time), 0.01, 60},
     {"substeps", 0, "N", "substeps per step, 1 to 1000 [3, or the measurement's own]", .read = args_int,
      FIELD(substeps), 1, 1000},
     {"steps", 0, "N",
      "steps of a frame of 1/24 s [20; swing: 1 of 60 or 240 substeps], or to time [by size], 1 to 100000",
      .read = args_int, FIELD(steps), 1, 100000},
-    {"smoothing", 0, "RATE", "internal friction, 0 to 1e6 per second", .read = read_number, FIELD(smoothing), 0, 1e6},
+    {"smoothing", 0, "RATE", "internal friction, 0 to 1e6 per second", .read = args_number, FIELD(smoothing), 0, 1e6},
     {"threads", 0, "N", "threads [1]", .read = args_int, FIELD(threads), 1, JOB_THREADS_MAX},
-    {"solver", 0, "METHOD", "strand, paper, paper-literal, all-at-once or mass-spring [strand]", .read = read_solver,
+    {"solver", 0, "METHOD", "strand, paper, paper-literal, all-at-once or mass-spring [strand]", .read = read_word,
      FIELD(solver)},
-    {"instructions", 0, "SET", "best, plain, v2, v3, v4, neon or simd128 [best]", .read = read_instructions,
+    {"instructions", 0, "SET", "best, plain, v2, v3, v4, neon or simd128 [best]", .read = read_word,
      FIELD(instructions)},
     {"projections", 0, "N", "projections per substep, 1 to 1000 [the solver's]", .read = args_int, FIELD(projections),
      1, 1000},
-    {"springs", 0, "N,N,...", "sizes, 40 to 40000000 springs", .read = read_wholes, FIELD(springs), 40, 4e7},
-    {"state", 0, "swing|shrink", "motion of the sheet [swing]", .read = read_state, FIELD(state)},
-    {"limit-ms", 0, "MS", "fails if a step takes longer, at the pace of the reference machine", .read = read_number,
+    {"springs", 0, "N,N,...", "sizes, 40 to 40000000 springs", .read = read_list, FIELD(springs), 40, 4e7},
+    {"state", 0, "swing|shrink", "motion of the sheet [swing]", .read = read_word, FIELD(state)},
+    {"limit-ms", 0, "MS", "fails if a step takes longer, at the pace of the reference machine", .read = args_number,
      FIELD(limit_ms), 1e-3, 1e6},
     {"quick", 0, NULL, "a short run", .read = args_switch, FIELD(quick)},
     {"material", 0, "NAME,NAME,...", "materials or material files [all built-in ones]", .read = args_text,
      offsetof(BenchRequest, materials)},
-    {"curvature", 0, "1/M,1/M,...", "curvature_max, 0 (none) to 1e6 [the material's]", .read = read_numbers,
+    {"curvature", 0, "1/M,1/M,...", "curvature_max, 0 (none) to 1e6 [the material's]", .read = read_list,
      FIELD(curvature), 0, 1e6},
-    {"seeds", 0, "N,N,...", "seeds of the noise, 1 to 1000000 [1,2,3,4]", .read = read_wholes, FIELD(seeds), 1, 1e6},
-    {"outline", 0, "square|disc", "only this outline [both]", .read = read_outline, FIELD(outline)},
+    {"seeds", 0, "N,N,...", "seeds of the noise, 1 to 1000000 [1,2,3,4]", .read = read_list, FIELD(seeds), 1, 1e6},
+    {"outline", 0, "square|disc", "only this outline [both]", .read = read_word, FIELD(outline)},
     {"creases", 0, NULL, "sharp bends leave creases, by the material's crease_radius", .read = args_switch,
      FIELD(creases)},
-    {"red", 0, "M/N", "compliance of red springs, 1e-6 to 1e6 m/N [the material's]", .read = read_number, FIELD(red),
+    {"red", 0, "M/N", "compliance of red springs, 1e-6 to 1e6 m/N [the material's]", .read = args_number, FIELD(red),
      1e-6, 1e6},
     {"json", 0, NULL, "prints JSON", .read = args_switch, offsetof(BenchRequest, json)},
     {"csv", 0, "FILE", "also writes the table to FILE", .read = args_text, offsetof(BenchRequest, csv)},

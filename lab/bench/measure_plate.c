@@ -107,19 +107,6 @@ static SingeResult fail(SingeSim *sim, Mesh *mesh, SingeResult result, SingeErro
 
 enum { DRAW_WIDE = 200, DRAW_HIGH = 115, DRAW_TOP = 30, DRAW_LEFT = 110 };
 
-static void draw_heads(FILE *svg) {
-    static const char *const rows[4] = {"strips", "strips, isotropic", "discs", "discs, isotropic"};
-    fprintf(svg,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
-            "font-family=\"sans-serif\" font-size=\"13\"><rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
-            DRAW_LEFT + 4 * DRAW_WIDE, DRAW_TOP + 4 * DRAW_HIGH, DRAW_LEFT + 4 * DRAW_WIDE, DRAW_TOP + 4 * DRAW_HIGH);
-    for (int k = 0; k < 4; k++) {
-        fprintf(svg, "<text x=\"%d\" y=\"20\" text-anchor=\"middle\">mesh at %d°</text>\n",
-                DRAW_LEFT + DRAW_WIDE * k + DRAW_WIDE / 2, 15 * k);
-        fprintf(svg, "<text x=\"8\" y=\"%d\">%s</text>\n", DRAW_TOP + DRAW_HIGH * k + DRAW_HIGH / 2, rows[k]);
-    }
-}
-
 /// The lines of its mesh, in the place of its kind and angle.
 static void draw_plate(const Plate *plate, bool disc, const SingeView *view) {
     FILE *svg = plate->options->drawing;
@@ -218,7 +205,20 @@ SingeResult bench_plate(const BenchOptions *options, BenchTable *table, SingeErr
     const int angle_count = options->quick ? 2 : 4;
     SingeResult result = SINGE_OK;
     table_begin(table, "plate");
-    if (options->drawing) draw_heads(options->drawing);
+    FILE *svg = options->drawing;
+    if (svg) {
+        static const char *const rows[4] = {"strips", "strips, isotropic", "discs", "discs, isotropic"};
+        fprintf(svg,
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
+                "font-family=\"sans-serif\" font-size=\"13\"><rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
+                DRAW_LEFT + 4 * DRAW_WIDE, DRAW_TOP + 4 * DRAW_HIGH, DRAW_LEFT + 4 * DRAW_WIDE,
+                DRAW_TOP + 4 * DRAW_HIGH);
+        for (int k = 0; k < 4; k++) {
+            fprintf(svg, "<text x=\"%d\" y=\"20\" text-anchor=\"middle\">mesh at %d°</text>\n",
+                    DRAW_LEFT + DRAW_WIDE * k + DRAW_WIDE / 2, 15 * k);
+            fprintf(svg, "<text x=\"8\" y=\"%d\">%s</text>\n", DRAW_TOP + DRAW_HIGH * k + DRAW_HIGH / 2, rows[k]);
+        }
+    }
 
     for (int isotropic = 0; isotropic < 2; isotropic++) {
         Plate plate = {.options = options, .isotropic = isotropic, .seed = 1};

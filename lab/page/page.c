@@ -168,9 +168,5 @@ ExitCode page_run(const Page *page, const ArgCommand *command, int argc, char **
     if (request.item && !has_item(page, command, request.item, false)) return EXIT_INPUT;
     if (request.only && !has_item(page, command, request.only, true)) return EXIT_INPUT;
     if (request.only) request.item = request.only;
-    if (!request.folder[0]) {
-        args_complain(command, "--output needs a folder");
-        return EXIT_INPUT;
-    }
     return run(page, &request);
 }

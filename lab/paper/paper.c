@@ -85,7 +85,7 @@ static const PageItem items[] = {
 };
 
 static const ArgOption paper_options[] = {
-    {"output", 'o', "DIR", "folder for the page [out/paper]", .read = args_text, offsetof(PageRequest, folder)},
+    {"output", 'o', "DIR", "folder for the page [out/paper]", .read = args_folder, offsetof(PageRequest, folder)},
     {"quick", 0, NULL, "small sizes, for a quick check", .read = args_switch, offsetof(PageRequest, quick)},
     {"threads", 0, "N", "threads [all]", .read = args_int, offsetof(PageRequest, threads), 1, JOB_THREADS_MAX},
 };

@@ -39,7 +39,7 @@ static const PageItem items[] = {
 };
 
 static const ArgOption validate_options[] = {
-    {"output", 'o', "DIR", "folder for the page [out/validate]", .read = args_text, offsetof(PageRequest, folder)},
+    {"output", 'o', "DIR", "folder for the page [out/validate]", .read = args_folder, offsetof(PageRequest, folder)},
     {"only", 0, "NAME", "one of heat, umbrella, front, pmma, cone, oxygen, damp, beam, disc, kinetics, ledgers, grades",
      .read = args_text, offsetof(PageRequest, only)},
     {"quick", 0, NULL, "small sizes, for a quick check", .read = args_switch, offsetof(PageRequest, quick)},

@@ -64,19 +64,6 @@ static void cone_heats(void *context, const SingeView *view, float *flux, float 
     }
 }
 
-/// A time step of the board, under the mean of the layer that lies on it.
-static void board_step(Cone *cone, const SingeView *view, double h) {
-    const Board *board = cone->board;
-    const double per_cell = h / (board->density * board->specific_heat * board_cell);
-    double mean = 0, flux[BOARD_CELLS + 1] = {0}; // W/m2, into each cell from the one before
-    for (uint32_t i = view->vertex_count; i < view->particle_count; i++)
-        mean += (double)view->temperature[i] / (view->particle_count - view->vertex_count);
-    flux[0] = 2 * board->conductivity / board_cell * (mean - cone->temperature[0]);
-    for (int k = 1; k < BOARD_CELLS; k++)
-        flux[k] = board->conductivity / board_cell * (cone->temperature[k - 1] - cone->temperature[k]);
-    for (int k = 0; k < BOARD_CELLS; k++) cone->temperature[k] += per_cell * (flux[k] - flux[k + 1]);
-}
-
 /// Cotton as it is, its patches by their means, flat and held, under a flux.
 static SingeResult cone_burn(Lab *lab, const SingeMaterialDef *cotton, const Board *board, double kilowatt,
                              ConeRun *run, SingeError *error) {
@@ -104,7 +91,17 @@ static SingeResult cone_burn(Lab *lab, const SingeMaterialDef *cotton, const Boa
     for (double time = 0; time < 40 && !result; time += step) {
         result = lab_steps(sim, 1, error);
         SingeView view = singe_sim_view(sim);
-        if (board->conductivity > 0) board_step(&cone, &view, step);
+        if (board->conductivity > 0) {
+            // a time step of the board, under the mean of the layer that lies on it
+            const double per_cell = step / (board->density * board->specific_heat * board_cell);
+            double mean = 0, flux[BOARD_CELLS + 1] = {0}; // W/m2, into each cell from the one before
+            for (uint32_t i = view.vertex_count; i < view.particle_count; i++)
+                mean += (double)view.temperature[i] / (view.particle_count - view.vertex_count);
+            flux[0] = 2 * board->conductivity / board_cell * (mean - cone.temperature[0]);
+            for (int k = 1; k < BOARD_CELLS; k++)
+                flux[k] = board->conductivity / board_cell * (cone.temperature[k - 1] - cone.temperature[k]);
+            for (int k = 0; k < BOARD_CELLS; k++) cone.temperature[k] += per_cell * (flux[k] - flux[k + 1]);
+        }
         double mass = 0;
         for (uint32_t i = 0; i < view.particle_count; i++) mass += (double)view.mass[i] / view.particle_count;
         if (isnan(run->ignition) && mass < 0.9999) run->ignition = time;

@@ -176,6 +176,11 @@ bool args_text(const ArgCommand *command, const ArgOption *option, const char *t
     return true;
 }
 
+bool args_folder(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    if (!text[0]) return args_complain(command, "--%s: expected a folder", option->name);
+    return args_text(command, option, text, field);
+}
+
 bool args_set(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
     (void)command, (void)option;
     set_add(field, text);
@@ -191,6 +196,17 @@ bool args_int(const ArgCommand *command, const ArgOption *option, const char *te
         return args_complain(command, "--%s: expected a whole number from %.0f to %.0f, got '%s'", option->name,
                              option->low, option->high, shown(text).text);
     *(int *)field = (int)value;
+    return true;
+}
+
+bool args_number(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
+    char *end;
+    errno = 0;
+    const double number = strtod(text, &end);
+    if (errno || end == text || *end || !(number >= option->low && number <= option->high))
+        return args_complain(command, "--%s %s: expected a number from %.10g to %.10g, got '%s'", option->name,
+                             option->value, option->low, option->high, shown(text).text);
+    *(double *)field = number;
     return true;
 }
 

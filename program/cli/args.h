@@ -42,9 +42,9 @@ struct ArgCommand {
 /// command ends here, with *code: the help has been printed, or an error with a hint to it.
 bool args_read(const ArgCommand *command, int argc, char **argv, void *options, ExitCode *code);
 
-/// Fields: a bool; a const char *; an int within low and high; int[2] of "A-B", or of "A" for both, with 1 <= A <= B; a
+/// Fields: a bool; a const char *, also of a folder, which is not empty; an int, and a double, within low and high; int[2] of "A-B", or of "A" for both, with 1 <= A <= B; a
 /// SetList, to which it adds.
-ArgRead args_switch, args_text, args_int, args_span, args_set;
+ArgRead args_switch, args_text, args_folder, args_int, args_number, args_span, args_set;
 
 void args_help(const ArgCommand *command);
 

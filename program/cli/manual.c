@@ -92,29 +92,29 @@ static void put_command(FILE *page, const Command *command) {
     fputs(".SH SEE ALSO\n.BR singe (1)\n", page);
 }
 
-static void put_program(FILE *page) {
+/// For console_write_table: the page of a command, or, without one, that of the program.
+static void print_page(FILE *page, const void *command) {
+    if (command) {
+        put_command(page, command);
+        return;
+    }
+
     put_head(page, NULL, "burns cloth and paper");
     fputs("\n.I COMMAND\n[options]\n.SH DESCRIPTION\nSinge takes a mesh, a material and a fire, and simulates a thin "
           "shell that heats, chars, shrinks, wrinkles, tears and turns to ash.\n.SH COMMANDS\n",
           page);
     for (int i = 0; i < command_table.command_count; i++) {
-        const Command *command = &command_table.commands[i];
-        if (!command->group) continue;
+        const Command *one = &command_table.commands[i];
+        if (!one->group) continue;
         fputs(".TP\n.BR singe\\-", page);
-        for (const char *c = command->name; *c; c++) fprintf(page, *c == '-' ? "\\-" : "%c", *c);
+        for (const char *c = one->name; *c; c++) fprintf(page, *c == '-' ? "\\-" : "%c", *c);
         fputs(" (1)\n", page);
-        put(page, command->summary);
+        put(page, one->summary);
     }
 
     fputs(".SH EXIT STATUS\n.TP\n0\nsuccess\n.TP\n1\nthe run failed or was interrupted\n.TP\n2\nbad input\n"
           ".SH ENVIRONMENT\n.TP\n.B NO_COLOR\nturns colours of messages off\n",
           page);
-}
-
-/// For console_write_table: the page of a command, or, without one, that of the program.
-static void print_page(FILE *page, const void *command) {
-    if (command) put_command(page, command);
-    else put_program(page);
 }
 
 int command_manual(int argc, char **argv) {

@@ -22,10 +22,6 @@ typedef struct RenderOptions {
     bool only_sheet, exr, gif, quiet;
 } RenderOptions;
 
-static bool read_output(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
-    return text[0] ? args_text(command, option, text, field) : args_complain(command, "--output: expected a folder");
-}
-
 static bool read_set(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
     if (strncmp(text, "preview.", 8) == 0) return args_set(command, option, text, field);
     return args_complain(command, "--set: only preview.* can be set here, got '%s'", shown(text).text);
@@ -42,7 +38,7 @@ static bool read_sheet(const ArgCommand *command, const ArgOption *option, const
 }
 
 static const ArgOption render_options[] = {
-    {"output", 'o', "FOLDER", "writes to this folder, not into the cache's", .read = read_output,
+    {"output", 'o', "FOLDER", "writes to this folder, not into the cache's", .read = args_folder,
      offsetof(RenderOptions, output)},
     {"set", 0, "preview.PATH=VALUE", "sets a value of the scene; may be repeated", .read = read_set,
      offsetof(RenderOptions, sets)},

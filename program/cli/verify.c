@@ -35,20 +35,10 @@ typedef struct Verify {
     Findings findings;
 } Verify;
 
-static bool read_stretch(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
-    char *end;
-    const double stretch = strtod(text, &end);
-    (void)option;
-    if (end == text || *end || !(stretch >= 1) || !isfinite(stretch))
-        return args_complain(command, "--stretch: expected a number of 1 or more, got '%s'", shown(text).text);
-    *(double *)field = stretch;
-    return true;
-}
-
 static const ArgOption verify_options[] = {
     {"frames", 0, "A-B", "reads only these frames (or A alone) [all]", .read = args_span, offsetof(Verify, frames)},
-    {"stretch", 0, "X", "edges longer than X times their length at rest are stretched [2]", .read = read_stretch,
-     offsetof(Verify, stretch)},
+    {"stretch", 0, "X", "edges longer than X times their length at rest are stretched [2]", .read = args_number,
+     offsetof(Verify, stretch), 1, 1e9},
     {"csv", 0, "FILE", "also writes the counts of every frame to FILE", .read = args_text, offsetof(Verify, csv)},
 };
 

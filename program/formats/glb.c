@@ -114,19 +114,6 @@ static SingeResult put_pictures(GlbFile *f, const char *path, SingeError *error)
     return SINGE_OK;
 }
 
-/// A material for each sheet: paper, with the sheet's picture if it has one.
-static void put_materials(GlbFile *f) {
-    uint32_t textures = 0;
-    for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
-        const bool pictured = f->scene->sheets[i].picture != NULL;
-        sink_text(&f->text,
-                  "%s{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.9",
-                  i ? "," : "");
-        if (pictured) sink_text(&f->text, ",\"baseColorTexture\":{\"index\":%u}", textures++);
-        sink_text(&f->text, "}}");
-    }
-}
-
 /// Begins the list of the sheets' pictures. Returns how many there are.
 static uint32_t put_images(GlbFile *f, const char *up) {
     uint32_t pictures = 0;
@@ -174,7 +161,15 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
         put_part(f, "]}],\"nodes\":[", &f->nodes);
         put_part(f, "],\"meshes\":[", &f->meshes);
         sink_text(&f->text, "],\"materials\":[");
-        put_materials(f);
+        uint32_t textures = 0; // a material for each sheet: paper, with the sheet's picture if it has one
+        for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
+            const bool pictured = f->scene->sheets[i].picture != NULL;
+            sink_text(&f->text,
+                      "%s{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.9",
+                      i ? "," : "");
+            if (pictured) sink_text(&f->text, ",\"baseColorTexture\":{\"index\":%u}", textures++);
+            sink_text(&f->text, "}}");
+        }
         sink_text(&f->text, "]");
 
         const uint32_t pictures = put_images(f, up);

@@ -17,7 +17,22 @@ static void set3(float v[3], float x, float y, float z) {
 #define SET_FLOAT(place, standard) place = standard;
 #define SET_INT SET_FLOAT
 #define SET_VECTOR(place, ...) memcpy(place, (const float[])__VA_ARGS__, sizeof place);
-static void default_preview(ScenePreview *preview) {
+bool default_scene(SceneArena *arena, void *object) {
+    (void)arena;
+    Scene *scene = object;
+    scene->frames = 100;
+    scene->fps = 24;
+    scene->steps = 20;
+    scene->sim = singe_default_sim();
+    scene->sim.surface_detail = 0.4e-3f;
+    scene->sim.gas.enabled = true;
+    scene->sim.contact.enabled = true;
+    scene->tearing = true;
+    scene->output.formats = 1u << OUTPUT_ply;
+    scene->output.texture_size = 1024;
+    scene->gas_detail = 1;
+
+    ScenePreview *preview = &scene->preview;
     preview->size[0] = 960;
     preview->size[1] = 540;
     preview->shutter = 0.5f;
@@ -32,23 +47,6 @@ static void default_preview(ScenePreview *preview) {
 #define PREVIEW_GROUND PREVIEW_LIGHT
 #define PREVIEW_MAIN PREVIEW_LIGHT
 #include "preview/preview.def"
-}
-
-bool default_scene(SceneArena *arena, void *object) {
-    (void)arena;
-    Scene *scene = object;
-    scene->frames = 100;
-    scene->fps = 24;
-    scene->steps = 20;
-    scene->sim = singe_default_sim();
-    scene->sim.surface_detail = 0.4e-3f;
-    scene->sim.gas.enabled = true;
-    scene->sim.contact.enabled = true;
-    scene->tearing = true;
-    default_preview(&scene->preview);
-    scene->output.formats = 1u << OUTPUT_ply;
-    scene->output.texture_size = 1024;
-    scene->gas_detail = 1;
     return true;
 }
 

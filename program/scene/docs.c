@@ -119,28 +119,28 @@ static void put_type(FILE *file, const SchemaRow *row) {
     }
 }
 
-static void put_row(FILE *file, const SchemaRow *row, const void *object) {
-    char range[80];
-    row_range(row, range, sizeof range);
-    if (strcmp(range, "-1000000 to 1000000") == 0) // no real limit
-        range[0] = 0;
-    fprintf(file, "| `%s` | ", row->key);
-    put_type(file, row);
-    fprintf(file, " | %s%s%s | ", range, row->flags & ROW_INF ? ", inf" : "", row->flags & ROW_NONE ? ", none" : "");
-    bool has_default = object && !(row->flags & (ROW_REQUIRED | ROW_SHORT)) && !row->sub;
-    static const int without[] = {ROW_POSITION, ROW_ROTATION, ROW_TEXT, ROW_NAME, ROW_FILE, ROW_POINTS, ROW_INDICES};
-    for (size_t i = 0; i < sizeof without / sizeof *without; i++) has_default &= (int)row->type != without[i];
-    if (row->flags & ROW_REQUIRED) fputs("*required*", file);
-    else if (has_default) dump_value(row, object, file);
-    fprintf(file, " | %s |\n", row->doc);
-}
-
 static void put_table(FILE *file, const Schema *schema, const void *object, unsigned kind, bool shared) {
     fputs("| key | value | range | default | meaning |\n|---|---|---|---|---|\n", file);
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
         bool common = !row->kinds;
-        if (shared ? common : !common && row_allowed(row, kind)) put_row(file, row, object);
+        if (shared ? !common : common || !row_allowed(row, kind)) continue;
+
+        char range[80];
+        row_range(row, range, sizeof range);
+        if (strcmp(range, "-1000000 to 1000000") == 0) // no real limit
+            range[0] = 0;
+        fprintf(file, "| `%s` | ", row->key);
+        put_type(file, row);
+        fprintf(file, " | %s%s%s | ", range, row->flags & ROW_INF ? ", inf" : "",
+                row->flags & ROW_NONE ? ", none" : "");
+        bool has_default = object && !(row->flags & (ROW_REQUIRED | ROW_SHORT)) && !row->sub;
+        static const int without[] = {ROW_POSITION, ROW_ROTATION, ROW_TEXT,   ROW_NAME,
+                                      ROW_FILE,     ROW_POINTS,   ROW_INDICES};
+        for (size_t k = 0; k < sizeof without / sizeof *without; k++) has_default &= (int)row->type != without[k];
+        if (row->flags & ROW_REQUIRED) fputs("*required*", file);
+        else if (has_default) dump_value(row, object, file);
+        fprintf(file, " | %s |\n", row->doc);
     }
 }
 

@@ -39,22 +39,6 @@ static void find_sets(AblatePlan *plan, const Shell *shell, const AblateState *a
     for (uint32_t i = 0; i < shell->particle_count; i++) root[i] = root[root[i]];
 }
 
-/// Size, area and pins of every set, at its root.
-static void piece_measure(AblatePlan *plan, const Shell *shell, const AblateState *ablate, const uint8_t *pinned) {
-    size_t count = shell->particle_count;
-    memset(plan->size, 0, count * sizeof *plan->size);
-    memset(plan->mark, 0, count);
-    for (uint32_t i = 0; i < count; i++) plan->area[i] = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        if (ablate->degree[i] == 0) continue;
-
-        uint32_t root = plan->root[i];
-        plan->size[root]++;
-        if (i < shell->vertex_count) plan->area[root] += (double)shell->matter.area[i];
-        if (pinned[i]) plan->mark[root] |= PIECE_HELD;
-    }
-}
-
 /// Marks a sheet's small loose pieces; its largest stays whatever its size. The root of a piece is a corner: every
 /// piece has one, and corners come first.
 static bool mark_small(AblatePlan *plan, const Sheet *sheet) {
@@ -98,7 +82,19 @@ void piece_update(Removal *removal, EventList *events) {
     const StateInput *state = removal->state;
     AblateState *ablate = removal->ablate;
     find_sets(plan, shell, ablate);
-    piece_measure(plan, shell, ablate, state->dynamics->pinned);
+
+    // size, area and pins of every set, at its root
+    memset(plan->size, 0, shell->particle_count * sizeof *plan->size);
+    memset(plan->mark, 0, shell->particle_count);
+    for (uint32_t i = 0; i < shell->particle_count; i++) plan->area[i] = 0;
+    for (uint32_t i = 0; i < shell->particle_count; i++) {
+        if (ablate->degree[i] == 0) continue;
+
+        uint32_t root = plan->root[i];
+        plan->size[root]++;
+        if (i < shell->vertex_count) plan->area[root] += (double)shell->matter.area[i];
+        if (state->dynamics->pinned[i]) plan->mark[root] |= PIECE_HELD;
+    }
 
     // small loose pieces go whole: cells, springs and, with their last spring, particles
     bool drop = false;

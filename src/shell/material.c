@@ -162,23 +162,6 @@ static SingeResult check_value(const ParamRule *rule, const Sheet *sheet, uint32
                      sheet->name, rule->name, rule->range.words, corner ? "vertex" : "cell", element);
 }
 
-/// Evaluates a rule's parameter into values[particles].
-static SingeResult evaluate(const ParamField *field, const ParamRule *rule, float *values, SingeError *error) {
-    const SheetSource *source = field->source;
-    const Sheet *sheet = &source->sheet;
-    uint32_t begin, end;
-
-    rule_range(rule, sheet, &begin, &end);
-    for (uint32_t i = begin; i < end; i++) {
-        uint32_t cell = i - sheet->vertex_count;
-        values[i] =
-            i < sheet->vertex_count ? field_value(field, &i, 1, 0) : field_value(field, source->cells[cell], 4, cell);
-        TRY(check_value(rule, sheet, i, values[i], error));
-    }
-
-    return SINGE_OK;
-}
-
 /// A quantity computed from several parameters may exceed the range of float.
 static SingeResult check_matter(const SheetSource *source, SingeError *error) {
     static const struct {
@@ -225,7 +208,15 @@ SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSou
             return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory for sheet '%s'",
                              source->sheet.name);
         TRY(field_open(def, rule, &field, error));
-        TRY(evaluate(&field, rule, *values, error));
+
+        uint32_t begin, end;
+        rule_range(rule, &source->sheet, &begin, &end);
+        for (uint32_t i = begin; i < end; i++) {
+            const uint32_t cell = i - source->sheet.vertex_count;
+            (*values)[i] = i < source->sheet.vertex_count ? field_value(&field, &i, 1, 0)
+                                                          : field_value(&field, source->cells[cell], 4, cell);
+            TRY(check_value(rule, &source->sheet, i, (*values)[i], error));
+        }
 
         // the rules of one parameter, one per layer, are consecutive; a single value is kept if all are the same to the
         // bit

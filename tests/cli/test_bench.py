@@ -153,7 +153,7 @@ class Bench(Case):
             (["swing", "--cells", ""], "whole numbers"),
             (["swing", "--cells", "nan"], "whole numbers"),
             (["swing", "--cells", ",".join(["8"] * 17)], "at most 16"),
-            (["swing", "--thickness", "0"], "--thickness MM,MM,...: expected numbers from 0.01 to 100"),
+            (["swing", "--thickness", "0"], "--thickness: expected numbers from 0.01 to 100 as MM,MM,..."),
             (["swing", "--pins", "3"], "from 1 to 2"),
             (["swing", "--time", "0"], "--time S: expected a number from 0.01 to 60"),
             (["swing", "--time", "1s"], "a number from 0.01 to 60"),

@@ -65,7 +65,7 @@ class Usage(Case):
             (["render", "x", "--set", "pace=2"], "only preview."),
             (["paper"], "needs WHAT"),
             (["paper", "table3"], "did you mean 'table1'?"),
-            (["paper", "fig8", "-o", ""], "needs a folder"),
+            (["paper", "fig8", "-o", ""], "expected a folder"),
             (["scene-doc", "x"], "unexpected argument"),
         ):
             with self.subTest(args=args):
