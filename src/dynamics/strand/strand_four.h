@@ -55,7 +55,7 @@ static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lan
 
 /// Adds to the first three numbers; the fourth stays.
 static inline Float4 float4_add_position(Float4 x, Float4 displacement) {
-    return float4_select((Float4Mask){-1, -1, -1, 0}, x + displacement, x);
+    return FLOAT4_SHUFFLE(x + displacement, x, 0, 1, 2, 7);
 }
 
 static inline void float4s_move(Float4s *x, const Float4s *forth, const Float4s *back) {
