@@ -103,8 +103,10 @@ bool bench_takes(const char *accepted, const char *option) {
 
 bool bench_args_read(const char *name, const char *summary, const char *accepted, int argc, char **argv,
                      BenchRequest *request, ExitCode *code) {
+    char full[32];
+    snprintf(full, sizeof full, "bench %s", name);
     ArgOption options[BENCH_OPTION_COUNT];
-    ArgCommand command = {.name = name, .summary = summary, .options = options};
+    ArgCommand command = {.name = full, .summary = summary, .options = options};
     for (int i = 0; i < BENCH_OPTION_COUNT; i++)
         if (bench_takes(accepted, bench_all_options[i].name)) options[command.option_count++] = bench_all_options[i];
     *request = (BenchRequest){.options = bench_options()};

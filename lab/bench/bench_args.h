@@ -20,7 +20,7 @@ typedef struct BenchRequest {
 /// Whether a measurement takes an option: `accepted` has its name between spaces, " cells time ".
 bool bench_takes(const char *accepted, const char *option);
 
-/// Reads the command line of the measurement `name` ("bench swing"), as args_read does.
+/// Reads the command line of the measurement `name` ("swing"), as args_read does.
 bool bench_args_read(const char *name, const char *summary, const char *accepted, int argc, char **argv,
                      BenchRequest *request, ExitCode *code);
 

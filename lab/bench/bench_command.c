@@ -19,58 +19,57 @@
 #define SIZES " springs steps threads " OUTPUT
 
 static const struct {
-    const char *name, *full_name;
+    const char *name;
     BenchFn *run;
     const char *accepted; ///< options, between spaces
     const char *summary;
 } measurements[] = {
-    {"swing", "bench swing", bench_swing, TRAJECTORY,
+    {"swing", bench_swing, TRAJECTORY,
      "A sheet of 1 m x 1 m, held at corners, falls from the horizontal: time per frame, strain, motion."},
-    {"hang-and-shrink", "bench hang-and-shrink", bench_hang_and_shrink, TRAJECTORY,
+    {"hang-and-shrink", bench_hang_and_shrink, TRAJECTORY,
      "A sheet that hangs from two corner patches shrinks to 0.8 of its size: the numbers of swing."},
-    {"tear", "bench tear", bench_tear, " threads instructions substeps " OUTPUT,
+    {"tear", bench_tear, " threads instructions substeps " OUTPUT,
      "A strip with a weak line is pulled apart: the load at which it breaks, by cell size and time step."},
-    {"dynamics", "bench dynamics", bench_dynamics, " state quick " SIZES SOLVER,
+    {"dynamics", bench_dynamics, " state quick " SIZES SOLVER,
      "The dynamics and its projection of springs at several sizes, compared with the machine's peaks."},
-    {"step", "bench step", bench_step, " limit-ms curvature " SIZES SOLVER,
+    {"step", bench_step, " limit-ms curvature " SIZES SOLVER,
      "Whole steps of a burning sheet with a sphere and the ground: milliseconds per stage."},
-    {"surface", "bench surface", bench_surface, SIZES,
+    {"surface", bench_surface, SIZES,
      "The drawn surface of a burning sheet at several refinements: triangles and milliseconds."},
-    {"heap", "bench heap", bench_heap, " cells time threads substeps " OUTPUT,
+    {"heap", bench_heap, " cells time threads substeps " OUTPUT,
      "A cloth falls over a sphere and folds: milliseconds per frame and stage, self-contact, strain."},
-    {"collapse", "bench collapse", bench_collapse, " cells time threads substeps " OUTPUT,
+    {"collapse", bench_collapse, " cells time threads substeps " OUTPUT,
      "A hollow ball collapses into self-contact under its weight: the numbers of heap."},
-    {"stack", "bench stack", bench_stack, " cells sheets time threads substeps " OUTPUT,
+    {"stack", bench_stack, " cells sheets time threads substeps " OUTPUT,
      "Sheets fall on top of each other over a sphere: mean and worst step, strain, crossings, memory."},
-    {"wind", "bench wind", bench_wind, " cells time threads substeps " OUTPUT,
+    {"wind", bench_wind, " cells time threads substeps " OUTPUT,
      "A sheet held at two corners in gusts of 5, 15 and 30 m/s: processor time, CCD, strain, crossings."},
-    {"memory", "bench memory", bench_memory, " springs threads " OUTPUT,
-     "Bytes per spring of a simulation and of its drawn mesh."},
-    {"front", "bench front", bench_front, " material quick threads " OUTPUT,
+    {"memory", bench_memory, " springs threads " OUTPUT, "Bytes per spring of a simulation and of its drawn mesh."},
+    {"front", bench_front, " material quick threads " OUTPUT,
      "The burning front of materials, level, down and up: speed, temperature, residue, and published values."},
-    {"spread", "bench spread", bench_spread, " quick threads " OUTPUT, "Speed of a fire with gas: level, down and up."},
-    {"output", "bench output", bench_output, OUTPUT,
+    {"spread", bench_spread, " quick threads " OUTPUT, "Speed of a fire with gas: level, down and up."},
+    {"output", bench_output, OUTPUT,
      "Frames of 25,000 vertices in every format: bytes, and milliseconds of the program and of the system."},
-    {"preview", "bench preview", bench_preview, " threads " OUTPUT,
+    {"preview", bench_preview, " threads " OUTPUT,
      "Pictures of 100,000 triangles at 1280 x 720 with 16 samples: seconds of processor time."},
-    {"picture", "bench picture", bench_picture, " threads quick " OUTPUT,
+    {"picture", bench_picture, " threads quick " OUTPUT,
      "Pictures at 960 x 540: seconds; and at 320 x 180 their error against 256 samples, and its change while the camera turns."},
-    {"compare", "bench compare", bench_compare, " springs time threads instructions quick " OUTPUT,
+    {"compare", bench_compare, " springs time threads instructions quick " OUTPUT,
      "The paper's solver and ours on the same trajectories: error, cost, and cost at equal error."},
-    {"width", "bench width", bench_width, " substeps projections state " SIZES,
+    {"width", bench_width, " substeps projections state " SIZES,
      "The same run with each instruction set: cost, and whether the bytes are the same."},
-    {"stability", "bench stability", bench_stability, " cells time threads smoothing quick " SOLVER OUTPUT,
+    {"stability", bench_stability, " cells time threads smoothing quick " SOLVER OUTPUT,
      "Whether swinging and strongly shrinking sheets are stable at any thickness, resolution and time step."},
-    {"look", "bench look", bench_look, " cells thickness time threads smoothing quick " SOLVER OUTPUT,
+    {"look", bench_look, " cells thickness time threads smoothing quick " SOLVER OUTPUT,
      "Rest shape, sag and wrinkles at several time steps, substeps and resolutions."},
-    {"fold", "bench fold", bench_fold, " substeps threads quick instructions " OUTPUT,
+    {"fold", bench_fold, " substeps threads quick instructions " OUTPUT,
      "A strip is folded by 180 degrees and released: the angle that remains, by resolution and time step."},
-    {"isotropy", "bench isotropy", bench_isotropy,
+    {"isotropy", bench_isotropy,
      " cells thickness curvature creases red outline seeds time threads substeps instructions quick " OUTPUT,
      "The same burn on a grid and on one turned by 45 degrees: whether its folds follow the mesh."},
-    {"plate", "bench plate", bench_plate, " cells substeps threads instructions quick svg " OUTPUT,
+    {"plate", bench_plate, " cells substeps threads instructions quick svg " OUTPUT,
      "Strips that sag and discs that roll up, by the direction of their mesh: stiffness and curvatures."},
-    {"spectrum", "bench spectrum", bench_spectrum, " thickness time threads quick instructions substeps " OUTPUT,
+    {"spectrum", bench_spectrum, " thickness time threads quick instructions substeps " OUTPUT,
      "Wrinkles of a burning edge by wavelength, and their peak by time step, resolution and thickness."},
 };
 
@@ -81,7 +80,7 @@ static void print_text(FILE *file, const void *context) { fputs(context, file); 
 
 static ExitCode bench_measure(int m, const BenchRequest *request) {
     Console console = console_make(false);
-    BenchTable table = {.text = request->json ? NULL : stdout};
+    BenchTable table = {.command = measurements[m].name, .text = request->json ? NULL : stdout};
     SingeError error = {.element = -1};
     BenchOptions options = request->options;
     char *svg = NULL;
@@ -150,8 +149,8 @@ int command_bench(int argc, char **argv) {
     if (m < 0) return EXIT_INPUT;
     BenchRequest request;
     ExitCode code;
-    if (!bench_args_read(measurements[m].full_name, measurements[m].summary, measurements[m].accepted, argc - 1,
-                         argv + 1, &request, &code))
+    if (!bench_args_read(measurements[m].name, measurements[m].summary, measurements[m].accepted, argc - 1, argv + 1,
+                         &request, &code))
         return code;
     if (!bench_takes(measurements[m].accepted, "material")) return bench_measure(m, &request);
     BenchMaterials materials;

@@ -177,7 +177,6 @@ SingeResult bench_isotropy(const BenchOptions *options, BenchTable *table, Singe
     const BenchList limits = bench_list(&options->curvature, 1, &limit);
     Burn burn = {.options = options, .creases = options->creases};
     SingeResult result = SINGE_OK;
-    table_begin(table, "isotropy");
     for (int c = 0; c < cells.count; c++)
         for (int t = 0; t < thickness.count; t++)
             for (int l = 0; l < limits.count && !result; l++) {

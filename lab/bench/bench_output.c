@@ -147,7 +147,6 @@ SingeResult bench_output(const BenchOptions *options, BenchTable *table, SingeEr
         .colour = {1, 1, 1},
         .mesh = {.vertex_count = 4, .cell_count = 1, .positions = corners, .uv = uv, .cells = cell}};
     const OutputScene scene = {.name = "bench", .fps = 24, .texture_size = 1024, .sheet_count = 1, .sheets = &sheet};
-    table_begin(table, "output");
     char folder[] = "/dev/shm/singe-bench-XXXXXX"; // of a name that nobody can know beforehand
     OutputBench *b = calloc(1, sizeof *b);
     double ply = 0;

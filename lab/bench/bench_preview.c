@@ -301,7 +301,6 @@ static SingeResult measure_shots(const BenchOptions *options, ShotFn *measure, c
 }
 
 SingeResult bench_preview(const BenchOptions *options, BenchTable *table, SingeError *error) {
-    table_begin(table, "preview");
     return measure_shots(options, preview_bench_measure, shots, sizeof shots / sizeof *shots, table, error);
 }
 
@@ -311,6 +310,5 @@ SingeResult bench_picture(const BenchOptions *options, BenchTable *table, SingeE
         {"lens", {0.08f, -0.28f, 0.09f}, {0, 0.02f, 0.005f}, 0.52f, 0.003f, 0.02f, false},
         {"flames", {0.08f, -0.28f, 0.09f}, {0, 0.02f, 0.005f}, 0.52f, 0.003f, 0.02f, true},
     };
-    table_begin(table, "picture");
     return measure_shots(options, picture_measure, near, sizeof near / sizeof *near, table, error);
 }

@@ -66,10 +66,5 @@ SingeResult burning_build(const BenchOptions *options, const SingeAllocator *all
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
     result = burning_fill(*sim, options, springs);
-    if (!result) return SINGE_OK;
-    *error = *singe_sim_error(*sim);
-    error->code = result;
-    singe_sim_destroy(*sim);
-    *sim = NULL;
-    return result;
+    return result ? bench_give_up(sim, result, error) : SINGE_OK;
 }

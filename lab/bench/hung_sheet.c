@@ -131,6 +131,14 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
     return SINGE_OK;
 }
 
+SingeResult bench_give_up(SingeSim **sim, SingeResult result, SingeError *error) {
+    *error = *singe_sim_error(*sim);
+    error->code = result;
+    singe_sim_destroy(*sim);
+    *sim = NULL;
+    return result;
+}
+
 SingeResult sheet_build(const BenchSetup *setup, SingeSim **sim, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     def.thread_count = setup->threads;
@@ -140,10 +148,5 @@ SingeResult sheet_build(const BenchSetup *setup, SingeSim **sim, SingeError *err
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
     result = hung_sheet_fill(*sim, setup);
-    if (!result) return SINGE_OK;
-    *error = *singe_sim_error(*sim);
-    error->code = result;
-    singe_sim_destroy(*sim);
-    *sim = NULL;
-    return result;
+    return result ? bench_give_up(sim, result, error) : SINGE_OK;
 }

@@ -36,6 +36,9 @@ SingeResult sheet_add_strip(SingeSim *sim, SingeSheetDef *def, const int cells[2
 /// Only weight acts on a sheet of this material, and no heat flows.
 void sheet_inert(SingeMaterialDef *material);
 
+/// Takes over why a simulation could not be built, and destroys it: *sim is NULL. Returns the result.
+SingeResult bench_give_up(SingeSim **sim, SingeResult result, SingeError *error);
+
 /// Creates a simulation and commits it. On failure *sim is NULL.
 SingeResult sheet_build(const BenchSetup *setup, SingeSim **sim, SingeError *error);
 

@@ -149,7 +149,6 @@ SingeResult bench_compare(const BenchOptions *options, BenchTable *table, SingeE
     SingeResult result = SINGE_OK;
 
     c.frames = (int)fmax(1, round(seconds * BENCH_FPS));
-    table_begin(table, "compare");
     for (int i = 0; i < springs.count && !result; i++) {
         double size = pow(options_cells(springs.values[i]), 2) * 10, paper_ms = 0;
         result = trajectories(&c, BENCH_SWING, size);

@@ -49,7 +49,6 @@ SingeResult bench_dynamics(const BenchOptions *options, BenchTable *table, Singe
     BenchList springs = bench_list(&options->springs, 5, (const double[]){1e3, 4e3, 16e3, 1e5, 1e6});
     BenchSetup setup = sheet_setup(options, options->state, 20);
     Peaks peaks;
-    table_begin(table, "dynamics");
     if (!peaks_measure(&peaks, options->threads, options->quick ? 0.1 : 1)) return SINGE_ERROR_MEMORY;
     peaks_tell(&peaks, table);
     SingeResult result = SINGE_OK;

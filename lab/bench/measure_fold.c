@@ -135,7 +135,6 @@ SingeResult bench_fold(const BenchOptions *options, BenchTable *table, SingeErro
     const SingeMaterialDef material = singe_default_material();
     const double share = (double)material.crease_share.value, radius = (double)material.crease_radius.value;
     SingeResult result = SINGE_OK;
-    table_begin(table, "fold");
     for (int i = 0; i < 2 * 2 * 4 && !result; i++) {
         const int setting = i % 4, towards = i / 4 % 2, bend = i / 8;
         if (options->quick && setting == 3) continue;

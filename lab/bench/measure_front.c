@@ -108,7 +108,6 @@ static SingeResult front_material(const BenchOptions *options, const BenchMateri
 
 SingeResult bench_front(const BenchOptions *options, BenchTable *table, SingeError *error) {
     SingeResult result = SINGE_OK;
-    table_begin(table, "front");
     for (int m = 0; m < options->material_count && !result; m++)
         result = front_material(options, &options->materials[m], table, error);
     return result;

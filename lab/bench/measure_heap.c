@@ -5,6 +5,7 @@
 
 #include "bench/bench.h"
 #include "bench/geometry.h"
+#include "bench/hung_sheet.h"
 #include "bench/machine.h"
 #include "bench/strain.h"
 #include "analysis/numbers.h"
@@ -114,10 +115,7 @@ static SingeResult heap_build(const BenchOptions *options, int cells, bool close
     solid.radius = sphere;
     key.position[2] = sphere;
     if (!result && !closed) result = singe_sim_add_collider(*sim, &solid, &id);
-    if (!result) return SINGE_OK;
-    *error = *singe_sim_error(*sim);
-    singe_sim_destroy(*sim);
-    return result;
+    return result ? bench_give_up(sim, result, error) : SINGE_OK;
 }
 
 static SingeResult heap_measure(const BenchOptions *options, int cells, bool closed, BenchTable *table,
@@ -177,7 +175,6 @@ static SingeResult heap_measure(const BenchOptions *options, int cells, bool clo
 SingeResult bench_heap(const BenchOptions *options, BenchTable *table, SingeError *error) {
     BenchList cells = bench_list(&options->cells, 2, (const double[]){100, 200});
     SingeResult result = SINGE_OK;
-    table_begin(table, "heap");
     for (int i = 0; i < cells.count && !result; i++)
         result = heap_measure(options, (int)cells.values[i], false, table, error);
     return result;
@@ -186,7 +183,6 @@ SingeResult bench_heap(const BenchOptions *options, BenchTable *table, SingeErro
 SingeResult bench_collapse(const BenchOptions *options, BenchTable *table, SingeError *error) {
     BenchList cells = bench_list(&options->cells, 2, (const double[]){40, 102});
     SingeResult result = SINGE_OK;
-    table_begin(table, "collapse");
     for (int i = 0; i < cells.count && !result; i++)
         result = heap_measure(options, (int)cells.values[i], true, table, error);
     return result;

@@ -137,7 +137,6 @@ SingeResult bench_look(const BenchOptions *options, BenchTable *table, SingeErro
     BenchList thickness = bench_list(&options->thickness, 1, (const double[]){2e-3});
     Look *looks = calloc(SETTINGS, sizeof *looks);
     SingeResult result = looks ? SINGE_OK : SINGE_ERROR_MEMORY;
-    table_begin(table, "look");
     for (int i = 0; i < SETTINGS && !result; i++) {
         const Setting *setting = &settings[i];
         BenchSetup setup = sheet_setup(options, BENCH_HANG, 20);

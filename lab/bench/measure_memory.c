@@ -22,7 +22,6 @@ static SingeResult measure_contact(const BenchOptions *options, double springs, 
 SingeResult bench_memory(const BenchOptions *options, BenchTable *table, SingeError *error) {
     BenchList springs = bench_list(&options->springs, 5, (const double[]){1e3, 4e3, 16e3, 1e5, 1e6});
     SingeResult result = SINGE_OK;
-    table_begin(table, "memory");
     for (int i = 0; i < springs.count && !result; i++) {
         MachineHeld held = {0};
         const SingeAllocator counting = {machine_resize, &held};

@@ -204,7 +204,6 @@ SingeResult bench_plate(const BenchOptions *options, BenchTable *table, SingeErr
     static const int substeps[] = {3, 8, 24, 0};
     const int angle_count = options->quick ? 2 : 4;
     SingeResult result = SINGE_OK;
-    table_begin(table, "plate");
     FILE *svg = options->drawing;
     if (svg) {
         static const char *const rows[4] = {"strips", "strips, isotropic", "discs", "discs, isotropic"};

@@ -116,12 +116,7 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
 
     if (!result) result = singe_sim_commit(*sim);
     if (!result) result = strip_hold(*sim, strip, id);
-    if (!result) return SINGE_OK;
-    *error = *singe_sim_error(*sim);
-    error->code = result;
-    singe_sim_destroy(*sim);
-    *sim = NULL;
-    return result;
+    return result ? bench_give_up(sim, result, error) : SINGE_OK;
 }
 
 // ---- its shape
@@ -234,7 +229,6 @@ SingeResult bench_spectrum(const BenchOptions *options, BenchTable *table, Singe
     Spectrum spectra[SETTINGS] = {0};
     const uint32_t seeds = options->quick ? 1 : 4;
     SingeResult result = SINGE_OK;
-    table_begin(table, "spectrum");
     for (int i = 0; i < SETTINGS && !result; i++)
         for (uint32_t seed = 0; seed < seeds && !result; seed++)
             result = spectrum_observe(options, i, seed, &spectra[i], error);

@@ -20,7 +20,6 @@ enum { CASES = sizeof cases / sizeof *cases, CASES_QUICK = 7 };
 
 SingeResult bench_spread(const BenchOptions *options, BenchTable *table, SingeError *error) {
     double level = NAN, down = NAN;
-    table_begin(table, "spread");
     for (int i = 0; i < (options->quick ? CASES_QUICK : CASES); i++) {
         const SpreadCase *it = &cases[i];
         double speed;

@@ -117,7 +117,6 @@ SingeResult bench_stability(const BenchOptions *options, BenchTable *table, Sing
     Cases cases = {.table = table, .list = calloc(2 * CELLS_MAX * RATIOS_MAX * STEPS_MAX, sizeof *cases.list)};
     SingeResult result = SINGE_OK;
     if (!cases.list) return SINGE_ERROR_MEMORY;
-    table_begin(table, "stability");
     if (table->text)
         fputs("NaN: a step failed or a number is not finite. exploded: energy_gain > 0.5 J/kg (shrink 10) or\n"
               "speed > 100 m/s. stretched: reach > 1.5. crumpled: gyration < 0.35 of a flat sheet's, or folded > 0.25\n"

@@ -117,7 +117,6 @@ SingeResult bench_stack(const BenchOptions *options, BenchTable *table, SingeErr
     BenchList sheets = bench_list(&options->sheets, 1, (const double[]){10});
     BenchList cells = bench_list(&options->cells, 1, (const double[]){70});
     SingeResult result = SINGE_OK;
-    table_begin(table, "stack");
     for (int i = 0; i < sheets.count && !result; i++)
         for (int k = 0; k < cells.count && !result; k++)
             result = stack_measure(options, (uint32_t)sheets.values[i], (uint32_t)cells.values[k], table, error);

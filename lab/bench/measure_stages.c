@@ -69,7 +69,6 @@ SingeResult bench_step(const BenchOptions *options, BenchTable *table, SingeErro
     BenchList limits = bench_list(&options->curvature, 1, &default_limit);
     Yardstick *yardstick = yardstick_create();
     SingeResult result = yardstick ? SINGE_OK : SINGE_ERROR_MEMORY;
-    table_begin(table, "step");
     for (int i = 0; i < springs.count; i++)
         for (int l = 0; l < limits.count && !result; l++) {
             BenchOptions limited = *options;

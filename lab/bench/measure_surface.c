@@ -49,7 +49,6 @@ SingeResult bench_surface(const BenchOptions *options, BenchTable *table, SingeE
     const double details[] = {0, 0.8e-3, 0.4e-3, 0.2e-3};
     BenchList springs = bench_list(&options->springs, 2, (const double[]){3e4, 1e5});
     SingeResult result = SINGE_OK;
-    table_begin(table, "surface");
     for (int i = 0; i < springs.count && !result; i++)
         for (size_t k = 0; k < sizeof details / sizeof *details && !result; k++) {
             BenchOptions with = *options;

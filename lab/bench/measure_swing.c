@@ -73,7 +73,6 @@ SingeResult bench_swing(const BenchOptions *options, BenchTable *table, SingeErr
     BenchSetup setup = sheet_setup(options, BENCH_SWING, DEFAULT_STEPS);
     if (options->smoothing < 0) setup.solver.smoothing = 0; // no damping of any kind
     bool standard = setup.solver.method == SINGE_SOLVER_STRAND && !options->steps && !options->substeps;
-    table_begin(table, "swing");
     return run_all(options, &setup, standard ? 1 : DEFAULT_STEPS, 1, &cells, &thickness, table, error);
 }
 
@@ -81,6 +80,5 @@ SingeResult bench_hang_and_shrink(const BenchOptions *options, BenchTable *table
     BenchList cells = bench_list(&options->cells, 2, (const double[]){50, 100});
     BenchList thickness = bench_list(&options->thickness, 3, (const double[]){1e-3, 2e-3, 5e-3});
     BenchSetup setup = sheet_setup(options, BENCH_SHRINK, DEFAULT_STEPS);
-    table_begin(table, "hang-and-shrink");
     return run_all(options, &setup, DEFAULT_STEPS, 2, &cells, &thickness, table, error);
 }

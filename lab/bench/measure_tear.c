@@ -133,7 +133,6 @@ static SingeResult pull(const BenchOptions *options, uint32_t nx, uint32_t ny, i
 
 SingeResult bench_tear(const BenchOptions *options, BenchTable *table, SingeError *error) {
     double first = 0;
-    table_begin(table, "tear");
     for (int finer = 1; finer <= 2; finer++)
         for (int rate = STEP_RATE; rate <= 2 * STEP_RATE; rate *= 2) {
             Pulled pulled;

@@ -66,7 +66,6 @@ SingeResult bench_width(const BenchOptions *options, BenchTable *table, SingeErr
     BenchList springs = bench_list(&options->springs, 2, (const double[]){16e3, 1e5});
     BenchSetup setup = sheet_setup(options, options->state, 20);
     SingeResult result = SINGE_OK;
-    table_begin(table, "width");
     for (int i = 0; i < springs.count && !result; i++) {
         Reference plain = {0};
         setup.cells = options_cells(springs.values[i]);

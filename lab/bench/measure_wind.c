@@ -80,7 +80,6 @@ static SingeResult wind_measure(const BenchOptions *options, uint32_t cells, flo
 SingeResult bench_wind(const BenchOptions *options, BenchTable *table, SingeError *error) {
     BenchList cells = bench_list(&options->cells, 1, (const double[]){60});
     SingeResult result = SINGE_OK;
-    table_begin(table, "wind");
     for (int i = 0; i < cells.count && !result; i++) {
         double first = 0;
         for (size_t k = 0; k < sizeof speeds / sizeof *speeds && !result; k++)

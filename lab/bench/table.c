@@ -6,10 +6,6 @@
 
 #include "bench/machine.h"
 
-void table_begin(BenchTable *table, const char *command) {
-    *table = (BenchTable){.command = command, .text = table->text};
-}
-
 void table_fact(BenchTable *table, const char *name, double number) {
     if (table->fact_count == BENCH_FACTS_MAX) return;
     table->facts[table->fact_count++] = (BenchFact){name, number};

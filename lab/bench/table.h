@@ -39,9 +39,6 @@ typedef struct BenchTable {
     int fact_count;
 } BenchTable;
 
-/// Names the measurement; `text` stays.
-void table_begin(BenchTable *table, const char *command);
-
 /// Adds a number about the whole table; before the first row.
 void table_fact(BenchTable *table, const char *name, double number);
 

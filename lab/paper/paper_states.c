@@ -1,5 +1,7 @@
 #include "paper/paper_states.h"
 
+#include "bench/hung_sheet.h"
+
 #include <stdlib.h>
 
 const char *const paper_state_names[PAPER_STATE_COUNT] = {[PAPER_SWING] = "swing", [PAPER_SHRINK] = "shrink"};
@@ -85,12 +87,7 @@ SingeResult paper_sim(PaperState state, int cells, const SingeSolverDef *solver,
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
     result = state_build(*sim, state, cells);
-    if (!result) return SINGE_OK;
-    *error = *singe_sim_error(*sim);
-    error->code = result;
-    singe_sim_destroy(*sim);
-    *sim = NULL;
-    return result;
+    return result ? bench_give_up(sim, result, error) : SINGE_OK;
 }
 
 SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, double regularisation, int cap,
