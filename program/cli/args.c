@@ -200,12 +200,14 @@ bool args_int(const ArgCommand *command, const ArgOption *option, const char *te
 }
 
 bool args_number(const ArgCommand *command, const ArgOption *option, const char *text, void *field) {
-    char *end;
+    char *end, range[64];
     errno = 0;
     const double number = strtod(text, &end);
+    if (option->high < ARG_HIGHEST) snprintf(range, sizeof range, "from %.10g to %.10g", option->low, option->high);
+    else snprintf(range, sizeof range, "of %.10g or more", option->low);
     if (errno || end == text || *end || !(number >= option->low && number <= option->high))
-        return args_complain(command, "--%s %s: expected a number from %.10g to %.10g, got '%s'", option->name,
-                             option->value, option->low, option->high, shown(text).text);
+        return args_complain(command, "--%s %s: expected a number %s, got '%s'", option->name, option->value, range,
+                             shown(text).text);
     *(double *)field = number;
     return true;
 }

@@ -26,6 +26,9 @@ struct ArgOption {
     double low, high; ///< of a number
 };
 
+/// In place of the highest number: any.
+#define ARG_HIGHEST 1e300
+
 struct ArgCommand {
     const char *name;    ///< "run"
     const char *operand; ///< "SCENE" takes exactly one, "[NAME]" one at most, NULL none
