@@ -212,6 +212,7 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 // wander over the ash.
 
 #define EMBER_HOT 1180.0f ///< K
+#define EMBER_MOST 6.0f   ///< radiance of the brightest channel, which none reaches
 
 static float seconds(const Preview *preview) { return (float)fmod(preview->time, 4096.0); }
 
@@ -280,20 +281,23 @@ static Float3 border_glow(const Preview *preview, const PaperState *state, const
 static void ember_shade(const Preview *preview, const PaperState *state, const Bent *bent, Point *point) {
     if (state->burn < 0.2f || state->temperature < 420) return;
     float air = ember_air(preview, point->position);
-    point->glow = float3_add(ember_line(preview, state, bent, air, point->footprint),
+    Float3 glow = float3_add(ember_line(preview, state, bent, air, point->footprint),
                              sparks(preview, state, bent, air, point->footprint));
-    point->glow = float3_add(point->glow, border_glow(preview, state, bent, air));
+    glow = float3_add(glow, border_glow(preview, state, bent, air));
 
     // a leaf of char that glows away, at its own temperature where it burns. Its heat spreads over a cell or two, but
     // real ember lines are thinner: they follow threads of noise, and break
     const float activity = ember_activity(state->glowing);
-    if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return;
-    float life = line_life(preview, bent) * minf(air, 1.2f);
-    float temperature =
-        ember_temperature(state->temperature) + 130 * (life - 0.5f) + 70 * bent->fine + 40 * bent->medium;
-    float strength = activity * (0.15f + 0.85f * life) * air;
-    point->glow =
-        float3_mad(point->glow, blackbody_glow(preview->blackbody, ember_seen(temperature)), EMBER_GAIN * strength);
+    if (activity >= 0.02f && ember_temperature(state->temperature) >= BLACKBODY_MIN) {
+        float life = line_life(preview, bent) * minf(air, 1.2f);
+        float temperature =
+            ember_temperature(state->temperature) + 130 * (life - 0.5f) + 70 * bent->fine + 40 * bent->medium;
+        float strength = activity * (0.15f + 0.85f * life) * air;
+        glow = float3_mad(glow, blackbody_glow(preview->blackbody, ember_seen(temperature)), EMBER_GAIN * strength);
+    }
+
+    // what film sees of it has the same colour and a bound: one hot sample does not fill a pixel at an edge
+    point->glow = float3_scale(glow, 1 / (1 + maxf(glow.x, maxf(glow.y, glow.z)) / EMBER_MOST));
 }
 
 // ---- the sheet
