@@ -122,6 +122,12 @@ TEST(scraps_of_ember_stay_orange) {
     print_message("a scrap of ember: %.0f %.0f %.0f\n", (double)middle(rgb, 0), (double)middle(rgb, 1),
                   (double)middle(rgb, 2));
     assert_true(middle(rgb, 0) > 120 && middle(rgb, 2) < 0.5f * middle(rgb, 0));
+
+    // nor does the film bleach the hottest of it
+    int blue = 0;
+    for (int i = 0; i < BYTES; i += 3) blue = rgb[i + 2] > blue ? rgb[i + 2] : blue;
+    print_message("its palest pixel: blue %d\n", blue);
+    assert_true(blue < 180); // was 245
 }
 
 /// Ash pales with time.
