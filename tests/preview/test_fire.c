@@ -440,6 +440,28 @@ TEST(smoke_dims_what_is_bright) {
     }
 }
 
+/// Smoke rises in streaks: inside of an even cloud the picture changes more from side to side than from below to above.
+TEST(smoke_has_streaks) {
+    static uint8_t rgb[BYTES];
+    static Ball ball;
+    SingeSurface nothing = {0};
+    PreviewDef def = aside(0.75f);
+    float across = 0, up = 0;
+
+    ball_make(&ball, 0, 0, 0.2f, 1, 0, 1e-3f);
+    for (int k = 0; k < 8; k++) {
+        draw_gas(&def, &nothing, &ball.gas, 0.7 * k, rgb);
+        for (int y = H / 2 - 10; y < H / 2 + 10; y++)
+            for (int x = W / 2 - 10; x < W / 2 + 10; x++) {
+                across += fabsf((float)pixel(rgb, x + 3, y)[1] - (float)pixel(rgb, x, y)[1]);
+                up += fabsf((float)pixel(rgb, x, y + 3)[1] - (float)pixel(rgb, x, y)[1]);
+            }
+    }
+
+    print_message("across %.1f, up %.1f\n", (double)(across / 3200), (double)(up / 3200));
+    assert_true(across > 1.4f * up);
+}
+
 /// The layer of the fire is what it adds to the picture and what it hides of it.
 TEST(the_fire_layer_is_what_fire_adds) {
     static float with[W * H][3], without[W * H][3], fire[W * H][4];
