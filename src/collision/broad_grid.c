@@ -159,11 +159,8 @@ static void bucket_pairs(const Find *find, const CollisionEntry *entries, uint32
                     const uint32_t b = entries[first + j + (unsigned)__builtin_ctz(meet)].cell;
                     float distance;
                     if (!collision_is_listed(find->plan, a, b, &distance)) continue;
-                    CollisionPair *pair = block_list_add(writer);
-                    if (!pair) continue;
-                    const uint32_t bridge = collision_bridge(find->plan, find->shell, a, b);
-                    *pair = (CollisionPair){.a = a, .b = b, .hit = 2, .bridge = bridge};
-                    if (bridge == SHELL_NONE) pair->distance = distance;
+                    CollisionFound *found = block_list_add(writer);
+                    if (found) *found = (CollisionFound){a, b, distance};
                 }
             }
         }
@@ -186,12 +183,16 @@ static void pair_block(void *context, BlockList *list, int block) {
 }
 
 static void note_first(void *context, const void *item, uint32_t number) {
-    memcpy(&((const Find *)context)->plan->around[number], item, sizeof(uint32_t)); // CollisionPair.a
+    ((const Find *)context)->plan->around[number] = ((const CollisionFound *)item)->a;
 }
 
 static void keep_pair(void *context, const void *item, uint32_t number) {
-    CollisionPlan *plan = ((const Find *)context)->plan;
-    memcpy(&plan->pairs[plan->active[number]], item, sizeof(CollisionPair));
+    const Find *find = context;
+    const CollisionFound *found = item;
+    CollisionPair *pair = &find->plan->pairs[find->plan->active[number]];
+    const uint32_t bridge = collision_bridge(find->plan, find->shell, found->a, found->b);
+    *pair = (CollisionPair){.a = found->a, .b = found->b, .hit = 2, .bridge = bridge};
+    if (bridge == SHELL_NONE) pair->distance = found->distance;
 }
 
 static int grid_blocks(const CollisionPlan *plan) {

@@ -8,7 +8,6 @@
 #include "collision/narrow_phase.h"
 #include "collision/feature_distance.h"
 
-#include <math.h>
 #include <string.h>
 
 /// m/s at which points that are too near move apart.
@@ -134,7 +133,11 @@ static void write_repulsion(const CollisionPlan *plan, const CollisionPair *pair
         out->weight[c][largest] = (uint16_t)(out->weight[c][largest] + left);
     }
 
-    for (int d = 0; d < 3; d++) out->normal[d] = (int16_t)lrintf(REPULSION_UNIT * near->separation[d] / near->distance);
+    for (int d = 0; d < 3; d++) {
+        const float along = REPULSION_UNIT * near->separation[d] / near->distance;
+        out->normal[d] = (int16_t)(along < 0 ? along - 0.5f : along + 0.5f);
+    }
+
     out->target = (uint16_t)(REPULSION_FULL * (keep / plan->thickness));
 }
 

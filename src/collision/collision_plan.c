@@ -140,7 +140,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
 
     uint32_t buckets = plan->bucket_count / COLLISION_BUCKETS + 1, blocks = plan->cell_count / COLLISION_OUTSIDE + 1;
     if (buckets < blocks) buckets = blocks;
-    if (!done || !block_list_create(memory, &plan->found_pairs, sizeof(CollisionPair), plan->pair_capacity, buckets) ||
+    if (!done || !block_list_create(memory, &plan->found_pairs, sizeof(CollisionFound), plan->pair_capacity, buckets) ||
         !block_list_create(memory, &plan->found, sizeof(Repulsion), plan->repulsion_capacity,
                            collision_look_blocks(plan->pair_capacity))) {
         collision_plan_free(memory, plan);

@@ -78,6 +78,12 @@ typedef struct CollisionPair {
 
 _Static_assert(sizeof(CollisionPair) == 24, "five words and three bytes a pair");
 
+/// The same as a search finds them.
+typedef struct CollisionFound {
+    uint32_t a, b;
+    float distance; ///< m, at least that at plan->position
+} CollisionFound;
+
 /// Two points of two cells, near as a step opens, that are to be at least `target` apart along `normal`, in 16 bits a
 /// number: lists are long, and every pass of a substep reads them.
 typedef struct Repulsion {
@@ -183,7 +189,7 @@ struct CollisionPlan {
     /// a crowd's stripes, or 0: repulsions stripe_first[s] to stripe_first[s + 1] are those of stripe s
     uint32_t stripe_count, stripe_first[COLLISION_STRIPES + 2];
     uint32_t stripe_pushed[COLLISION_STRIPES]; ///< how many of them a pass has pushed apart
-    BlockList found_pairs;                     ///< CollisionPair, as they are found
+    BlockList found_pairs;                     ///< CollisionFound
     BlockList found;                           ///< Repulsion, as they are found
 
     // the step

@@ -38,9 +38,8 @@ static void add_pair(const OutsideSearch *job, uint32_t a, uint32_t b, BlockWrit
     }
 
     if (a == b || collision_is_listed(job->plan, a, b, &distance)) return;
-    CollisionPair *pair = block_list_add(writer);
-    if (pair)
-        *pair = (CollisionPair){.a = a, .b = b, .hit = 2, .bridge = collision_bridge(job->plan, job->shell, a, b)};
+    CollisionFound *found = block_list_add(writer);
+    if (found) *found = (CollisionFound){.a = a, .b = b};
 }
 
 static void against_box(const OutsideSearch *job, uint32_t a, const OutsideBox *box, uint32_t b, BlockWriter *writer) {
@@ -106,8 +105,11 @@ static void outside_block(void *context, BlockList *list, int block) {
 }
 
 static void keep_pair(void *context, const void *item, uint32_t number) {
-    CollisionPlan *plan = ((const OutsideSearch *)context)->plan;
-    memcpy(&plan->pairs[plan->listed_count + number], item, sizeof(CollisionPair));
+    const OutsideSearch *job = context;
+    const CollisionFound *found = item;
+    const uint32_t bridge = collision_bridge(job->plan, job->shell, found->a, found->b);
+    job->plan->pairs[job->plan->listed_count + number] =
+        (CollisionPair){.a = found->a, .b = found->b, .hit = 2, .bridge = bridge};
 }
 
 SingeResult broad_search_outside(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool,

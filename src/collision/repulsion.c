@@ -31,8 +31,7 @@ typedef struct Push {
     const float (*predicted)[4];
     float h;
     DynamicsState *dynamics;
-    bool back; ///< from the last to the first
-    int odd;   ///< stripes
+    int odd; ///< stripes
 } Push;
 
 static inline Float4 repulsion_weights(const uint16_t weight[4]) {
@@ -115,8 +114,8 @@ static void push_stripes(void *task, int begin, int end) {
         const int s = 2 * k + push->odd;
         const uint32_t first = plan->stripe_first[s], last = plan->stripe_first[s + 1];
         uint32_t pushed = 0;
-        for (uint32_t i = first; i < last; i++)
-            pushed += repulsion_push(push, &plan->repulsions[push->back ? first + last - 1 - i : i]);
+        for (uint32_t i = first; i < last; i++) pushed += repulsion_push(push, &plan->repulsions[i]);
+        for (uint32_t i = last; i-- > first;) pushed += repulsion_push(push, &plan->repulsions[i]);
         plan->stripe_pushed[s] = pushed;
     }
 }
@@ -165,18 +164,18 @@ void repulsion_apply(CollisionPlan *plan, const Shell *shell, Pool *pool, const 
                      DynamicsState *dynamics) {
     const double start = clock_seconds();
     const uint32_t count = plan->repulsion_count, cells = plan->cell_count;
-    Push push = {plan, shell, predicted, h, dynamics, false, 0};
+    Push push = {plan, shell, predicted, h, dynamics, 0};
     uint64_t passes = 1;
     if (count > CROWD_FROM * (uint64_t)cells) passes = 1 + 2 * (uint64_t)count / cells;
     if (passes > CROWD_PASSES) passes = CROWD_PASSES;
-    for (uint64_t pass = 0; pass < passes; pass++) {
+    const uint64_t at_once = plan->stripe_count > 0 ? 2 : 1; // while a stripe's vertices are in the processor's cache
+    for (uint64_t pass = 0; pass < passes; pass += at_once) {
         uint64_t pushed = 0;
-        push.back = pass & 1;
         for (push.odd = 0; push.odd < 2 && plan->stripe_count > 0; push.odd++)
             pool_for(pool, (int)(plan->stripe_count + 1 - (uint32_t)push.odd) / 2, 1, push_stripes, &push);
         for (uint32_t s = 0; s < plan->stripe_count; s++) pushed += plan->stripe_pushed[s];
         for (uint32_t k = 0; k < count && plan->stripe_count == 0; k++)
-            pushed += repulsion_push(&push, &plan->repulsions[push.back ? count - 1 - k : k]);
+            pushed += repulsion_push(&push, &plan->repulsions[pass & 1 ? count - 1 - k : k]);
         plan->counters.repulsions += pushed;
         if (pushed == 0) break;
     }
