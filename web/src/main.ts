@@ -19,6 +19,7 @@ const LONGEST_FRAME = 1 / 10; // s of motion in a frame
 const BUDGET = { least: 45, most: 250 }; // ms of computing in a frame, more where drawing takes long
 const FILE_MOST = 30e6; // bytes
 const MESH_SIZE: [number, number] = [0.25, 0.25]; // m, of all that is dropped
+const SECOND_FINGER = { wait: 90, slip: 8 }; // ms and px for which the first does nothing, as two turn the view
 const PAPER: Point = [0.86, 0.852, 0.832]; // linear, as in shaders.js
 const HINTS: Record<Tool, string> = {
     match: "Drag the match over the paper", breath: "Hold to blow the fire out", hand: "Take the paper, pull, and tear it",
@@ -85,6 +86,10 @@ function start(): void {
     canvas.addEventListener("webglcontextlost", (event) => {
         event.preventDefault();
         say("The graphics card has dropped the picture. It comes back when the card does.");
+    });
+    canvas.addEventListener("webglcontextrestored", () => {
+        say("The picture is back");
+        stale = true;
     });
     worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
     worker.onmessage = ({ data }: MessageEvent<FromWorker>) => hear(data);
@@ -342,22 +347,41 @@ const writing = () => applying && tool === "pen";
 const pressureOf = ({ pointerType, pressure }: PointerEvent) => (pointerType === "pen" ? pressure : 0.5);
 
 const down = new Set<number>();
+let early: { timer: number; begin: () => void } | null = null; // a first finger that a second may follow
+
+/** The finger, or what points, is at work alone; a second finger comes too late. */
+function beginEarly(): void {
+    if (!early) return;
+    clearTimeout(early.timer);
+    const { begin } = early;
+    early = null;
+    begin();
+}
+
 canvas.addEventListener("pointerdown", (event) => {
     canvas.focus({ preventScroll: true });
     ring.hidden = true;
     down.add(event.pointerId);
     if (event.button !== 0 || down.size > 1) { // two fingers turn the view
+        clearTimeout(early?.timer);
+        early = null;
         if (applying) endUse();
         pointer = null;
         return;
     }
     pointer = { id: event.pointerId, x: event.clientX, y: event.clientY };
     canvas.setPointerCapture(event.pointerId);
-    beginUse(pick(event.clientX, event.clientY));
-    if (writing()) write(event.clientX, event.clientY, pressureOf(event));
+    const begin = () => {
+        beginUse(pick(event.clientX, event.clientY));
+        if (writing()) write(event.clientX, event.clientY, pressureOf(event));
+    };
+    early = { timer: window.setTimeout(beginEarly, SECOND_FINGER.wait), begin };
+    if (event.pointerType !== "touch") beginEarly();
 });
 canvas.addEventListener("pointermove", (event) => {
     if (pointer?.id !== event.pointerId) return;
+    if (early && Math.hypot(event.clientX - pointer.x, event.clientY - pointer.y) < SECOND_FINGER.slip) return;
+    beginEarly();
     pointer = { id: event.pointerId, x: event.clientX, y: event.clientY };
     stale = applying;
     if (writing()) for (const one of event.getCoalescedEvents?.() ?? [event]) write(one.clientX, one.clientY, pressureOf(one));
@@ -367,6 +391,7 @@ for (const name of ["pointerup", "pointercancel"] as const)
     canvas.addEventListener(name, (event) => {
         down.delete(event.pointerId);
         if (pointer?.id !== event.pointerId) return;
+        if (name === "pointerup") beginEarly(); // a tap
         if (applying) endUse();
         pointer = null;
     });

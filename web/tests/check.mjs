@@ -1,12 +1,18 @@
 // Plays with the page in Debian's Chromium: node tests/check.mjs [--pictures FOLDER]
 //
+// SINGE_PROGRAM names `singe`, which checks the scenes, and SINGE_USD a Python with usd-core, which checks the USDC.
 // ONLY=PATTERN runs the cases whose title has it; SOAK=MINUTES plays for so long and looks at memory. Motion comes from
 // explicit calls, so a slow machine changes nothing.
 // Chromium draws by SwiftShader, without a card.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { mkdir, readFile, writeFile } from "node:fs/promises";
+import { execFile } from "node:child_process";
+import { copyFile, mkdir, mkdtemp, readFile, writeFile } from "node:fs/promises";
 import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { dirname } from "node:path";
+import { promisify } from "node:util";
+import { validateBytes } from "gltf-validator";
 import { chromium } from "playwright-core";
 import { serve } from "../serve.mjs";
 import { gapsOf, REACH } from "../view/contact.js";
@@ -31,6 +37,12 @@ async function open(hash, quality = 0.2) {
 const step = (seconds) => page.evaluate((s) => globalThis.page.step(s), seconds);
 const place = (point) => page.evaluate((p) => globalThis.page.project(p), point);
 const hint = () => page.textContent("#hint");
+const told = async (program, ...words) => (await promisify(execFile)(program, words)).stdout;
+const saved = async (kind) => {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.click(`[data-save=${kind}]`)]), path = `${await mkdtemp(`${tmpdir()}/singe-page-`)}/${download.suggestedFilename()}`;
+    await download.saveAs(path);
+    return path;
+};
 const picture = async (name) => {
     if (!folder) return;
     await mkdir(folder, { recursive: true });
@@ -48,6 +60,16 @@ async function use(tool, from, to, seconds) {
     const state = await step(seconds);
     await page.mouse.up();
     return state;
+}
+
+/** The scene that the page saves is one for the command, beside the files that it names. */
+async function checkScene() {
+    await page.click("summary");
+    const yaml = await saved("yaml"), there = dirname(yaml), text = await readFile(yaml, "utf8"), [, torus] = text.match(/# scripts\/make_torus.py (.*) torus.obj/) ?? [];
+    if (/title.png/.test(text)) await copyFile(new URL("../../examples/title/title.png", import.meta.url), `${there}/title.png`);
+    if (torus) await told("python3", new URL("../../scripts/make_torus.py", import.meta.url).pathname, ...torus.split(" "), `${there}/torus.obj`);
+    await told(process.env.SINGE_PROGRAM, "check", yaml);
+    await page.click("summary");
 }
 
 const CASES = {
@@ -142,23 +164,91 @@ const CASES = {
         await file("short.glb", "model/gltf-binary", glb.subarray(0, glb.length >> 1));
         await told("short.glb: ");
     },
-    async "PNG, GLB, USDC and scene are saved"() {
+    async "each export is opened by its validator"() {
         await open(QUICK);
         await use("match", [0, 0, 0], [0.02, 0, 0], 0.6);
         await page.click("summary");
-        const saved = async (kind) => {
-            const [download] = await Promise.all([page.waitForEvent("download"), page.click(`[data-save=${kind}]`)]);
-            return readFile(await download.path());
-        };
-        assert.equal((await saved("png")).readUInt32BE(0), 0x89504e47);
-        const glb = await saved("glb"), json = JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12)).toString());
-        assert.equal(glb.readUInt32LE(8), glb.length);
-        assert.ok("_TEMPERATURE" in json.meshes[0].primitives[0].attributes);
-        assert.match((await saved("yaml")).toString(), /kind: ball, start: /);
+        const png = JSON.parse(await told("ffprobe", "-v", "error", "-of", "json", "-show_streams", await saved("png"))).streams[0];
+        assert.deepEqual([png.codec_name, png.width, png.height], ["png", ...(await page.evaluate(() => { const { width, height } = document.querySelector("#view"); return [width, height]; }))]);
+
+        await page.click("[data-save=webm]");
+        for (let i = 0; i < 6; i++) { await step(1 / 24); await page.waitForTimeout(60); }
+        const webm = JSON.parse(await told("ffprobe", "-v", "error", "-of", "json", "-count_frames", "-show_streams", await saved("webm"))).streams[0];
+        assert.ok(/^(vp[89]|av1|h264)$/.test(webm.codec_name) && Number(webm.nb_read_frames) >= 2 && webm.width === png.width, JSON.stringify(webm));
+
+        const glb = await readFile(await saved("glb")), { issues, info } = await validateBytes(glb);
+        assert.deepEqual([issues.numErrors, issues.numWarnings, info.materialCount, info.resources.some(({ image }) => image)], [0, 0, 1, true], JSON.stringify(issues.messages));
+        assert.ok((await validateBytes(glb.subarray(0, glb.length - 8)).catch(() => ({ issues: { numErrors: 1 } }))).issues.numErrors > 0); // it can fail
+        assert.ok("_TEMPERATURE" in JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12)).toString()).meshes[0].primitives[0].attributes);
+
         const usdc = await saved("usdc");
-        assert.equal(usdc.subarray(0, 8).toString(), "PXR-USDC");
-        assert.ok(usdc.length > 10_000 && usdc.readBigUInt64LE(16) < usdc.length, `${usdc.length} bytes`);
-        if (folder) await writeFile(`${folder}/page.usdc`, usdc);
+        if (process.env.SINGE_USD) {
+            const errors = "import sys\nfrom pxr import Usd, UsdGeom, UsdValidation\nstage = Usd.Stage.Open(sys.argv[1])\n" +
+                "found = UsdValidation.ValidationContext(UsdValidation.ValidationRegistry().GetOrLoadAllValidators()).Validate(stage)\n" +
+                "points = sum(len(UsdGeom.Mesh(p).GetPointsAttr().Get(stage.GetEndTimeCode())) for p in stage.Traverse() if p.IsA(UsdGeom.Mesh))\nprint(len(found), points, *[e.GetMessage() for e in found])";
+            assert.match(await told(process.env.SINGE_USD, "-c", errors, usdc), /^0 [1-9]\d{2,}\s*$/);
+        } else console.log("  USDC is not validated: SINGE_USD names no Python with usd-core");
+        if (folder) await copyFile(usdc, `${folder}/page.usdc`);
+
+        const yaml = await saved("yaml");
+        assert.match(await readFile(yaml, "utf8"), /kind: ball, start: /);
+        if (process.env.SINGE_PROGRAM) await told(process.env.SINGE_PROGRAM, "check", yaml);
+    },
+    async "one finger drags the match, two turn the view and light nothing"() {
+        const before = page, context = await page.context().browser().newContext({ hasTouch: true, isMobile: true, viewport: { width: 390, height: 800 } });
+        page = await context.newPage();
+        page.setDefaultTimeout(120_000);
+        try {
+            await open(QUICK);
+            const devtools = await context.newCDPSession(page), pause = () => page.waitForTimeout(200);
+            const touch = (type, ...points) => devtools.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+            const [x, y] = await place([0, 0, 0]), far = await place([0.1, 0.14, 0]);
+            await touch("touchStart", [x, y], [x + 90, y]); // one after the other, at once
+            for (let i = 1; i <= 5; i++) await touch("touchMove", [x + 12 * i, y], [x + 90 + 12 * i, y]);
+            await touch("touchEnd");
+            await pause();
+            const turned = await place([0.1, 0.14, 0]);
+            assert.ok(Math.hypot(turned[0] - far[0], turned[1] - far[1]) > 15, `a corner went from ${far} to ${turned}`);
+            assert.equal((await step(0.3)).strokes.length, 0);
+
+            const from = await place([0, 0, 0]), to = await place([0.03, 0.02, 0]);
+            await touch("touchStart", from);
+            await pause();
+            await step(1 / 24);
+            await touch("touchMove", to);
+            const lit = await step(0.8);
+            await touch("touchEnd");
+            const [{ path }] = lit.strokes, went = Math.hypot(...[0, 1].map((c) => path.at(-1).position[c] - path[0].position[c]));
+            assert.ok(lit.burnt > 0.002 && went > 0.02, `burnt ${lit.burnt}, the match went ${went} m`);
+            await page.tap("[data-tool=pin]");
+            await touch("touchStart", await place([-0.08, -0.1, 0]));
+            await touch("touchEnd"); // a tap, shorter than a second finger is waited for
+            assert.equal((await step(0.1)).pins.length, 1);
+        } finally {
+            await context.close();
+            page = before;
+        }
+    },
+    async "a lost context comes back with the picture, and the fire goes on"() {
+        await open(QUICK);
+        const lit = await use("match", [0, 0, 0], [0.02, 0, 0], 0.6);
+        const light = () => page.evaluate(() => {
+            const small = Object.assign(document.createElement("canvas"), { width: 48, height: 30 }), context = small.getContext("2d");
+            context.drawImage(document.querySelector("#view"), 0, 0, 48, 30);
+            return context.getImageData(0, 0, 48, 30).data.reduce((sum, x, i) => (i % 4 === 3 ? sum : sum + x), 0);
+        });
+        const before = await light();
+        await page.evaluate(() => {
+            globalThis.context = document.querySelector("#view").getContext("webgl2").getExtension("WEBGL_lose_context");
+            globalThis.context.loseContext();
+        });
+        await page.waitForFunction(() => /dropped/.test(document.querySelector("#hint").textContent));
+        assert.ok((await light()) < 0.1 * before);
+        await page.evaluate(() => globalThis.context.restoreContext());
+        await page.waitForFunction(() => /back/.test(document.querySelector("#hint").textContent));
+        const later = await step(0.4), after = await light();
+        assert.ok(after > 0.7 * before && after < 1.5 * before, `light ${before} before, ${after} after`);
+        assert.ok(later.burnt > 1.2 * lit.burnt, `burnt ${lit.burnt}, then ${later.burnt}`);
     },
     async "a sheet hangs and burns upwards, or falls over a ball"() {
         await open(`cells=20&place=hung&pace=6`, folder ? 1 : 0.2);
@@ -185,6 +275,7 @@ const CASES = {
             if (name === "blank") continue; // has no match of its own
             const before = await step(0.5), after = await step(1.3);
             assert.ok(after.burnt > before.burnt && after.burnt > 0.001, `${name}: burnt ${before.burnt}, then ${after.burnt}`);
+            if (process.env.SINGE_PROGRAM) await checkScene();
             if (!folder) continue;
             console.log(`${name}: ${(100 * after.burnt).toFixed(1)} % burnt, ${after.springs} springs, ${(after.ms / after.steps).toFixed(2)} ms a step`);
             await page.evaluate(() => globalThis.page.quality(1));
