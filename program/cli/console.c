@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -145,6 +146,8 @@ void console_sweep(Console *console, const ConsoleSweep *p) {
 // ---- standard streams
 
 int console_open(void) {
+    signal(SIGXFSZ, SIG_IGN); // a file over its size limit is a write error instead of the program's end
+
     // open takes the lowest free descriptor. Standard output is opened for reading only, so that writing to it fails
     static const int modes[] = {[STDIN_FILENO] = O_RDONLY, [STDOUT_FILENO] = O_RDONLY, [STDERR_FILENO] = O_WRONLY};
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)

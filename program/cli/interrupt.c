@@ -48,7 +48,6 @@ void interrupt_shield(void) {
     atexit(remove_drafts);
     struct sigaction ignore = {.sa_handler = SIG_IGN};
     sigaction(SIGPIPE, &ignore, NULL);
-    sigaction(SIGXFSZ, &ignore, NULL);
 }
 
 void interrupt_watch(void) {

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-/// A broken pipe and a file over its size limit become write errors instead of ending the program.
+/// A broken pipe becomes a write error instead of ending the program.
 void interrupt_shield(void);
 
 /// From now on Ctrl-C and SIGTERM are recorded.

@@ -124,6 +124,16 @@ class Failure(Case):
         self.assertEqual(run.wait(timeout=60), 0)
         self.assertEqual(len(self.plys("o")), 6)
 
+    def test_a_limit_of_file_sizes_is_a_message(self):
+        """The signal that the system sends as well ends no command."""
+        def limited():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+
+        self.run_scene("o", "--quiet")
+        self.singe("clean", self.path("o"), "--keep-every", "2", preexec_fn=limited)  # its locks cannot name it
+        _, err = self.singe("new", "letter", "-o", self.path("new"), expect=1, preexec_fn=limited)
+        self.assertIn("File too large", err)
+
 
 if __name__ == "__main__":
     unittest.main()
