@@ -175,7 +175,7 @@ typedef struct SingeMaterialDef {
     /// default 1e-5 N m. Stiff sheets need substeps
     SingeParam bending;
     /// m, 0 to 1; what burns of other sheets within this distance of the sheet, in either layer, gets no air and goes
-    /// out; 0: none. A blanket has 2 mm or so; sheets keep the contact's thickness
+    /// out; 0: none. A blanket has 2 mm or so, and more than the contact's thickness, which sheets keep
     SingeParam smother_distance;
 } SingeMaterialDef;
 

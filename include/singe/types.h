@@ -214,7 +214,7 @@ static inline SingeColliderDef singe_default_collider(void) {
 /// Holds particles of one sheet: those within `radius` of any of the points (rest position) and the
 /// listed vertices. They follow the path, relative to its pose at the time when the pin is added.
 ///
-/// Defaults: radius 0.005; all else 0 or NULL.
+/// Defaults: radius 0.005, end INFINITY; all else 0 or NULL.
 typedef struct SingePinDef {
     size_t struct_size;
     SingeSheetId sheet;   ///< the sheet that it holds
@@ -228,6 +228,7 @@ typedef struct SingePinDef {
     uint32_t path_count;      ///< 0: held still
     const SingePoseKey *path; ///< [path_count]
     void *user_data;          ///< for the caller's use; see singe_sim_pin_user_data
+    float end;                ///< s, >= 0; time at which it lets go: what it held flies on as it moved; inf: never
 } SingePinDef;
 
 SINGE_API void singe_init_pin(SingePinDef *def, size_t struct_size);

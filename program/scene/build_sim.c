@@ -138,6 +138,7 @@ SingeResult builder_add_pin(const SceneBuilder *builder, uint32_t index) {
     def.point_count = pin->point_count;
     def.points = pin->points ? pin->points->position : NULL; // points are contiguous
     def.radius = pin->radius;
+    def.end = pin->end;
     def.vertex_count = pin->vertex_count;
     def.vertices = pin->vertices;
     def.path_count = pin->key_count;

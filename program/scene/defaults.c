@@ -94,6 +94,7 @@ bool default_motion(SceneArena *arena, void *object) {
 bool default_pin(SceneArena *arena, void *object) {
     (void)arena;
     ((ScenePin *)object)->radius = singe_default_pin().radius;
+    ((ScenePin *)object)->end = singe_default_pin().end;
     return true;
 }
 

@@ -47,7 +47,7 @@ static void add_motion(const Scene *scene, uint32_t index, Place *place, double 
     for (uint32_t i = 0; i < scene->pin_count; i++) {
         const ScenePin *pin = &scene->pins[i];
         if (pin->sheet_index != index) continue;
-        held = true;
+        held = held || (double)pin->end > time;
         place->slack += carried(pin->keys, pin->key_count);
         if (pin->motion.given) place->slack = INFINITY;
     }

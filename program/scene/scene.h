@@ -180,7 +180,7 @@ typedef struct ScenePin {
     uint32_t sheet_index;
     uint32_t point_count;
     ScenePoint *points; ///< m, in the world at rest
-    float radius;
+    float radius, end;
     uint32_t vertex_count;
     uint32_t *vertices;
     uint32_t key_count;

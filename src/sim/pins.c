@@ -163,6 +163,7 @@ SingeResult call_add_pin(SingeSim *sim, const SingePinDef *given, SingePinId *id
     if (!pin) return sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
     TRY(path_set(&pin->path, &sim->memory, def.path_count, def.path, "pin", &sim->error));
     pin->user_data = def.user_data;
+    pin->end = def.end;
 
     // find particles now, or at the commit
     SingeResult result = SINGE_OK;
@@ -215,6 +216,21 @@ SingeResult call_move_pin(SingeSim *sim, SingePinId id, uint32_t count, const Si
         float3_store(pin->anchors[k], pose_unapply(&after, pin_point(pin, &before, k, share)));
     motion_free(&sim->memory, &pin->motion);
     return SINGE_OK;
+}
+
+void sim_end_pins(SingeSim *sim) {
+    bool any = false;
+    for (uint32_t i = 0; i < sim->pins.count; i++) {
+        Pin *pin = &sim->pins.items[i];
+        if (pin->count == 0 || sim->state.time + 0.5 * (double)sim->def.time_step < (double)pin->end) continue;
+        any = true;
+        pin_count(sim, pin, -1);
+        motion_free(&sim->memory, &pin->motion);
+        FREE(&sim->memory, pin->particles, pin->count);
+        FREE(&sim->memory, pin->anchors, pin->count);
+        pin->count = 0;
+    }
+    if (any) dynamics_plan_hold(sim->dynamics, &sim->shell, &sim->state);
 }
 
 const uint32_t *singe_sim_pin_particles(const SingeSim *sim, SingePinId id, uint32_t *count) {

@@ -141,6 +141,8 @@ void sim_copy_hooks(const SingeSim *from, SingeSim *to);
 
 void sim_free_source(SingeSim *sim, Source *source);
 void sim_free_pin(SingeSim *sim, Pin *pin);
+/// After a step, as nothing can fail then: lets go of pins whose end has come.
+void sim_end_pins(SingeSim *sim);
 
 /// Free slot of a list of `size`-byte items that begin with their generation; the item is zeroed and its
 /// generation left 0. One at the list's end is part of it once the count is (sim_take_slot). NULL when out of memory.

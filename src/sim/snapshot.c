@@ -73,19 +73,26 @@ static SingeResult snapshot_state(Stream *stream, SingeSim *sim) {
 
 /// Parts that most simulations do not have come last, and only if there are any: a word of flags, then the parts.
 static bool snapshot_more(Stream *stream, SingeSim *sim) {
-    enum { MORE_REMAINDER = 1, MORE_PINS = 2, MORE_ALL = 3 };
-    bool followed = false;
-    for (uint32_t i = 0; i < sim->pins.count; i++) followed |= sim->pins.items[i].motion.to != NULL;
-    uint32_t more = (sim->remainder != 0 ? MORE_REMAINDER : 0) | (followed ? MORE_PINS : 0);
+    enum { MORE_REMAINDER = 1, MORE_PINS = 2, MORE_ENDS = 4, MORE_ALL = 7 };
+    bool followed = false, ending = false;
+    for (uint32_t i = 0; i < sim->pins.count; i++) {
+        followed |= sim->pins.items[i].motion.to != NULL;
+        ending |= sim->pins.items[i].generation && sim->pins.items[i].end < INFINITY;
+    }
+    uint32_t more = (sim->remainder != 0 ? MORE_REMAINDER : 0) | (followed ? MORE_PINS : 0) | (ending ? MORE_ENDS : 0);
     if (stream->mode == STREAM_READ ? stream->offset == stream->size : !more) return true;
     STREAM(stream, more);
     if (!snapshot_held(stream, more != 0 && (more & ~(uint32_t)MORE_ALL) == 0)) return false;
     if (more & MORE_REMAINDER) STREAM(stream, sim->remainder);
     if (!snapshot_held(stream, !(more & MORE_REMAINDER) || snapshot_remainder_fits(sim))) return false;
 
-    // for each pin, whether it follows positions, and these positions
-    if (!(more & MORE_PINS)) return true;
-    for (uint32_t i = 0; i < sim->pins.count; i++) {
+    // for each pin when it ends, then whether it follows positions, and these positions
+    for (uint32_t i = 0; i < sim->pins.count && more & MORE_ENDS; i++) {
+        Pin *pin = &sim->pins.items[i];
+        STREAM(stream, pin->end);
+        if (!snapshot_held(stream, pin->generation == 0 || pin->end >= 0)) return false;
+    }
+    for (uint32_t i = 0; i < sim->pins.count && more & MORE_PINS; i++) {
         Pin *pin = &sim->pins.items[i];
         uint8_t follows = pin->motion.to != NULL;
         STREAM(stream, follows);

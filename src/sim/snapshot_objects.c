@@ -213,6 +213,7 @@ bool snapshot_objects(Stream *stream, SingeSim *sim) {
         STREAM(stream, pin->generation);
         if (stream->failed) return false;
         if (pin->generation == 0) continue;
+        if (stream->mode == STREAM_READ) pin->end = INFINITY;
         STREAM(stream, pin->count);
         if (!snapshot_array(stream, memory, &pin->particles, pin->count, sizeof *pin->particles) ||
             !snapshot_array(stream, memory, &pin->anchors, pin->count, sizeof *pin->anchors) ||

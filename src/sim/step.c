@@ -171,6 +171,7 @@ SingeResult sim_step(SingeSim *sim) {
     sim->state.step++;
     sim->state.time = (double)sim->state.step * (double)sim->def.time_step;
     sim->timers.steps++;
+    sim_end_pins(sim);
     if (sim_recorder(sim)) recorder_state(sim_recorder(sim), &sim->shell, &sim->state);
 
     // with assertions: checks everything that a step may have changed

@@ -13,6 +13,7 @@ typedef struct Pin {
     float (*anchors)[3]; ///< m, in the frame of the path's pose
     Path path;
     Motion motion; ///< of the particles, in space, instead of the path; its arrays are NULL if the path applies
+    float end;     ///< s, when it lets go; it then holds nothing, and its handle stays valid
     void *user_data;
     SingePinDef waiting; ///< Def of a pin that was added before the commit, until then; owns its points and vertices
 } Pin;

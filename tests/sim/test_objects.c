@@ -2,6 +2,7 @@
 #include "scenes.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static SingeSimDef weightless(void) {
@@ -171,6 +172,50 @@ TEST(pins_hold_move_and_let_go) {
     test_steps(sim, 20);
     assert_true(view.position[0][2] < at[0][2]);
     singe_sim_destroy(sim);
+}
+
+/// As if the host had removed them at that time; saved and loaded before and after it, too.
+TEST(pins_end) {
+    const uint32_t corner = 0;
+    const SingePoseKey path[2] = {test_key(0, 0, 0, 0), test_key(0.2f, 0.1f, 0, 0.2f)};
+    SingePinDef def = singe_default_pin();
+    def.sheet = (SingeSheetId){0, 1}, def.vertex_count = 1, def.vertices = &corner;
+    def.path_count = 2, def.path = path;
+    SingeSim *by_hand = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL);
+    SingeSim *by_end = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL), *loaded = NULL;
+    SingePinId removed, ended;
+    test_ok(by_hand, singe_sim_add_pin(by_hand, &def, &removed));
+    def.end = -1;
+    test_refused(by_end, SINGE_ERROR_ARGUMENT, singe_sim_add_pin(by_end, &def, &ended));
+    def.end = 40 * singe_default_sim().time_step;
+    test_ok(by_end, singe_sim_add_pin(by_end, &def, &ended));
+
+    for (int step = 0; step < 80; step++) {
+        if (step % 20 == 10) { // at 10 and 30 it holds, at 50 and 70 no more
+            TestBytes bytes = test_save(by_end);
+            const SingeSimDef hooks = singe_default_sim();
+            singe_sim_destroy(loaded);
+            assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &loaded, NULL), SINGE_OK);
+            free(bytes.data);
+        }
+        test_steps(by_hand, 1);
+        test_steps(by_end, 1);
+        if (loaded) test_steps(loaded, 1);
+        if (step == 39) test_ok(by_hand, singe_sim_remove_pin(by_hand, removed));
+        const SingeView a = singe_sim_view(by_hand), b = singe_sim_view(by_end);
+        assert_memory_equal(a.position, b.position, a.particle_count * sizeof *a.position);
+        assert_memory_equal(a.particle_flags, b.particle_flags, a.particle_count);
+        if (loaded) test_assert_same(by_end, loaded);
+    }
+
+    uint32_t count;
+    assert_null(singe_sim_pin_particles(by_end, ended, &count));
+    assert_int_equal(count, 0);
+    test_ok(by_end, singe_sim_move_pin(by_end, ended, 1, path)); // its handle is still good
+    test_ok(by_end, singe_sim_remove_pin(by_end, ended));
+    singe_sim_destroy(by_hand);
+    singe_sim_destroy(by_end);
+    singe_sim_destroy(loaded);
 }
 
 TEST(a_turning_pin_turns) {

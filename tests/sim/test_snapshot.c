@@ -331,6 +331,7 @@ POKE(collider_height, sim->colliders.items[5].heights.heights[0] = NAN)
 POKE(pin_anchor, sim->pins.items[0].anchors[0][0] = NAN)
 POKE(pin_particle, sim->pins.items[0].particles[0] = sim->shell.particle_count)
 POKE(pin_twice, sim->pins.items[0].particles[1] = sim->pins.items[0].particles[0])
+POKE(pin_end, sim->pins.items[0].end = -1)
 POKE(time, sim->state.time = (double)NAN)
 POKE(time_of_step, sim->state.time *= 2)
 POKE(heat_in, sim->state.heat.heat_in = (double)INFINITY)
@@ -393,7 +394,7 @@ TEST(impossible_numbers_are_refused) {
         ROW(sheet_velocity), ROW(sheet_drop), ROW(sheet_sources), ROW(source_heat), ROW(source_kind), ROW(source_path),
         ROW(source_position), ROW(source_turn), ROW(source_texture), ROW(source_generation), ROW(collider_radius),
         ROW(collider_sides), ROW(collider_path), ROW(collider_mesh), ROW(collider_height), ROW(pin_anchor),
-        ROW(pin_particle), ROW(pin_twice), ROW(time), ROW(time_of_step), ROW(heat_in), ROW(heat_start),
+        ROW(pin_particle), ROW(pin_twice), ROW(pin_end), ROW(time), ROW(time_of_step), ROW(heat_in), ROW(heat_start),
         ROW(mass_removed), ROW(temperature), ROW(temperature_below), ROW(temperature_peak), ROW(mass), ROW(mass_nan),
         ROW(burn_rate), ROW(time_ignited), ROW(time_to_come), ROW(dead_length), ROW(position), ROW(velocity),
         ROW(earlier), ROW(earlier_time), ROW(inverse_mass), ROW(bend), ROW(crease), ROW(pinned), ROW(pinned_flag), ROW(flag), ROW(cell_flag),

@@ -162,7 +162,7 @@ class SingePinDef(Structure):
     _fields_ = [("struct_size", c_size_t), ("sheet", SingeSheetId), ("point_count", c_uint32),
                 ("points", POINTER(c_float)), ("radius", c_float), ("vertex_count", c_uint32),
                 ("vertices", POINTER(c_uint32)), ("path_count", c_uint32), ("path", POINTER(SingePoseKey)),
-                ("user_data", c_void_p)]
+                ("user_data", c_void_p), ("end", c_float)]
 
 
 class SingeWindDef(Structure):

@@ -269,8 +269,9 @@ class Sim(Views):
         return self.source("spot", position=position, radius=radius, temperature=temperature, **fields)
 
     def pin(self, sheet: Sheet, points: Any = None, vertices: Any = None, radius: float = 0.005,
-            path: Any = None) -> Pin:
-        """Holds vertices of the caller's mesh, and particles within `radius` (m) of points [n, 3] (m, at rest).
+            path: Any = None, end: float = np.inf) -> Pin:
+        """Holds vertices of the caller's mesh, and particles within `radius` (m) of points [n, 3] (m, at rest), until
+        `end` (s).
 
         path: rows (time, x, y, z) or (time, x, y, z, qx, qy, qz, qw), relative to the pose at the time it is added.
         """
@@ -279,6 +280,7 @@ class Sim(Views):
         if not isinstance(sheet, Sheet):
             raise TypeError(f"sheet must be a singe.Sheet, not {sheet!r}")
         made.sheet, made.radius = sheet.id, number(ctypes.c_float, radius, "radius")
+        made.end = number(ctypes.c_float, end, "end")
         if sheet._sim is not self:
             raise errors.HandleError("the sheet belongs to another simulation")
         if points is not None:

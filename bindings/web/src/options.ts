@@ -96,6 +96,8 @@ export interface PinOptions {
     /** m, 0 to 1e6; all particles within this distance of a point are held, and at least the vertex nearest to each
      *  point; a point that misses the sheet by a tenth of its diagonal is warned of */
     radius?: number;
+    /** s, >= 0; time at which it lets go: what it held flies on as it moved; inf: never */
+    end?: number;
 }
 
 export interface WindOptions {
@@ -325,6 +327,6 @@ export interface MaterialOptions {
      *  by default 1e-5 N m. Stiff sheets need substeps */
     bending?: Param;
     /** m, 0 to 1; what burns of other sheets within this distance of the sheet, in either layer, gets no air and
-     *  goes out; 0: none. A blanket has 2 mm or so; sheets keep the contact's thickness */
+     *  goes out; 0: none. A blanket has 2 mm or so, and more than the contact's thickness, which sheets keep */
     smother_distance?: Param;
 }
