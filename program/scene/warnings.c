@@ -41,6 +41,23 @@ void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *l
     for (uint32_t i = 0; i < scene->pin_count; i++)
         warn_of_motion(scene, &scene->pins[i].motion, &assets->pin_motions[i], log);
 
+    // blankets that reach no farther than contact lets other sheets come
+    float thickest = 0;
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        const SingeParam thickness = scene->sheets[i].material.def.thickness;
+        thickest = fmaxf(thickest, fmaxf(thickness.value, thickness.to));
+    }
+    for (uint32_t i = 0; i < scene->sheet_count && scene->sim.contact.enabled; i++) {
+        const SingeParam distance = scene->sheets[i].material.def.smother_distance;
+        const float reach = fmaxf(distance.value, distance.to), kept = scene->sim.contact.thickness;
+        if (reach > 0 && reach + thickest < kept)
+            message_warn(
+                log, scene->text, scene->sheets[i].location,
+                "the sheet smothers nothing: its smother_distance, %.3g mm, is less than the %.3g mm that contact "
+                "keeps between sheets (contact.thickness)",
+                1e3 * (double)reach, 1e3 * (double)kept);
+    }
+
     // probes whose point is not on the sheet: for uv by more than rounding, for points by a tenth of its diagonal, as pins
     for (uint32_t i = 0; i < scene->probe_count; i++) {
         const SceneProbe *probe = &scene->probes[i];

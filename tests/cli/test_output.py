@@ -56,6 +56,15 @@ class Output(Case):
         _, err = self.run_scene("o", "--quiet", "--set", "sources.0.position=[6, 0, 5 cm]")
         self.assertRegex(err, r"^singe: warning: .*misses the sheets.*\nsinge: warning: nothing ignited: .*\n$")
 
+    def test_a_blanket_that_contact_keeps_away_is_said(self):
+        """Sheets 2 mm apart: within .5 mm and the burning sheet's thickness, 1 mm, is nothing."""
+        for contact, distance, said in (("2 mm", "0.5 mm", True), ("2 mm", "1.5 mm", False), ("1 mm", "0.5 mm", False),
+                                        ("2 mm", "0", False)):
+            _, err = self.singe("check", self.scene, "--set", f"contact={{enabled: yes, thickness: {contact}}}", "--set",
+                                "sheets.0.grid.cells=[9, 9]", "--set", "sheets.0.material.smother_distance=" + distance)
+            self.assertEqual("tiny.yaml:6:5: the sheet smothers nothing: its smother_distance, 0.5 mm, is less than the 2 mm"
+                             in err, said, err)
+
     def test_ledgers_that_do_not_close(self):
         _, err = self.run_scene("good")
         self.assertNotIn("ledgers", err)
