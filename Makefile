@@ -99,9 +99,10 @@ check-unreal:
 check-blender: build
 	bindings/blender/tests/check.sh build/singe build/blender $(WHEELS)
 
-# preempts and resumes a sweep on a Slurm of one node, which needs root; runs one by openjd-cli
+# preempts and resumes a sweep on a Slurm of one node, which needs root; runs one by openjd-cli, and OpenCue's frames
 check-farm: build
 	tests/farm/check_openjd.py build/singe build/openjd
+	tests/farm/check_opencue.py build/singe build/opencue
 	tests/farm/check_slurm.py build/singe --install
 
 # packages on bare Debian 12 and 13, the static command, the Conan recipe; needs root and debootstrap

