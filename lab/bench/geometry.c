@@ -168,3 +168,32 @@ double geometry_curvatures(const SingeView *view, double x, double y, double rad
     principal[1] = fabs(mean) - half;
     return fmod(0.5 * atan2(sign * c[4], sign * (c[3] - c[5])) + acos(-1), acos(-1));
 }
+
+double geometry_window(double *line, int count) {
+    const double centre = 0.5 * (count - 1), pi = acos(-1);
+    double mean = 0, slope = 0, squares = 0, power = 0;
+    for (int i = 0; i < count; i++) {
+        mean += line[i] / count;
+        slope += line[i] * (i - centre);
+        squares += (i - centre) * (i - centre);
+    }
+
+    for (int i = 0; i < count; i++) {
+        line[i] -= mean + slope / squares * (i - centre);
+        power += line[i] * line[i] / count;
+        line[i] *= 0.5 - 0.5 * cos(2 * pi * (i + 0.5) / count);
+    }
+
+    return power;
+}
+
+double geometry_power(const double *line, int count, int k) {
+    const double pi = acos(-1);
+    double re = 0, im = 0;
+    for (int i = 0; i < count; i++) {
+        re += line[i] * cos(2 * pi * k * i / count);
+        im += line[i] * sin(2 * pi * k * i / count);
+    }
+
+    return re * re + im * im;
+}

@@ -40,4 +40,10 @@ double geometry_curvatures(const SingeView *view, double x, double y, double rad
 /// The sheet's point at (u, v) in [0, 1] of the square, bilinear between vertices.
 void geometry_point(const SingeView *view, int cells, double u, double v, double *point);
 
+/// Removes mean and slope of a line of samples and applies a Hann window. Returns the mean square before the window.
+double geometry_window(double *line, int count);
+
+/// Its power at k waves over its length.
+double geometry_power(const double *line, int count, int k);
+
 #endif

@@ -36,25 +36,6 @@ static const Setting settings[] = {
     {"base", 1, 1, 1}, {"h x 2", 2, 1, 1}, {"h / 2", 0.5, 1, 1}, {"substeps x 2", 1, 2, 1}, {"s / 2", 1, 1, 2},
 };
 
-/// Removes mean and slope and applies a Hann window. Returns the mean square before the window.
-static double prepare_line(double *line) {
-    const double centre = 0.5 * (SAMPLES - 1), pi = acos(-1);
-    double mean = 0, slope = 0, squares = 0, power = 0;
-    for (int i = 0; i < SAMPLES; i++) {
-        mean += line[i] / SAMPLES;
-        slope += line[i] * (i - centre);
-        squares += (i - centre) * (i - centre);
-    }
-
-    for (int i = 0; i < SAMPLES; i++) {
-        line[i] -= mean + slope / squares * (i - centre);
-        power += line[i] * line[i] / SAMPLES;
-        line[i] *= 0.5 - 0.5 * cos(2 * pi * (i + 0.5) / SAMPLES);
-    }
-
-    return power;
-}
-
 static SingeResult look_observe(const BenchOptions *options, BenchSetup setup, BenchState state, Look *look,
                                 SingeError *error) {
     SingeSim *sim = NULL;
@@ -94,20 +75,10 @@ static SingeResult look_observe(const BenchOptions *options, BenchSetup setup, B
                     line[i] = point[1];
                 }
 
-                square += prepare_line(line) / LINES;
+                square += geometry_window(line, SAMPLES) / LINES;
 
                 // adds a line's power at k = 1 to SAMPLES/4 waves over its length
-                const double pi = acos(-1);
-                for (int k = 1; k <= SAMPLES / 4; k++) {
-                    double re = 0, im = 0;
-                    for (int i = 0; i < SAMPLES; i++) {
-                        double angle = 2 * pi * (double)k * i / SAMPLES;
-                        re += line[i] * cos(angle);
-                        im += line[i] * sin(angle);
-                    }
-
-                    power[k] += re * re + im * im;
-                }
+                for (int k = 1; k <= SAMPLES / 4; k++) power[k] += geometry_power(line, SAMPLES, k);
             }
 
             for (int k = 2; k <= SAMPLES / 4; k++) total += power[k], moment += k * power[k];

@@ -173,33 +173,16 @@ static SingeResult spectrum_observe(const BenchOptions *options, int setting, ui
             for (double z = 0.001; z < top; z += 0.002)
                 if (read_line(&view, &strip, z, line)) {
                     // removes mean and slope of a line, applies a Hann window and adds its power to the bands
-                    const double centre = 0.5 * (SAMPLES - 1), pi = acos(-1);
-                    double mean = 0, slope = 0, squares = 0;
-                    for (int i = 0; i < SAMPLES; i++) {
-                        mean += line[i] / SAMPLES;
-                        slope += line[i] * (i - centre);
-                        squares += (i - centre) * (i - centre);
-                    }
-
-                    for (int i = 0; i < SAMPLES; i++) {
-                        line[i] -= mean + slope / squares * (i - centre);
-                        spectrum->square += line[i] * line[i] / SAMPLES;
-                        line[i] *= 0.5 - 0.5 * cos(2 * pi * (i + 0.5) / SAMPLES);
-                    }
-
+                    spectrum->square += geometry_window(line, SAMPLES);
                     spectrum->lines++;
                     for (int k = 1; k <= SAMPLES / 2; k++) {
                         int band = wave_band(width / k);
-                        double re = 0, im = 0;
                         if (band < 0 || band >= BANDS) continue;
-                        for (int i = 0; i < SAMPLES; i++)
-                            re += line[i] * cos(2 * pi * k * i / SAMPLES),
-                                im += line[i] * sin(2 * pi * k * i / SAMPLES);
 
                         // the number of integer wave counts in a band
                         int count = 0;
                         for (int wave = 1; wave <= SAMPLES / 2; wave++) count += wave_band(width / wave) == band;
-                        spectrum->band[band] += k * (re * re + im * im) / count;
+                        spectrum->band[band] += k * geometry_power(line, SAMPLES, k) / count;
                     }
                 }
         }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/geometry.h"
 #include "bench/hung_sheet.h"
 #include "cli/text.h"
 
@@ -324,29 +325,22 @@ double shape_border(const SingeSurface *surface) {
 /// the power of the height follows from that of its slope by (wavelength/2 pi)^2.
 static void add_line(const SingeView *view, uint32_t first, uint32_t stride, int count, double cell, double *line,
                      ShapeSpectrum *spectrum) {
-    const double pi = acos(-1), centre = 0.5 * (count - 1);
-    double mean = 0, slope = 0, squares = 0;
+    const double pi = acos(-1);
     for (int i = 0; i < count; i++) {
         const float *p = view->position[first + (uint32_t)i * stride];
         const float *q = view->position[first + (uint32_t)(i + 1) * stride];
         double x = (double)q[0] - (double)p[0], y = (double)q[1] - (double)p[1], z = (double)q[2] - (double)p[2];
         line[i] = atan2(z, sqrt(x * x + y * y));
-        mean += line[i] / count;
-        slope += line[i] * (i - centre);
-        squares += (i - centre) * (i - centre);
     }
 
-    for (int i = 0; i < count; i++)
-        line[i] = (line[i] - mean - slope / squares * (i - centre)) * (0.5 - 0.5 * cos(2 * pi * (i + 0.5) / count));
+    geometry_window(line, count);
     for (int k = 1; k <= count / 2; k++) {
-        double re = 0, im = 0, wave = count * cell / k;
-        int band = (int)floor(2 * log2(wave / (2 * cell)) + 1e-9);
+        const double wave = count * cell / k;
+        const int band = (int)floor(2 * log2(wave / (2 * cell)) + 1e-9);
         if (band < 0 || band >= SHAPE_BANDS) continue;
-        for (int i = 0; i < count; i++)
-            re += line[i] * cos(2 * pi * k * i / count), im += line[i] * sin(2 * pi * k * i / count);
 
         // a wave's mean square is 2 |c_k|^2/n^2, and the window keeps 3/8 of it
-        double power = 2 * (re * re + im * im) / ((double)count * count) / 0.375;
+        const double power = 2 * geometry_power(line, count, k) / ((double)count * count) / 0.375;
         spectrum->height[band] += power * wave * wave / (4 * pi * pi);
     }
 }
