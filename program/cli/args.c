@@ -39,6 +39,14 @@ const char *args_nearest(const char *word, const void *first, int count, unsigne
     return nearest.best;
 }
 
+ExitCode args_unknown(const ArgCommand *command, const char *what, const char *word, const void *first, int count,
+                      unsigned long stride) {
+    const char *near = args_nearest(word, first, count, stride);
+    if (near) args_complain(command, "%s '%s'; did you mean '%s'?", what, shown(word).text, near);
+    else args_complain(command, "%s '%s'", what, shown(word).text);
+    return EXIT_INPUT;
+}
+
 /// A command line that is being read.
 typedef struct ArgReader {
     const ArgCommand *command;

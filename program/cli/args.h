@@ -61,6 +61,11 @@ bool args_complain(const ArgCommand *command, const char *format, ...)
 #endif
     ;
 
+/// Complains about an unknown word, "unknown command 'rum'; did you mean 'run'?", and returns EXIT_INPUT. `what` is
+/// "unknown command"; the words are args_nearest's.
+ExitCode args_unknown(const ArgCommand *command, const char *what, const char *word, const void *first, int count,
+                      unsigned long stride);
+
 /// The most similar of `count` words to `word`, or NULL if none is similar. `stride` is the distance between the words'
 /// pointers in bytes, so that a table's names can be passed.
 const char *args_nearest(const char *word, const void *first, int count, unsigned long stride);

@@ -128,12 +128,8 @@ int command_manual(int argc, char **argv) {
     const char *const folder = options.folder && !*options.folder ? "." : options.folder;
     for (int i = 0; i < count && word; i++)
         if (strcmp(word, commands[i].name) == 0) command = &commands[i];
-    if (word && !command) {
-        const char *near = args_nearest(word, commands, count, sizeof *commands);
-        args_complain(&manual_command, "unknown command '%s'%s%s%s", shown(word).text, near ? "; did you mean '" : "",
-                      near ? near : "", near ? "'?" : "");
-        return EXIT_INPUT;
-    }
+    if (word && !command)
+        return args_unknown(&manual_command, "unknown command", word, commands, count, sizeof *commands);
 
     if (!folder) {
         print_page(stdout, command);

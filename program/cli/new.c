@@ -67,12 +67,9 @@ int command_new(int argc, char **argv) {
     const char *word = options.name, *folder = *options.folder ? options.folder : ".";
     int which = 0;
     while (which < TEMPLATES && strcmp(templates[which].name, word) != 0) which++;
-    if (which == TEMPLATES) {
-        const char *near = args_nearest(word, templates, TEMPLATES, sizeof *templates);
-        args_complain(&new_command, "expected letter, cloth, mesh or sweep, got '%s'%s%s%s", shown(word).text,
-                      near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-        return EXIT_INPUT;
-    }
+    if (which == TEMPLATES)
+        return args_unknown(&new_command, "expected letter, cloth, mesh or sweep, got", word, templates, TEMPLATES,
+                            sizeof *templates);
 
     Console console = console_make(false);
     SingeError error = {0};
@@ -135,9 +132,6 @@ int command_materials(int argc, char **argv) {
     }
 
     if (!word) return EXIT_GOOD;
-
-    const char *near = args_nearest(word, scene_builtins, count, sizeof *scene_builtins);
-    args_complain(&materials_command, "there is no material '%s'%s%s%s", shown(word).text,
-                  near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-    return EXIT_INPUT;
+    return args_unknown(&materials_command, "there is no material", word, scene_builtins, count,
+                        sizeof *scene_builtins);
 }
