@@ -167,7 +167,7 @@ static const SchemaRow scene_rows[] = {
     {"pins", ROW_LIST, DIM_NONE, AT(Scene, pins), EXTRA(Scene, pin_count), .sub = &schema_pin,
      .doc = "constraints that hold parts of a sheet"},
     {"probes", ROW_LIST, DIM_NONE, AT(Scene, probes), EXTRA(Scene, probe_count), .sub = &schema_probe,
-     .doc = "points of sheets that `probes.csv` follows, at most 1000; so for all lists of objects"},
+     .doc = "points of sheets that `probes.csv` follows; at most 1000, as in every list of objects"},
     {"wind", ROW_MAP, DIM_NONE, AT(Scene, sim.wind), .sub = &schema_wind, .doc = "the air's motion"},
     {"solver", ROW_MAP, DIM_NONE, AT(Scene, sim.solver), .sub = &schema_solver,
      .doc = "how springs are kept at their lengths"},

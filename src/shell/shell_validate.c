@@ -29,7 +29,7 @@ static bool validate_sheets(const Shell *shell, ShellFault *fault) {
         if (sheet->spare_used > sheet->spare_count)
             return fault_is(fault, "sheet %u uses %u spares, but has %u", s, sheet->spare_used, sheet->spare_count);
         if (sheet->spare_count > sheet->vertex_count)
-            return fault_is(fault, "sheet %u has %u vertices, and more spares", s, sheet->vertex_count);
+            return fault_is(fault, "sheet %u has %u vertices, fewer than its spares", s, sheet->vertex_count);
         if (!(sheet->cell_size > 0)) return fault_is(fault, "the cells of sheet %u have no size", s);
         vertices += sheet->vertex_count;
         cells += sheet->cell_count;
