@@ -15,7 +15,7 @@ HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 .PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        site check-clients check-godot check-unity check-unreal check-blender check-farm check-packages check-platforms web web-serve web-pictures check-web check-web-core torture mutations coverage fuzz-long soak pictures bench-peers clean
+        site check-clients check-godot check-unity check-unreal check-blender check-farm check-packages check-platforms web web-serve web-pictures check-web check-web-core check-web-examples torture mutations coverage fuzz-long soak pictures bench-peers clean
 
 all: build
 
@@ -135,7 +135,9 @@ check-web: web
 	build/notebook/bin/pip install --quiet --disable-pip-version-check --require-hashes -r tests/locks/notebook.txt
 	build/singe run examples/letter -o build/notebook/run --force --quiet --no-preview \
 	    --set frames=12 --set sheets.0.grid.cells=[42,60]
-	cd web && npm test
+	[ -x build/usd/bin/python ] || python3 -m venv build/usd
+	build/usd/bin/pip install --quiet --disable-pip-version-check --require-hashes -r tests/locks/usd.txt
+	cd web && SINGE_PROGRAM=$(CURDIR)/build/singe SINGE_USD=$(CURDIR)/build/usd/bin/python npm test
 	cd web && SINGE_PROGRAM=../build/singe SINGE_LIBRARY=$(CURDIR)/build/python/singe/libsinge.so \
 	    PYTHONPATH=../bindings/python node tests/notebook.mjs ../build/notebook/bin/python ../build/notebook/run
 
@@ -164,6 +166,14 @@ check-web-core: web-package
 	cmake --preset portable
 	cmake --build --preset portable --target hash_runs
 	cd bindings/web && SINGE_NATIVE=$(CURDIR)/build-portable/tests/platforms/hash_runs npm test && node tests/speed.mjs
+
+# the first 48 frames of every example at a small size: recorded here, replayed in node by the core as WebAssembly
+check-web-examples:
+	cmake --preset release -B build/portable-program -DSINGE_PORTABLE_MATH=ON -DSINGE_TESTS=OFF
+	cmake --build build/portable-program --target singe_program
+	cmake --preset wasm -B build/wasm-replay -DSINGE_RECORDING=ON
+	cmake --build build/wasm-replay --target hash_runs
+	node --no-warnings bindings/web/tests/examples.mjs build/portable-program/singe build/wasm-replay/tests/platforms/hash_runs build/web-examples
 
 # makes each allocation, write and open of whole commands fail once. Takes hours; Ctrl-C ends it and prints its table
 torture:

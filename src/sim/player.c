@@ -488,6 +488,11 @@ static SingeResult player_begin(Player *player, const SingeSimDef *hooks, SingeE
     SingeResult result = kind == RECORD_CREATE
                              ? singe_sim_create(&def, &player->sim, error)
                              : singe_sim_load(&def, tape->bytes + tape->offset, saved, &player->sim, error);
+    if (!result && !sim_recorder(player->sim)) {
+        singe_sim_destroy(player->sim);
+        player->sim = NULL;
+        result = error_set(error, SINGE_ERROR_STATE, "replay", -1, "this library was built without SINGE_RECORDING");
+    }
     tape->offset = player->compared = player->end;
     player->compares = !result;
     return result;

@@ -65,10 +65,10 @@ struct SingeSim {
 /// One step, for singe_sim_step and singe_sim_advance.
 SingeResult sim_step(SingeSim *sim);
 
-/// Its recorder; NULL: nothing is recorded. A module of WebAssembly cannot be given the hook, so that all that writes
-/// recordings is left out of it.
+/// Its recorder; NULL: nothing is recorded. JavaScript cannot give the hook, so that singe.wasm is built without all that
+/// writes recordings (SINGE_RECORDING).
 static inline Recorder *sim_recorder(const SingeSim *sim) {
-#ifdef __wasm__
+#ifdef SINGE_WITHOUT_RECORDING
     (void)sim;
     return NULL;
 #else
