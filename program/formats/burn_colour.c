@@ -15,13 +15,10 @@ static float between(float low, float high, float x) {
 void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, float colour[3]) {
     static const float white[3] = {0.86f, 0.852f, 0.832f};
     static const float soot[3] = {0.018f, 0.016f, 0.015f}, grey[3] = {0.42f, 0.41f, 0.40f};
-    static const float stops[][4] = {{0, 1, 1, 1},
-                                     {0.14f, 0.965f, 0.90f, 0.74f},
-                                     {0.32f, 0.85f, 0.655f, 0.36f},
-                                     {0.50f, 0.55f, 0.315f, 0.105f},
-                                     {0.69f, 0.225f, 0.098f, 0.032f},
-                                     {0.86f, 0.062f, 0.031f, 0.018f},
-                                     {1, 0.020f, 0.016f, 0.014f}};
+    static const float stops[8][4] = {{0.00f, 1.00f, 1.00f, 1.00f},    {0.09f, 0.975f, 0.93f, 0.81f},
+                                      {0.21f, 0.84f, 0.68f, 0.44f},    {0.57f, 0.53f, 0.34f, 0.165f},
+                                      {0.68f, 0.32f, 0.165f, 0.068f},  {0.77f, 0.14f, 0.062f, 0.026f},
+                                      {0.86f, 0.056f, 0.030f, 0.018f}, {1.00f, 0.020f, 0.016f, 0.014f}};
 
     // fresh: white paper in the sheet's colour and picture
     const Image *image = sheet->image;
@@ -47,7 +44,7 @@ void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, fl
     const float scorched = 1 - (1 - by_heat) * (1 - by_burn);
     int i = 1;
 
-    while (i < 6 && scorched > stops[i][0]) i++;
+    while (i < 7 && scorched > stops[i][0]) i++;
     const float f = (scorched - stops[i - 1][0]) / (stops[i][0] - stops[i - 1][0]);
     for (int c = 0; c < 3; c++) colour[c] *= stops[i - 1][c + 1] + f * (stops[i][c + 1] - stops[i - 1][c + 1]);
 

@@ -8,13 +8,19 @@ import bpy
 # paper browns by its peak temperature from BROWN to CHAR, K, in the logarithm of what it is above the room's
 ROOM, BROWN, CHAR = 293.0, 348.0, 653.0
 # how much of each colour is left as paper scorches, from fresh to charred (program/formats/burn_colour.c)
-SCORCH = ((0, (1, 1, 1)), (0.14, (0.965, 0.90, 0.74)), (0.32, (0.85, 0.655, 0.36)), (0.50, (0.55, 0.315, 0.105)),
-          (0.69, (0.225, 0.098, 0.032)), (0.86, (0.062, 0.031, 0.018)), (1, (0.020, 0.016, 0.014)))
+SCORCH = ((0, (1, 1, 1)), (0.09, (0.975, 0.93, 0.81)), (0.21, (0.84, 0.68, 0.44)), (0.57, (0.53, 0.34, 0.165)),
+          (0.68, (0.32, 0.165, 0.068)), (0.77, (0.14, 0.062, 0.026)), (0.86, (0.056, 0.030, 0.018)),
+          (1, (0.020, 0.016, 0.014)))
 SOOT, INK_ON_CHAR, ASH = (0.012, 0.0105, 0.0095, 1), (0.05, 0.048, 0.046, 1), (0.34, 0.33, 0.315, 1)
 # the flame's emission per metre where `flame` is 1 (docs/blender.md), and how much more its hottest core emits
-FLAME_LIGHT, FLAME_CORE = 218.0, 7.0
-# strength of `ember` in its cracks, whose skin is some 110 K hotter than the sheet's mean, and between them
-EMBER_CRACKS, EMBER_CRUST = 14.0, 0.3
+FLAME_LIGHT, FLAME_CORE = 300.0, 3.0
+# how much brighter it is as a lamp than in the picture
+FLAME_LAMP = 4.0
+# its colours by `flame`: red at the edge, orange, and a pale core
+FLAME_COLOURS = ((0, (1, 0.12, 0.0)), (0.2, (1, 0.22, 0.004)), (0.45, (1, 0.36, 0.035)), (0.9, (1, 0.52, 0.13)))
+# embers: c2 of a black body, um K; the light of 0.6 um to the power of 0.55, as film sees it, by -EMBER_FALL / T; strength
+C2 = 14388.0
+EMBER_FALL, EMBER_GAIN = 0.55 * C2 / 0.6, 1.8
 
 
 def _node(tree, kind, location, **values):
@@ -128,6 +134,9 @@ def sheet_material(name, image, colour):
     peak = _attribute(tree, "temperature_peak", (-1900, 100)).outputs["Fac"]
     burnt = _attribute(tree, "burnt", (-1900, -100)).outputs["Fac"]
     ash = _attribute(tree, "ash_fraction", (-1900, -300)).outputs["Fac"]
+    mass = _attribute(tree, "mass", (-1900, -1700)).outputs["Fac"]
+    char_left = _attribute(tree, "char_fraction", (-1900, -1900)).outputs["Fac"]
+    burning = _attribute(tree, "burn_rate", (-1900, -1500)).outputs["Fac"]
     medium = _noise(tree, rest, 220.0, 5.0, (-1600, -500))
     fine = _noise(tree, rest, 1500.0, 4.0, (-1600, -700))
 
@@ -148,23 +157,29 @@ def sheet_material(name, image, colour):
                      _math(tree, "ADD", (-750, -450), _math(tree, "MULTIPLY", (-900, -450), medium, 1.6), -0.1))
     coloured = _mix(tree, _range(tree, speckled, 0.05, 0.14, (-300, -350)), black, ASH, (250, 200))
 
-    # embers: hot char glows in its cracks, where air reaches it. `ember` is the cache's colour of that glow. The
-    # attribute `temperature` cannot be used: Cycles reserves the name for volumes, and reads 0 for meshes
-    ember = _attribute(tree, "ember", (-1100, -900)).outputs["Color"]
-    bent = _node(tree, "ShaderNodeVectorMath", (-1350, -900), operation="MULTIPLY_ADD")
-    wander = _node(tree, "ShaderNodeTexNoise", (-1600, -1000), Scale=450.0, Detail=3.0)
-    links.new(rest, wander.inputs["Vector"])
-    links.new(wander.outputs["Color"], bent.inputs[0])
-    bent.inputs[1].default_value = (0.0022, 0.0022, 0.0022)
-    links.new(rest, bent.inputs[2])
-    plates = _node(tree, "ShaderNodeTexVoronoi", (-1150, -1050), feature="DISTANCE_TO_EDGE", Scale=520.0)
-    links.new(bent.outputs[0], plates.inputs["Vector"])
-    cracks = _range(tree, plates.outputs["Distance"], 0.13, 0.0, (-950, -1050))
-    patches = _range(tree, medium, 0.42, 0.62, (-950, -1250))
-    open_ = _math(tree, "MULTIPLY", (-750, -1100), _math(tree, "POWER", (-850, -1050), cracks, 2.0), patches)
-    strength = _math(tree, "ADD", (-400, -1100), _math(tree, "MULTIPLY", (-600, -1100), open_, EMBER_CRACKS),
-                     EMBER_CRUST)
-    glow = _math(tree, "MULTIPLY", (-200, -1000), _range(tree, burnt, 0.15, 0.5, (-600, -900)), strength)
+    # embers, as in program/preview/shade_paper.c: char without fuel glows away as a black body, hotter here and cooler
+    # there. `ember` is red 2.5 exp(c2 / (0.61 um) (1 / 1200 K - 1 / T)): its temperature follows.
+    # The attribute `temperature` cannot be used: Cycles reserves the name for volumes, and reads 0 for meshes
+    red = _node(tree, "ShaderNodeSeparateColor", (-1700, -1000))
+    links.new(_attribute(tree, "ember", (-1900, -1000)).outputs["Color"], red.inputs[0])
+    lit = _math(tree, "LOGARITHM", (-1500, -1000), _math(tree, "MAXIMUM", (-1600, -1000), red.outputs[0], 1e-6), math.e)
+    inverse = _math(tree, "MULTIPLY_ADD", (-1400, -1000), lit, -0.61 / C2, 1 / 1200 + 0.61 / C2 * math.log(2.5))
+    mean = _math(tree, "DIVIDE", (-1300, -1000), 1.0, inverse)
+    life = _range(tree, _noise(tree, rest, 340.0, 5.0, (-1600, -1200)), 0.40, 0.66, (-1400, -1200))
+    varied = _math(tree, "MULTIPLY_ADD", (-1200, -1200), life, 150.0, 10.0)
+    varied = _math(tree, "MULTIPLY_ADD", (-1100, -1300), fine, 160.0, _math(tree, "SUBTRACT", (-1100, -1200), varied, 50.0))
+    hot = _math(tree, "MINIMUM", (-900, -1100), _math(tree, "ADD", (-1000, -1100), mean, varied), 1380.0)
+    light = _math(tree, "EXPONENT", (-600, -1100), _math(
+        tree, "MULTIPLY_ADD", (-700, -1100), _math(tree, "DIVIDE", (-800, -1100), 1.0, hot), -EMBER_FALL, EMBER_FALL / 1200))
+    air = _math(tree, "MULTIPLY_ADD", (-600, -1300), _math(tree, "POWER", (-700, -1300), life, 2.5), 0.94, 0.06)
+    active = _math(tree, "DIVIDE", (-600, -1500), burning, _math(tree, "ADD", (-700, -1500), burning, 0.12))
+    fuel = _math(tree, "SUBTRACT", (-1000, -1700), _math(tree, "SUBTRACT", (-1100, -1700), mass, char_left), ash)
+    active = _math(tree, "MULTIPLY", (-500, -1500), active, _range(tree, fuel, 0.06, 0.0, (-600, -1700)))
+    glow = _math(tree, "MULTIPLY", (-400, -1100), light, _math(tree, "MULTIPLY", (-500, -1300), air, active))
+    glow = _math(tree, "MULTIPLY", (-300, -1100), glow, _range(tree, red.outputs[0], 0.0, 0.01, (-500, -1000)))
+    glow = _math(tree, "MULTIPLY", (-200, -1100), glow, EMBER_GAIN)
+    glowing = _node(tree, "ShaderNodeBlackbody", (-600, -950))
+    links.new(hot, glowing.inputs[0])
 
     # char is brittle and rough
     bump = _node(tree, "ShaderNodeBump", (50, -200), Distance=0.0004)
@@ -176,14 +191,7 @@ def sheet_material(name, image, colour):
     paper.inputs["Specular IOR Level"].default_value = 0.1
     links.new(coloured, paper.inputs["Base Color"])
     links.new(bump.outputs[0], paper.inputs["Normal"])
-    # Blender's view bleaches bright red to pink: embers are orange
-    red = _node(tree, "ShaderNodeSeparateColor", (-400, -850))
-    links.new(ember, red.inputs[0])
-    orange = _node(tree, "ShaderNodeCombineColor", (0, -850))
-    links.new(red.outputs[0], orange.inputs[0])
-    links.new(_math(tree, "MULTIPLY_ADD", (-200, -850), red.outputs[0], 0.1, red.outputs[1]), orange.inputs[1])
-    links.new(red.outputs[2], orange.inputs[2])
-    links.new(orange.outputs[0], paper.inputs["Emission Color"])
+    links.new(glowing.outputs[0], paper.inputs["Emission Color"])
     links.new(glow, paper.inputs["Emission Strength"])
     through = _node(tree, "ShaderNodeBsdfTranslucent", (450, -150))
     links.new(coloured, through.inputs["Color"])
@@ -210,13 +218,14 @@ def fire_material():
     volume = _node(tree, "ShaderNodeVolumePrincipled", (200, 0))
     volume.inputs["Color"].default_value = (0.05, 0.05, 0.05, 1)
     flame = _attribute(tree, "flame", (-600, -100)).outputs["Fac"]
-    # red at the edge, orange, and a pale core that is far brighter
-    hue = _ramp(tree, _range(tree, flame, 0.0, 0.6, (-450, -300)),
-                ((0, (1, 0.14, 0.0)), (0.35, (1, 0.30, 0.0)), (1, (1, 0.55, 0.05))), (-250, -300))
+    hue = _ramp(tree, flame, FLAME_COLOURS, (-250, -300))
     tree.links.new(hue, volume.inputs["Emission Color"])
     core = _math(tree, "MULTIPLY_ADD", (-300, -50), flame, FLAME_CORE, 1.0)
-    tree.links.new(_math(tree, "MULTIPLY", (-100, -100), _math(tree, "MULTIPLY", (-200, 50), flame, core), FLAME_LIGHT),
-                   volume.inputs["Emission Strength"])
+    strength = _math(tree, "MULTIPLY", (-100, -100), _math(tree, "MULTIPLY", (-200, 50), flame, core), FLAME_LIGHT)
+    # what film holds of a flame is less than what lights the room
+    seen = _node(tree, "ShaderNodeLightPath", (-300, 200)).outputs["Is Camera Ray"]
+    lit = _math(tree, "MULTIPLY_ADD", (-100, 200), seen, 1 - FLAME_LAMP, FLAME_LAMP)
+    tree.links.new(_math(tree, "MULTIPLY", (50, 0), strength, lit), volume.inputs["Emission Strength"])
     output = _node(tree, "ShaderNodeOutputMaterial", (500, 0))
     tree.links.new(volume.outputs[0], output.inputs["Volume"])
     return material
