@@ -18,9 +18,8 @@ static double folded(bool creases) {
     hand.sheet = strip, hand.radius = 0.045f, hand.point_count = 1, hand.points = (const float[]){0.06f, 0, 0};
     SingePoseKey path[9];
     for (int i = 0; i < 9; i++) {
-        const float a = 2.8f * (float)i / 8; // about the y axis, through the middle
-        path[i] = (SingePoseKey){
-            0.05f * (float)i, {0.06f * cosf(a) - 0.06f, 0, 0.06f * sinf(a)}, {0, -sinf(a / 2), 0, cosf(a / 2)}};
+        const float a = 2.4f * (float)i / 8; // about the y axis, through the middle
+        path[i] = (SingePoseKey){0.05f * (float)i, {0, 0, 0}, {0, -sinf(a / 2), 0, cosf(a / 2)}};
     }
     hand.path_count = 9, hand.path = path;
     SingePinId id;
