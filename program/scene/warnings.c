@@ -41,6 +41,28 @@ void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *l
     for (uint32_t i = 0; i < scene->pin_count; i++)
         warn_of_motion(scene, &scene->pins[i].motion, &assets->pin_motions[i], log);
 
+    // sheets so far away that positions in single precision are too coarse for their cells
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        const Mesh *mesh = &assets->meshes[i];
+        double farthest = 0, shortest = INFINITY;
+        for (size_t k = 0; k < 3 * (size_t)mesh->vertex_count; k++)
+            farthest = fmax(farthest, fabs((double)mesh->positions[k]));
+        for (uint32_t c = 0; c < mesh->cell_count; c++) {
+            const float *from = mesh->positions + 3 * (size_t)mesh->cells[4 * (size_t)c];
+            const float *to = mesh->positions + 3 * (size_t)mesh->cells[4 * (size_t)c + 1];
+            const double x = (double)to[0] - (double)from[0], y = (double)to[1] - (double)from[1];
+            shortest = fmin(shortest, hypot(hypot(x, y), (double)to[2] - (double)from[2]));
+        }
+
+        const double rounded = farthest * 0x1p-23;
+        if (rounded > 0.01 * shortest)
+            message_warn(
+                log, scene->text, scene->sheets[i].location,
+                "the sheet lies %.3g m from the origin, where positions are rounded to %.2g mm, and its shortest "
+                "side is %.2g mm: move the scene to the origin",
+                farthest, 1e3 * rounded, 1e3 * shortest);
+    }
+
     // blankets that reach no farther than contact lets other sheets come
     float thickest = 0;
     for (uint32_t i = 0; i < scene->sheet_count; i++) {

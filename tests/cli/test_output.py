@@ -56,6 +56,12 @@ class Output(Case):
         _, err = self.run_scene("o", "--quiet", "--set", "sources.0.position=[6, 0, 5 cm]")
         self.assertRegex(err, r"^singe: warning: .*misses the sheets.*\nsinge: warning: nothing ignited: .*\n$")
 
+    def test_a_sheet_far_from_the_origin_is_said(self):
+        for place, said in (("[0, 0, 50]", False), ("[0, 2000, 0]", True)):
+            _, err = self.singe("check", self.scene, "--set", "sources=[]", "--set", "sheets.0.translate=" + place)
+            self.assertEqual("tiny.yaml:6:5: the sheet lies 2e+03 m from the origin, where positions are rounded to 0.24 mm"
+                             in err, said, err)
+
     def test_a_blanket_that_contact_keeps_away_is_said(self):
         """Sheets 2 mm apart: within .5 mm and the burning sheet's thickness, 1 mm, is nothing."""
         for contact, distance, said in (("2 mm", "0.5 mm", True), ("2 mm", "1.5 mm", False), ("1 mm", "0.5 mm", False),
