@@ -14,4 +14,5 @@ sim.collider("box", half_size=[0.05, 0.1, 0.01], smothers=True, contact_distance
 sim.commit()
 sim.advance(1.2)
 burning, lid = sim.burn_rate > 0.01, sim.rest_position[:, 0] > 0.005
-print(f"under the lid {(burning & lid).sum()} particles burn, elsewhere {'many do' if (burning & ~lid).sum() > 20 else 'few do'}")
+elsewhere = "many do" if (burning & ~lid).sum() > 20 else "few do"
+print(f"under the lid {(burning & lid).sum()} particles burn, elsewhere {elsewhere}")
