@@ -143,10 +143,15 @@ check-web: web
 
 # pictures of the page for docs/web.md, its first minute among them, into build/web-pictures
 web-pictures: web
-	cd web && ONLY="first minute|letter burns by itself|hangs|axe" node tests/check.mjs --pictures ../build/web-pictures
+	cd web && ONLY="first minute|letter burns by itself|each scene|axe" node tests/check.mjs --pictures ../build/web-pictures
 	cd build/web-pictures && ffmpeg -y -loglevel error -i minute-1-page.png -i minute-2-match.png -i minute-3-hole.png \
 	    -i minute-4-torn.png -i minute-5-link.png -filter_complex "[0]scale=640:400[a];[1]scale=640:400[b];[2]scale=640:400[c]; \
 	    [a][b][c]hstack=3[u];[3][4]hstack[v];[u][v]vstack" -quality 82 web-minute.webp
+	cd build/web-pictures && for name in torus corners stack title ember curtain; do \
+	    ffmpeg -y -loglevel error -i scene-$$name.png -vf crop=600:400:170:95 small-$$name.png; done
+	cd build/web-pictures && ffmpeg -y -loglevel error -i small-torus.png -i small-corners.png -i small-stack.png -i small-title.png \
+	    -i small-ember.png -i small-curtain.png -filter_complex "[0][1][2]hstack=3[u];[3][4][5]hstack=3[v];[u][v]vstack,scale=1500:-1" \
+	    -quality 82 web-scenes.webp
 
 # the documentation as a site in build/site/html, with references made from the headers and the docstrings: needs doxygen;
 # Sphinx is installed into build/site. Warnings and dead links are errors. Where `make web` was run, its page is inside

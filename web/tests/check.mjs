@@ -273,7 +273,7 @@ const CASES = {
             await open(folder ? `place=${name}` : `cells=20&gas=false&place=${name}`, 0.1);
             assert.equal(await page.inputValue("[name=place]"), name);
             if (name === "blank") continue; // has no match of its own
-            const before = await step(0.5), after = await step(1.3);
+            const before = await step(0.5), after = await step(folder ? 2 : 1.3);
             assert.ok(after.burnt > before.burnt && after.burnt > 0.001, `${name}: burnt ${before.burnt}, then ${after.burnt}`);
             if (process.env.SINGE_PROGRAM) await checkScene();
             if (!folder) continue;

@@ -1,13 +1,13 @@
 // Burns every example natively and again in WebAssembly: node examples.mjs PROGRAM REPLAYER FOLDER [EXAMPLE...]
 //
 // PROGRAM is a `singe` with SINGE_PORTABLE_MATH. It records the first 48 frames of each scene, with at most CELLS cells in
-// a grid; meshes are as they are. REPLAYER is tests/platforms/hash_runs.c with the core compiled as for singe.wasm, but
+// a grid and coarse gas; meshes are as they are. REPLAYER is tests/platforms/hash_runs.c with the core compiled as for singe.wasm, but
 // with recordings: it makes the same calls in node and compares the state after every step (docs/replay.md). Prints a
 // table; fails where a state differs, or where a damaged recording passes.
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 
-const FRAMES = 48, CELLS = 600;
+const FRAMES = 48, CELLS = 300, GAS = "gas.cell_size=12 mm";
 const EXAMPLES = new URL("../../../examples/", import.meta.url).pathname;
 const [program, replayer, folder, ...wanted] = process.argv.slice(2);
 mkdirSync(folder, { recursive: true });
@@ -45,7 +45,7 @@ console.log("example           springs  burnt   native  replayed in WebAssembly"
 for (const name of readdirSync(EXAMPLES).filter((one) => !wanted.length || wanted.includes(one))) {
     const scene = `${EXAMPLES}${name}/${name}.yaml`, recording = `${folder}/${name}.singerec`, begun = Date.now();
     execFileSync(program, ["run", scene, "-o", `${folder}/${name}`, "--force", "--quiet", "--no-preview", "--threads", "1", "--frames", String(FRAMES),
-        "--record", recording, ...coarse(readFileSync(scene, "utf8"))], { stdio: ["ignore", "ignore", "inherit"] });
+        "--record", recording, "--set", GAS, ...coarse(readFileSync(scene, "utf8"))], { stdio: ["ignore", "ignore", "inherit"] });
     const [heads, ...rows] = readFileSync(`${folder}/${name}/stats.csv`, "utf8").trim().split("\n").map((line) => line.split(","));
     const of = (key, row) => Number(rows.at(row)[heads.indexOf(key)]), burnt = of("burnt_fraction", -1), native = (Date.now() - begun) / 1000;
     const said = replayed(recording), same = said.startsWith("the same: "), seconds = (Date.now() - begun) / 1000 - native;
