@@ -29,7 +29,7 @@ function replayed(path) {
         const wasi = new WASI({ version: "preview1", args: ["hash_runs", "--replay", process.argv[2]], preopens: { "/": "/" }, returnOnExit: false });
         wasi.start(await WebAssembly.instantiate(await WebAssembly.compile(readFileSync(process.argv[1])), wasi.getImportObject()));`,
         replayer, path], { encoding: "utf8" });
-    return (stdout + stderr).trim();
+    return (stdout || stderr).trim().split("\n")[0];
 }
 
 /** Where the hash of the last state is: records are a kind (1 byte), a size (8) and that (docs/replay.md). */
