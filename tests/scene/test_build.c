@@ -677,6 +677,26 @@ TEST(a_camera_follows_its_path) {
     scene_free(scene);
 }
 
+/// Half of what the default camera shows in height at its target, m, of an upright sheet of 20 x 30 cm.
+static double half_shown(const char *more) {
+    char text[400];
+    snprintf(text, sizeof text, "{sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}, rotate: [90, 0, 0]}]%s}", more);
+    Loaded at = load(text, NULL);
+    scene_frame(at.scene, &at.assets);
+    const PreviewCamera *camera = &at.scene->preview.camera;
+    double square = 0;
+    for (int k = 0; k < 3; k++) square += pow((double)camera->eye[k] - (double)camera->target[k], 2);
+    const double half = sqrt(square) * tan(0.5 * (double)camera->fov);
+    unload(&at);
+    return half;
+}
+
+TEST(the_camera_leaves_room_for_flames) {
+    const double with_flames = 0.5 * (0.3 + 0.08);
+    assert_true(half_shown(", sources: [{kind: spot, position: [0, 0, -0.15]}]") > with_flames);
+    assert_true(half_shown("") < with_flames); // without a source the sheet alone fills the picture
+}
+
 TEST(the_camera_finds_the_sheets) {
     static const char *const scenes[] = {
         "sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}}]",
