@@ -228,7 +228,7 @@ typedef struct SingePinDef {
     uint32_t path_count;      ///< 0: held still
     const SingePoseKey *path; ///< [path_count]
     void *user_data;          ///< for the caller's use; see singe_sim_pin_user_data
-    float end;                ///< s, >= 0; time at which it lets go: what it held flies on as it moved; inf: never
+    float end;                ///< s, >= 0; time at which it lets go; what it held keeps its velocity; inf: never
 } SingePinDef;
 
 SINGE_API void singe_init_pin(SingePinDef *def, size_t struct_size);

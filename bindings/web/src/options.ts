@@ -96,7 +96,7 @@ export interface PinOptions {
     /** m, 0 to 1e6; all particles within this distance of a point are held, and at least the vertex nearest to each
      *  point; a point that misses the sheet by a tenth of its diagonal is warned of */
     radius?: number;
-    /** s, >= 0; time at which it lets go: what it held flies on as it moved; inf: never */
+    /** s, >= 0; time at which it lets go; what it held keeps its velocity; inf: never */
     end?: number;
 }
 
