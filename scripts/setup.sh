@@ -7,7 +7,7 @@ set -euo pipefail
 # a|b is the first of both that the system's package lists contain. Compilers and libraries have the system's own
 # versions. Only the formatter's version is fixed, because each one breaks lines differently.
 needed=(build-essential cmake ninja-build pkg-config libfyaml-dev libpng-dev 'libjpeg-dev|libjpeg62-turbo-dev'
-        'libembree-dev|libembree4-dev|libembree3-dev' libopenexr-dev libassimp-dev libnlopt-dev libmicrohttpd-dev libmeshoptimizer-dev libcmocka-dev python3)
+        libopenexr-dev libassimp-dev libnlopt-dev libmicrohttpd-dev libmeshoptimizer-dev libcmocka-dev python3)
 # optional: without these, runs make no video and some tests are skipped
 useful=(ffmpeg python3-numpy python3-openvdb valgrind locales libsdl2-dev)
 only_list=false

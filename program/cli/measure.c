@@ -450,8 +450,7 @@ int command_measure(int argc, char **argv) {
     const int *size = measure.job.scene->preview.size;
     int scale = EMBER_SCALE; // embers are thinner than a pixel, unless the pictures are large
     while (scale > 1 && scale * (size[0] > size[1] ? size[0] : size[1]) > EMBER_WIDE) scale--;
-    const bool draws = !options.no_preview && pictures_available();
-    if (!code && draws && pictures_open_sharp(&measure.job, scale, &measure.pictures, &error)) {
+    if (!code && !options.no_preview && pictures_open_sharp(&measure.job, scale, &measure.pictures, &error)) {
         console_result(&measure.console, &error);
         code = EXIT_FAILED;
     }

@@ -354,7 +354,7 @@ SingeResult gas_detail_convert(const Folder *folder, Pictures *pictures, int num
 SingeResult gas_detail_write(const Job *job, const Folder *folder, int last, OutputsProgress *progress, void *context,
                              SingeError *error) {
     Pictures *pictures = NULL;
-    SingeResult result = pictures_open_baker(job, &pictures, error);
+    SingeResult result = pictures_open(job, &pictures, error);
     for (int frame = 1; frame <= last && !result; frame++) {
         if (progress(context, frame)) {
             result = gas_detail_convert(folder, pictures, frame, job->scene->gas_detail, error);

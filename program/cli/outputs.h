@@ -51,8 +51,7 @@ SINGE_NODISCARD SingeResult gas_detail_write_frame(const char *path, const Frame
 SINGE_NODISCARD SingeResult gas_detail_convert(const Folder *folder, Pictures *pictures, int number, int detail,
                                                SingeError *error);
 
-/// The same for frames 1 to `last`, in the existing folder. SINGE_ERROR_STATE in a program built without the preview,
-/// and if the progress callback returns false.
+/// The same for frames 1 to `last`, in the existing folder. SINGE_ERROR_STATE if the progress callback returns false.
 SINGE_NODISCARD SingeResult gas_detail_write(const Job *job, const Folder *folder, int last, OutputsProgress *progress,
                                              void *context, SingeError *error);
 

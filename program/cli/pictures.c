@@ -22,8 +22,6 @@ struct Pictures {
     PreviewLayers layers; ///< empty unless they are kept
 };
 
-bool pictures_available(void) { return preview_draws(); }
-
 static SingeResult no_memory(SingeError *error) {
     return refuse(error, SINGE_ERROR_MEMORY, "preview", -1, "out of memory");
 }
@@ -47,9 +45,7 @@ static SingeResult open_def(const Job *job, const PreviewDef *def, Pictures **ma
     pictures->shapes = calloc(pictures->shape_max + 1, sizeof *pictures->shapes);
     pictures->rgb = malloc((size_t)pictures->def.width * (size_t)pictures->def.height * 3);
     SingeResult result = pictures->shapes && pictures->starts && pictures->rgb ? SINGE_OK : no_memory(error);
-    interrupt_guard_begin();
     if (!result) result = preview_create(&pictures->def, (SingeAllocator){0}, &pictures->preview, error);
-    interrupt_guard_end();
     if (result) pictures_close(pictures);
     else *made = pictures;
     return result;
@@ -63,15 +59,9 @@ static PreviewDef scene_def(const Job *job) {
     return def;
 }
 
-SingeResult pictures_open_baker(const Job *job, Pictures **pictures, SingeError *error) {
+SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error) {
     const PreviewDef def = scene_def(job);
     return open_def(job, &def, pictures, error);
-}
-
-SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error) {
-    if (pictures_available()) return pictures_open_baker(job, pictures, error);
-    *pictures = NULL;
-    return refuse(error, SINGE_ERROR_STATE, "preview", -1, "this singe was built without the preview");
 }
 
 SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, SingeError *error) {
@@ -107,22 +97,18 @@ const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, co
     PreviewCamera camera;
     scene_camera(pictures->scene, time, &camera);
     camera.aperture = pictures->def.camera.aperture; // a picture to be measured is sharp
-    interrupt_guard_begin();
     SingeResult result = preview_set_camera(pictures->preview, &camera, error);
     if (!result) result = preview_set_shapes(pictures->preview, pictures->shapes, count, error);
     if (!result) result = preview_set_gas(pictures->preview, gas, error);
     if (!result)
         result = preview_draw_layers(pictures->preview, surface, time, pictures->rgb, &pictures->layers, error);
-    interrupt_guard_end();
     return result ? NULL : pictures->rgb;
 }
 
 SingeResult pictures_bake(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time, int detail,
                           float *smoke, float *flame, SingeError *error) {
-    interrupt_guard_begin();
     SingeResult result = preview_set_gas(pictures->preview, gas, error);
     if (!result) result = preview_bake_gas(pictures->preview, surface, time, detail, smoke, flame, error);
-    interrupt_guard_end();
     return result;
 }
 
@@ -232,10 +218,7 @@ void pictures_size(const Pictures *pictures, int *width, int *height) {
 
 void pictures_close(Pictures *pictures) {
     if (!pictures) return;
-    interrupt_guard_begin();
     preview_destroy(pictures->preview);
-    interrupt_guard_end();
-
     const PreviewLayers *l = &pictures->layers;
     void *const layers[] = {l->beauty, l->glow,  l->normal, l->coverage, l->fire,  l->temperature,
                             l->burn,   l->depth, l->sheet,  l->piece,    l->mattes};

@@ -1,5 +1,4 @@
-// The pictures of a scene as the commands use them, and the frames that they show. A program built without the preview
-// bakes gas but draws nothing.
+// The pictures of a scene as the commands use them, and the frames that they show.
 #ifndef CLI_PICTURES_H
 #define CLI_PICTURES_H
 
@@ -11,14 +10,8 @@
 
 typedef struct Pictures Pictures;
 
-/// False in a program built without the preview.
-bool pictures_available(void);
-
-/// The job must outlive *pictures. Fails in a program built without the preview.
+/// The job must outlive *pictures.
 SINGE_NODISCARD SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error);
-
-/// The same only for pictures_bake, in any program.
-SINGE_NODISCARD SingeResult pictures_open_baker(const Job *job, Pictures **pictures, SingeError *error);
 
 /// Draws a frame and returns its pixels, [height * width * 3], valid until the next call; NULL on failure. The gas may
 /// be NULL.

@@ -37,9 +37,7 @@ static const ArgOption run_options[] = {
 static bool run_check(const ArgCommand *command, void *options) {
     RunOptions *o = options;
     if (o->exr && o->no_preview) return args_complain(command, "--exr: not with --no-preview");
-    if (o->exr && !(pictures_available() && exr_available()))
-        return args_complain(command, "--exr: this singe was built without %s",
-                             exr_available() ? "the preview" : "EXR");
+    if (o->exr && !exr_available()) return args_complain(command, "--exr: this singe was built without EXR");
     if (o->frames) set_frames(&o->sets, o->frames);
     return true;
 }
@@ -276,8 +274,7 @@ int command_run(int argc, char **argv) {
         code = EXIT_INPUT;
         if (recorded) code = job_reopen(&run.job, &console, folder, &options.sets, options.threads);
         else if (scene) code = job_read(&run.job, &console, scene, &options.sets, options.threads);
-        const bool drawn = !code && !options.no_preview && pictures_available();
-        const double pictures = drawn ? scene_picture_memory(run.job.scene, options.exr) : 0;
+        const double pictures = !code && !options.no_preview ? scene_picture_memory(run.job.scene, options.exr) : 0;
         if (!code) code = (recorded ? job_fits : job_load)(&run.job, &console, pictures);
         if (!code && options.record) code = recording_open(&run.recording, options.record, &console);
         run.job.hooks.record = recording_hook(&run.recording);

@@ -216,15 +216,13 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
     const SceneCheckpoints *kept = &run->job.scene->checkpoints;
     run->keep_every = kept->every ? kept->every : kept->megabytes > 0 ? 10 : 0;
     SingeResult result = checkpoint_scene_hash(run->job.scene, &run->job.assets, &run->hash, &error);
-    const bool drawn = !options->no_preview && pictures_available();
     if (options->no_preview) console_note(run->console, "no preview");
-    else if (!drawn) console_note(run->console, "this singe was built without the preview");
-    if (!result && drawn) result = pictures_open(&run->job, &run->pictures, &error);
+    else if (!result) result = pictures_open(&run->job, &run->pictures, &error);
     if (!result && options->exr) result = pictures_keep_layers(run->pictures, &error);
     run->layers = options->exr;
     if (!result && run->job.scene->gas_detail > 1 && run->job.scene->sim.gas.enabled) {
         run->baker = run->pictures;
-        if (!run->baker) result = pictures_open_baker(&run->job, &run->baker, &error);
+        if (!run->baker) result = pictures_open(&run->job, &run->baker, &error);
     }
 
     if (result) {

@@ -104,25 +104,16 @@ bool airborne_project(const Preview *preview, Float3 p, float at[2], float *dept
 }
 
 void airborne_sight(const Preview *preview, const Float3 *points, int count, float seen[SIGHT_POINTS]) {
-    _Alignas(64) struct RTCRay16 rays;
-    _Alignas(64) int valid[LANES];
+    Rays rays;
+    int valid[LANES];
     const Float3 eye = preview->camera.eye;
     for (int i = 0; i < LANES; i++) {
-        valid[i] = i < count ? -1 : 0;
-        Float3 to = i < count ? float3_sub(points[i], eye) : float3(0, 0, 1);
+        valid[i] = i < count;
+        rest_ray(&rays, i);
+        if (!valid[i]) continue;
+        Float3 to = float3_sub(points[i], eye);
         float distance = float3_length(to), near = 4 * preview->scene.epsilon;
-        rays.org_x[i] = eye.x;
-        rays.org_y[i] = eye.y;
-        rays.org_z[i] = eye.z;
-        rays.dir_x[i] = to.x / distance;
-        rays.dir_y[i] = to.y / distance;
-        rays.dir_z[i] = to.z / distance;
-        rays.tnear[i] = 0;
-        rays.tfar[i] = valid[i] ? maxf(distance - near, 0) : -1;
-        rays.time[i] = 0.5f;
-        rays.mask[i] = ~0u;
-        rays.id[i] = (unsigned)i;
-        rays.flags[i] = 0;
+        aim_ray(&rays, i, eye, float3_scale(to, 1 / distance), 0, maxf(distance - near, 0), 0.5f);
     }
     tracer_occlude(preview, valid, &rays, seen);
     for (int i = 0; i < count; i++)

@@ -14,9 +14,9 @@ typedef struct LayerSum {
 } LayerSum;
 
 typedef struct Block {
-    struct RTCRayHit16 rays;
-    struct RTCRay16 shadow;
-    _Alignas(64) int valid[LANES];
+    Rays rays, shadow;
+    Hits hits;
+    int valid[LANES];
     int x[LANES], y[LANES];
     float turn[LANES][2];
     uint32_t key[LANES];
@@ -37,26 +37,6 @@ typedef struct Block {
     Float3 lamp_position[LANES], lamp_normal[LANES], lamp_white[LANES]; ///< where lamps were last gathered; on white
     LayerSum layer[LANES];
 } Block;
-
-static inline void aim_ray(struct RTCRay16 *ray, int lane, Float3 origin, Float3 direction, float near, float far,
-                           float time) {
-    ray->org_x[lane] = origin.x;
-    ray->org_y[lane] = origin.y;
-    ray->org_z[lane] = origin.z;
-    ray->dir_x[lane] = direction.x;
-    ray->dir_y[lane] = direction.y;
-    ray->dir_z[lane] = direction.z;
-    ray->tnear[lane] = near;
-    ray->tfar[lane] = far;
-    ray->time[lane] = time;
-    ray->mask[lane] = ~0u;
-    ray->id[lane] = (unsigned)lane;
-    ray->flags[lane] = 0;
-}
-
-static inline void rest_ray(struct RTCRay16 *ray, int lane) {
-    aim_ray(ray, lane, float3(0, 0, 0), float3(0, 0, 1), 0, -1, 0);
-}
 
 /// In place of a sample's number: the centre of the sun and an open sky, if nothing can occlude them.
 enum { SAMPLE_CENTRE = -1 };

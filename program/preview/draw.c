@@ -175,8 +175,6 @@ static void draw_all(Preview *preview, void (*draw)(Preview *, Block *)) {
     for (int i = 0; i < started; i++) pthread_join(threads[i], NULL);
 }
 
-bool preview_draws(void) { return true; }
-
 SingeResult preview_draw(Preview *preview, const SingeSurface *surface, double time, uint8_t *rgb, SingeError *error) {
     return preview_draw_layers(preview, surface, time, rgb, &(PreviewLayers){NULL}, error);
 }

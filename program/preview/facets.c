@@ -1,4 +1,4 @@
-// Rays against closed meshes, on Embree: one tree per solid, in the solid's own frame, into which rays are transformed.
+// Rays against closed meshes, one BVH per solid, in the solid's own frame, into which rays are transformed.
 // A moving mesh is thus built once, and blurs like other shapes.
 //
 // Normals are smooth over edges blunter than FACETS_CREASE: a corner's normal is the sum, weighted by area, of those of
@@ -68,32 +68,12 @@ static SingeResult facets_build(Preview *preview, Facets *facets, SingeError *er
     SingeResult result = facets_normals(preview, facets, error);
     if (result) return result;
 
-    facets->embree = rtcNewScene(preview->device);
-    RTCGeometry geometry = rtcNewGeometry(preview->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-
-    // copies of the arrays: Embree reads 16 bytes from the last vertex on
-    float *vertices = NULL;
-    uint32_t *triangles = NULL;
-    if (geometry)
-        vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                           solid->vertex_count);
-    if (geometry)
-        triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
-                                            solid->triangle_count);
-    bool ok = facets->embree && vertices && triangles;
-
-    if (ok) {
-        memcpy(vertices, solid->vertices, 3 * (size_t)solid->vertex_count * sizeof *vertices);
-        memcpy(triangles, solid->triangles, 3 * (size_t)solid->triangle_count * sizeof *triangles);
-        rtcSetSceneFlags(facets->embree, RTC_SCENE_FLAG_ROBUST);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(facets->embree, geometry);
-        rtcCommitScene(facets->embree);
-    }
-
-    if (geometry) rtcReleaseGeometry(geometry);
-    ok = ok && rtcGetDeviceError(preview->device) == RTC_ERROR_NONE;
-    return ok ? SINGE_OK : preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree refused a mesh");
+    BvhMesh mesh = {.positions = {solid->vertices, solid->vertices},
+                    .stride = 3,
+                    .triangles = (const uint32_t(*)[3])solid->triangles,
+                    .triangle_count = solid->triangle_count};
+    if (bvh_build(&facets->bvh, preview->allocator, &mesh)) return SINGE_OK;
+    return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
 }
 
 SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets **found, SingeError *error) {
@@ -121,7 +101,7 @@ SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets
 }
 
 static void facets_free_one(Preview *preview, Facets *facets) {
-    if (facets->embree) rtcReleaseScene(facets->embree);
+    bvh_free(&facets->bvh, preview->allocator);
     size_t size = facets->normals ? 3 * (size_t)facets->triangle_count * sizeof *facets->normals : 0;
     allocator_resize(preview->allocator, facets->normals, size, 0);
     allocator_resize(preview->allocator, facets, sizeof *facets, 0);
@@ -155,25 +135,19 @@ float facets_intersect(const Facets *facets, Float3 o, Float3 d, float near, flo
     Float3 to = float3_sub(facets->centre, o), aside = float3_mad(to, d, -float3_dot(to, d));
     if (!(float3_dot(aside, aside) <= 1.0001f * facets->extent * facets->extent)) return -1;
 
-    struct RTCRayHit hit = {.ray = {.org_x = o.x,
-                                    .org_y = o.y,
-                                    .org_z = o.z,
-                                    .dir_x = d.x,
-                                    .dir_y = d.y,
-                                    .dir_z = d.z,
-                                    .tnear = maxf(near, 0),
-                                    .tfar = far,
-                                    .mask = ~0u}};
-    hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    trace_nearest(facets->embree, &hit);
-    if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID || !(hit.ray.tfar > near)) return -1;
+    Rays rays;
+    Hits hits;
+    for (int i = 1; i < LANES; i++) rest_ray(&rays, i);
+    aim_ray(&rays, 0, o, d, maxf(near, 0), far, 0);
+    bvh_nearest(&facets->bvh, &rays, &hits);
+    if (hits.triangle[0] == BVH_NONE) return -1;
 
-    const Float3 *corner = facets->normals + 3 * (size_t)hit.hit.primID;
-    float u = hit.hit.u, v = hit.hit.v;
+    const Float3 *corner = facets->normals + 3 * (size_t)hits.triangle[0];
+    float u = hits.u[0], v = hits.v[0];
     Float3 smooth = float3_mad(float3_mad(float3_scale(corner[0], 1 - u - v), corner[1], u), corner[2], v);
-    Float3 flat = float3_unit_or(facets_cross(facets->solid, hit.hit.primID), UP);
+    Float3 flat = float3_unit_or(facets_cross(facets->solid, hits.triangle[0]), UP);
 
     // a smooth normal that faces away from the eye although the face does not would be flipped
     *normal = float3_dot(smooth, d) * float3_dot(flat, d) > 0 ? float3_unit_or(smooth, flat) : flat;
-    return hit.ray.tfar;
+    return rays.far[0];
 }

@@ -10,10 +10,9 @@
 #include "preview/noise.h"
 #include "preview/paper_look.h"
 #include "preview/preview.h"
-#include "preview/trace.h"
+#include "preview/bvh.h"
 
 enum {
-    LANES = 16,       ///< rays in a packet: a block of 4 x 4 pixels
     BLOCK = 4,        ///< pixels along a block's side
     TILE = FIRE_TILE, ///< pixels along a tile's side, the unit of work of a thread
     MIP_LIMIT = 15,
@@ -38,7 +37,7 @@ typedef struct Table {
 
 /// The sheets that are drawn, and the lamps.
 typedef struct PreviewScene {
-    RTCScene embree; ///< NULL when there is no triangle
+    Bvh bvh;
     PaperVertex *vertices;
     float (*positions)[4]; ///< in the centre of the exposure
     float (*moved[2])[4];  ///< at its beginning and end; not used without a shutter
@@ -67,7 +66,7 @@ typedef struct Mirrored {
 /// The data of a PreviewSolid for rays.
 typedef struct Facets {
     const PreviewSolid *solid;
-    RTCScene embree;
+    Bvh bvh;
     Float3 *normals; ///< [3 * triangle_count] of each triangle's corners
     Float3 centre;   ///< of its bounds, in its own frame
     float extent;    ///< m, from the centre
@@ -79,7 +78,6 @@ typedef struct Facets {
 struct Preview {
     PreviewDef def;
     SingeAllocator allocator;
-    RTCDevice device;
     Camera camera;
     Float3 sun, sun_right, sun_up; ///< unit, towards the light, and a frame across it
     Float3 sun_light;              ///< its reflection by white paper
@@ -144,21 +142,18 @@ SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError 
 SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error);
 void tracer_free(Preview *preview);
 
-// embree.c, or without_embree.c
-SingeResult tracer_open(Preview *preview, SingeError *error);
-void tracer_close(Preview *preview);
+// tracer.c
 SingeResult tracer_build(Preview *preview, SingeError *error);
-void tracer_release(Preview *preview);
 
 /// Whether the ray comes nearer than `margin` to the surface's bounds before `far`.
 bool tracer_near(const PreviewScene *scene, Float3 origin, Float3 direction, float far, float margin);
 
-/// Nearest hits of the lanes with valid = -1; `geomID` is RTC_INVALID_GEOMETRY_ID where there is none.
-void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit16 *rays);
+/// Nearest hits of the lanes that are valid; moves their `far` there.
+void tracer_intersect(const Preview *preview, const int *valid, Rays *rays, Hits *hits);
 
-/// clear[i] is the transmittance along the ray of a lane with valid = -1, shapes included; for other lanes it is 1.
-/// Changes `valid`. A ray's id is its lane.
-void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *rays, float clear[LANES]);
+/// clear[i] is the transmittance along the ray of a valid lane, shapes included; for other lanes, whose `far` must be
+/// -1, it is 1. Changes `far`.
+void tracer_occlude(const Preview *preview, const int *valid, Rays *rays, float clear[LANES]);
 
 // facets.c
 

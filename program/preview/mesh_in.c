@@ -220,7 +220,6 @@ static SingeResult check_surface(const SingeSurface *surface, SingeError *error)
 
 SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError *error) {
     PreviewScene *scene = &preview->scene;
-    tracer_release(preview);
     scene->vertex_count = scene->triangle_count = 0;
     SingeResult result = check_surface(surface, error);
     if (result) return result;
@@ -277,7 +276,7 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
 
 void tracer_free(Preview *preview) {
     PreviewScene *scene = &preview->scene;
-    tracer_release(preview);
+    bvh_free(&scene->bvh, preview->allocator);
     allocator_resize(preview->allocator, scene->vertices, scene->vertex_capacity * sizeof *scene->vertices, 0);
     allocator_resize(preview->allocator, scene->positions, scene->position_capacity * sizeof *scene->positions, 0);
     for (int end = 0; end < 2; end++)

@@ -71,9 +71,9 @@ static float moved_across(Float3 motion, Float3 ray) {
 static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     Float3 o = block->origin[lane], d = block->direction[lane], normal = {0, 0, 1}, found = {0, 0, 1};
     Point *point = &block->point[lane];
-    const struct RTCHit16 *hit = &block->rays.hit;
-    bool paper = hit->geomID[lane] != RTC_INVALID_GEOMETRY_ID;
-    float distance = paper ? block->rays.ray.tfar[lane] : INFINITY;
+    const Hits *hits = &block->hits;
+    bool paper = hits->triangle[lane] != BVH_NONE;
+    float distance = paper ? block->rays.far[lane] : INFINITY;
     const PreviewShape *shape = NULL;
     float moment = shutter_moment(preview, block->time[lane]);
 
@@ -106,17 +106,18 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
         return true;
     }
 
-    const uint32_t *t = preview->scene.triangles[hit->primID[lane]];
+    const uint32_t *t = preview->scene.triangles[hits->triangle[lane]];
     const PaperVertex *vertices = preview->scene.vertices;
     const PaperVertex *a = &vertices[t[0]], *b = &vertices[t[1]], *c = &vertices[t[2]];
-    float u = hit->u[lane], v = hit->v[lane];
-    Float3 geometric = float3_unit_or(float3(hit->Ng_x[lane], hit->Ng_y[lane], hit->Ng_z[lane]), point->view);
+    float u = hits->u[lane], v = hits->v[lane];
+    Float3 geometric =
+        float3_unit_or(float3(hits->normal[0][lane], hits->normal[1][lane], hits->normal[2][lane]), point->view);
     Float3 smooth = float3_unit_or(float3_blend(a->normal, b->normal, c->normal, u, v), geometric);
     point->geometric = float3_dot(geometric, point->view) >= 0 ? geometric : float3_scale(geometric, -1);
     point->normal = float3_dot(smooth, point->geometric) >= 0 ? smooth : float3_scale(smooth, -1);
     PaperState state;
-    paper_state(&preview->scene, hit->primID[lane], u, v, &state);
-    if (cloth_weave(preview, state.sheet)) cloth_frame(&preview->scene, hit->primID[lane], point);
+    paper_state(&preview->scene, hits->triangle[lane], u, v, &state);
+    if (cloth_weave(preview, state.sheet)) cloth_frame(&preview->scene, hits->triangle[lane], point);
     point->hit = true;
     point->sheet = state.sheet;
     point->piece = state.piece;
@@ -132,19 +133,19 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
 void block_find_points(const Preview *preview, Block *block, const int *active) {
     int left = 0;
     for (int i = 0; i < LANES; i++) {
-        aim_ray(&block->rays.ray, i, block->origin[i], block->direction[i], 0, INFINITY, block->time[i]);
+        aim_ray(&block->rays, i, block->origin[i], block->direction[i], 0, INFINITY, block->time[i]);
         block->valid[i] = active[i];
         left += active[i] != 0;
     }
 
     for (int pass = 0; pass < HOLE_LIMIT && left; pass++) {
-        tracer_intersect(preview, block->valid, &block->rays);
+        tracer_intersect(preview, block->valid, &block->rays, &block->hits);
         left = 0;
         for (int i = 0; i < LANES; i++) {
             if (!block->valid[i]) continue;
             if (!resolve(preview, block, i, pass == HOLE_LIMIT - 1)) {
-                block->rays.ray.tnear[i] = block->rays.ray.tfar[i] + preview->scene.epsilon;
-                block->rays.ray.tfar[i] = INFINITY;
+                block->rays.near[i] = block->rays.far[i] + preview->scene.epsilon;
+                block->rays.far[i] = INFINITY;
                 left++;
                 continue;
             }

@@ -1,4 +1,4 @@
-// Preview: a small renderer for surfaces, on Embree. It depends on surfaces, not on simulations.
+// Preview: a small renderer for surfaces. It depends on surfaces, not on simulations.
 #ifndef PREVIEW_PREVIEW_H
 #define PREVIEW_PREVIEW_H
 
@@ -112,10 +112,7 @@ PreviewDef preview_default(void);
 
 typedef struct Preview Preview;
 
-/// False in a build without Embree, which bakes gas but draws nothing.
-bool preview_draws(void);
-
-/// Sets up the device; `def`'s pointers must outlive the Preview.
+/// `def`'s pointers must outlive the Preview.
 SINGE_NODISCARD SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Preview **preview,
                                            SingeError *error);
 
@@ -177,8 +174,7 @@ SINGE_NODISCARD SingeResult preview_draw_layers(Preview *preview, const SingeSur
 SINGE_NODISCARD SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layers, double *width,
                                                SingeError *error);
 /// A frame for a renderer elsewhere (pack.c has the layout): the sheets' fields as they are shaded here, the gas that is
-/// seen, the lamps. No ray is traced. Set its shapes and gas before. Free *bytes, from malloc. Fails in a build without
-/// Embree.
+/// seen, the lamps. No ray is traced. Set its shapes and gas before. Free *bytes, from malloc.
 SINGE_NODISCARD SingeResult preview_pack(Preview *preview, const SingeSurface *surface, double time, uint8_t **bytes,
                                          size_t *size, SingeError *error);
 

@@ -16,9 +16,9 @@ static const double cell_bytes = 3.6e3, contact_bytes = 3.2e3;
 static const double gas_bytes = 160, gas_cells_usual = 200e3, gas_cells_max = 2e6, gas_margin = 0.045;
 /// Bytes per pixel: of the drawn picture and of its layers while they are written (measured with 4 and 17 million pixels:
 /// 153 to 160 and 158 to 165), of a sheet's picture, of a parameter's texture while it is read, and of a heightfield,
-/// simulated and drawn (measured with 1 and 9 million pixels: 42 to 45 and 300 to 330).
+/// simulated (1 and 9 million pixels: 42 to 45) and drawn (2 million: 255).
 static const double pixel_bytes = 160, layer_bytes = 165, picture_bytes = 3, texture_bytes = 7, height_bytes = 45,
-                    drawn_height_bytes = 300;
+                    drawn_height_bytes = 260;
 /// Of a triangle of a mesh that is drawn in place of a sheet.
 static const double render_bytes = 600;
 static const double program_bytes = 40e6;

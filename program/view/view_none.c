@@ -11,6 +11,6 @@ const ArgCommand view_command = {.name = "view",
 
 int command_view(int argc, char **argv) {
     (void)argc, (void)argv;
-    fputs("singe view: error: this singe was built without libmicrohttpd or without the preview\n", stderr);
+    fputs("singe view: error: this singe was built without libmicrohttpd\n", stderr);
     return EXIT_FAILED;
 }

@@ -14,7 +14,6 @@ SINGE = os.environ["SINGE"]
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 with open(os.path.join(ROOT, "include", "singe", "base.h"), encoding="utf-8") as header:
     VERSION = re.search(r'#define SINGE_VERSION "(.*)"', header.read()).group(1)
-HAS_PREVIEW = os.environ.get("SINGE_PREVIEW", "1") == "1"
 HAS_EXR = os.environ.get("SINGE_EXR", "1") == "1"
 SANITIZED = os.environ.get("SINGE_SANITIZED", "0") == "1"
 HAS_FFMPEG = shutil.which("ffmpeg") is not None

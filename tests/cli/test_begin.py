@@ -7,7 +7,7 @@ import resource
 import shutil
 import unittest
 
-from support import HAS_EXR, HAS_PREVIEW, SINGE, Case
+from support import HAS_EXR, SINGE, Case
 
 
 class Begin(Case):
@@ -35,7 +35,7 @@ class Begin(Case):
 
     def test_a_first_frame_that_fails_leaves_the_earlier_run(self):
         """Whichever of its files it is."""
-        args = ["--exr"] if HAS_EXR and HAS_PREVIEW else []
+        args = ["--exr"] if HAS_EXR else []
         self.run_scene("o", *args, preview=True)
         before = self.tree("o")
         self.run_scene("p", "--set", "sheets.0.grid.cells=[30, 30]", "--frames", "1", *args, preview=True)
@@ -162,7 +162,6 @@ class Begin(Case):
                     self.assertEqual("g4.yaml:5:32: error: the gas with detail 4 has" in err, code == 2)
                 self.assertEqual(os.path.exists(self.path(f"g{detail}")), code == 0)
 
-    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_checking_a_scene_with_a_huge_picture_takes_little_memory(self):
         """The whole picture would take 2.7 GB; a smaller one is timed."""
         scene = self.path("huge.yaml")
@@ -189,7 +188,7 @@ class Begin(Case):
         before = self.tree("theirs")
         os.mkdir(self.path("real"))
         os.symlink("real", self.path("o"))
-        for inner in [*(["frames"] if HAS_PREVIEW else []), "gas", "ply"]:
+        for inner in ["frames", "gas", "ply"]:
             os.symlink(self.path("theirs"), self.path("o", inner))
             self.assertIn(f"o/{inner}: cannot write: it is a link", self.run_scene("o", expect=1, preview=True)[1])
             os.remove(self.path("o", inner))

@@ -5,7 +5,7 @@ import shutil
 import subprocess
 import unittest
 
-from support import HAS_PREVIEW, Case
+from support import Case
 
 SAMPLE = os.environ["VDB_SAMPLE"]
 
@@ -39,7 +39,6 @@ class Gas(Case):
         self.run_scene("o", "--quiet", "--set", "gas=no")
         self.assertFalse(os.path.exists(self.path("o", "gas")))
 
-    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_same_pictures_from_files(self):
         """Pictures drawn from files equal those of the run; without the gas files, flames are missing."""
         self.run_scene("o", "--quiet", preview=True)
@@ -51,7 +50,6 @@ class Gas(Case):
         self.singe("render", self.path("o"), "--frames", "6")
         self.assertNotEqual(self.read(png), drawn)
 
-    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_render_reads_it(self):
         self.run_scene("o", "--quiet", preview=True)
         shutil.rmtree(self.path("o", "gas"), ignore_errors=True)

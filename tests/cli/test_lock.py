@@ -7,7 +7,7 @@ import socket
 import time
 import unittest
 
-from support import HAS_PREVIEW, Case
+from support import Case
 
 
 class Lock(Case):
@@ -110,7 +110,6 @@ class Lock(Case):
         os.mkfifo(self.path("o", "cache.lock"))
         self.assertIn("cache.lock", self.run_scene("o", expect=1, timeout=20)[1])
 
-    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_renders_of_parts_run_side_by_side(self):
         self.run_scene("o", "--frames", "4", "--quiet")
         slow = ["--set", "preview.samples=4000", "--set", "preview.size=[640, 480]", "--threads", "1"]
@@ -129,7 +128,6 @@ class Lock(Case):
         self.singe("render", self.path("o"))
         self.assertFalse([n for n in os.listdir(self.path("o")) if n.endswith(".lock")])
 
-    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_pictures_of_a_run_without(self):
         """While a run draws none itself, its frames may be drawn."""
         run = self.begin("o")

@@ -6,7 +6,7 @@ import os
 import struct
 import unittest
 
-from support import HAS_PREVIEW, SANITIZED, Case
+from support import SANITIZED, Case
 
 
 def read_ply(path):
@@ -81,7 +81,6 @@ class Measure(Case):
         self.assertEqual([int(row["frame"]) for row in rows], [3, 4, 5])
         self.assertNotEqual(rows[1]["jitter_mm_per_s"], "")
 
-    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_embers_are_drawn_unless_asked_otherwise(self):
         root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
         letter = os.path.join(root, "examples", "letter", "letter.yaml")

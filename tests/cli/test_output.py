@@ -5,7 +5,7 @@ import os
 import shutil
 import unittest
 
-from support import COLUMNS, HAS_FFMPEG, HAS_PREVIEW, VERSION, Case
+from support import COLUMNS, HAS_FFMPEG, VERSION, Case
 
 
 class Output(Case):
@@ -14,15 +14,13 @@ class Output(Case):
         names = ["tiny.%04d" % i for i in range(1, 7)]
         self.assertEqual(list(self.plys("o")), [n + ".ply" for n in names])
         self.assertIn("frame 6/6", err)
-        top = {"checkpoint.singe", "checkpoint.previous.singe", "gas", "ply", "run.json", "stats.csv"}
-        if HAS_PREVIEW:
-            top.add("frames")
-            self.assertEqual(sorted(os.listdir(self.path("o", "frames"))), [n + ".png" for n in names])
-            if HAS_FFMPEG:
-                top.add("preview.mp4")
-                with open(self.path("o", "preview.mp4"), "rb") as file:
-                    self.assertEqual(file.read(8)[4:], b"ftyp")
-                self.assertIn("preview.mp4", out)
+        top = {"checkpoint.singe", "checkpoint.previous.singe", "frames", "gas", "ply", "run.json", "stats.csv"}
+        self.assertEqual(sorted(os.listdir(self.path("o", "frames"))), [n + ".png" for n in names])
+        if HAS_FFMPEG:
+            top.add("preview.mp4")
+            with open(self.path("o", "preview.mp4"), "rb") as file:
+                self.assertEqual(file.read(8)[4:], b"ftyp")
+            self.assertIn("preview.mp4", out)
         self.assertEqual(set(os.listdir(self.path("o"))), top)
         self.no_temporaries("o")
 
@@ -158,7 +156,6 @@ class Output(Case):
         self.assertFalse(os.path.exists(self.path("o", "preview.mp4")))
         self.assertEqual(len(self.stats("o")), 2)
 
-    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_no_ffmpeg(self):
         _, err = self.run_scene("o", "--frames", "2", preview=True, env={**os.environ, "PATH": self.dir})
         self.assertIn("cannot run ffmpeg", err)
@@ -169,7 +166,6 @@ class Output(Case):
             self.assertEqual(os.system(command), 0)
             self.assertTrue(os.path.exists(self.path("o", "preview.mp4")))
 
-    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_ffmpeg_that_fails(self):
         """All else is there, the reason is reported even to the quiet, and the exit code is 1."""
         for number, (script, why) in enumerate((
@@ -198,11 +194,11 @@ class Output(Case):
         self.run_scene("o", "--frames", "3", "--resume")
         self.assertFalse(os.path.exists(self.path("o", "frames")))
         self.run_scene("o", "--frames", "2", preview=True)
-        self.assertEqual(os.path.exists(self.path("o", "frames")), HAS_PREVIEW)
+        self.assertTrue(os.path.exists(self.path("o", "frames")))
         self.run_scene("o", "--frames", "2")
         self.assertFalse(os.path.exists(self.path("o", "frames")))
 
-    @unittest.skipUnless(HAS_PREVIEW and HAS_FFMPEG, "needs the preview and ffmpeg")
+    @unittest.skipUnless(HAS_FFMPEG, "needs ffmpeg")
     def test_odd_folder_and_size(self):
         self.run_scene("it's 100% %04d: a b", "--frames", "2", "--set", "preview.size=[65, 49]", preview=True)
         self.assertTrue(os.path.exists(self.path("it's 100% %04d: a b", "preview.mp4")))
@@ -222,9 +218,8 @@ class Output(Case):
         self.assertEqual(record["name"], "b_r")
         self.assertEqual(os.listdir(os.path.join(out, b"ply"))[0][:4], b"b_r.")
         self.singe("verify", out, errors="surrogateescape")
-        if HAS_PREVIEW:
-            self.singe("render", out, errors="surrogateescape")
-            self.assertEqual(len(os.listdir(os.path.join(out, b"frames"))), 2)
+        self.singe("render", out, errors="surrogateescape")
+        self.assertEqual(len(os.listdir(os.path.join(out, b"frames"))), 2)
 
     def test_files_read_back(self):
         """Header of a PLY, and as many bytes as it announces."""

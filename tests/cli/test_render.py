@@ -10,7 +10,7 @@ import subprocess
 import unittest
 
 import exr
-from support import HAS_EXR, HAS_FFMPEG, HAS_PREVIEW, SANITIZED, SINGE, Case
+from support import HAS_EXR, HAS_FFMPEG, SANITIZED, SINGE, Case
 
 
 def png_size(path):
@@ -41,7 +41,6 @@ def murmur(text):
     return h ^ 1 << 23 if h >> 23 & 255 in (0, 255) else h
 
 
-@unittest.skipUnless(HAS_PREVIEW, "built without the preview")
 class Render(Case):
     def png(self, frame, out="o"):
         return self.path(out, "frames", "tiny.%04d.png" % frame)
@@ -188,13 +187,6 @@ class Render(Case):
                           ("ground.kind=lava", "wood"), ("environment.kind=disco", "studio"),
                           ("environment.picture=none.png", "none.png")):
             self.assertIn(word, self.singe("render", self.path("o"), "--set", "preview." + bad, expect=2)[1])
-
-
-class NoRender(Case):
-    @unittest.skipIf(HAS_PREVIEW, "built with the preview")
-    def test_says_so(self):
-        self.run_scene("o", "--quiet")
-        self.assertIn("without the preview", self.singe("render", self.path("o"), expect=1)[1])
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ import os
 import subprocess
 import unittest
 
-from support import HAS_PREVIEW, SINGE, Case
+from support import SINGE, Case
 
 
 def closed(*descriptors):
@@ -48,9 +48,8 @@ class Streams(Case):
                     self.assertEqual(self.record(out)["result"], "complete")
                     self.assertEqual(self.plys(out), self.plys("whole"))
                     self.assertEqual(self.numbers(out), self.numbers("whole"))
-                    if HAS_PREVIEW:
-                        self.assertEqual(sorted(os.listdir(self.path(out, "frames"))),
-                                         sorted(os.listdir(self.path("whole", "frames"))))
+                    self.assertEqual(sorted(os.listdir(self.path(out, "frames"))),
+                                     sorted(os.listdir(self.path("whole", "frames"))))
                     self.assertEqual(self.code("run", self.scene, "-o", self.path(out), "--quiet", "--resume",
                                                "--no-preview", preexec_fn=closed(*fds)), 0)
 
@@ -58,9 +57,8 @@ class Streams(Case):
         self.run_scene("o", "--quiet", "--frames", "2")
         commands = [["--version"], ["run", "--help"], ["check", self.scene], ["verify", self.path("o")],
                     ["measure", self.path("o"), "--frames", "1"],
-                    ["run", self.scene, "-o", self.path("p"), "--no-preview", "--frames", "1"]]
-        if HAS_PREVIEW:
-            commands.append(["render", self.path("o"), "--sheet", "2x1"])
+                    ["run", self.scene, "-o", self.path("p"), "--no-preview", "--frames", "1"],
+                    ["render", self.path("o"), "--sheet", "2x1"]]
         for args in commands:
             with self.subTest(args=args):
                 self.assertEqual(self.code(*args, preexec_fn=closed(1)), 1)

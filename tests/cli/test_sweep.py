@@ -12,7 +12,7 @@ import time
 import unittest
 import xml.etree.ElementTree
 
-from support import HAS_FFMPEG, HAS_PREVIEW, SANITIZED, SINGE, Case
+from support import HAS_FFMPEG, SANITIZED, SINGE, Case
 
 
 class Sweep(Case):
@@ -410,7 +410,6 @@ class Sweep(Case):
         words = " ".join(t for t in sheet.getroot().itertext())
         self.assertIn("pace = 9", words)
 
-    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_pictures(self):
         self.write_plan("parameters:\n  pace: [2, 9]\n")
         self.sweep(preview=True)

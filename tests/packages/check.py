@@ -124,7 +124,7 @@ def debian(work, suite, wanted):
 def static(work, wanted):
     build = work / "static"
     run("cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DSINGE_TESTS=OFF",
-        "-DSINGE_PYTHON=OFF", "-DSINGE_PREVIEW=OFF", "-DSINGE_EXR=OFF", "-DSINGE_ASSIMP=OFF", "-DSINGE_NLOPT=OFF",
+        "-DSINGE_PYTHON=OFF", "-DSINGE_EXR=OFF", "-DSINGE_ASSIMP=OFF", "-DSINGE_NLOPT=OFF",
         "-DSINGE_STATIC=ON")
     run("cmake", "--build", build)
     empty = work / "empty"

@@ -78,7 +78,7 @@ def main():
         # build without what the recipes do not concern, and write again what follows
         run(sys.executable, "scripts/write_types.py", cwd=tree)
         run("cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DSINGE_TESTS=OFF",
-            "-DSINGE_PREVIEW=OFF", "-DSINGE_CCACHE=ON", cwd=tree)
+            "-DSINGE_CCACHE=ON", cwd=tree)
         warnings = re.findall(r"warning:.*", run("cmake", "--build", "build", cwd=tree))
         assert not warnings, warnings
         run(sys.executable, "scripts/write_types.py", "--check", cwd=tree)

@@ -9,8 +9,7 @@ import re
 import struct
 import zlib
 
-HAS_PREVIEW = os.environ.get("SINGE_PREVIEW", "1") == "1"
-HAS_EXR = HAS_PREVIEW and os.environ.get("SINGE_EXR", "1") == "1"
+HAS_EXR = os.environ.get("SINGE_EXR", "1") == "1"
 
 # burns through at once, tears at a touch; a mesh with a picture on it, a collider of a mesh, gas
 SCENE = """\
@@ -109,13 +108,12 @@ def scenarios():
         Scenario("verify", ("verify", "FOLDER", "--csv", "FOLDER/verify.csv"), (plain,)),
         Scenario("measure", ("measure", "FOLDER", "--csv", "FOLDER/measure.csv"), (plain,)),
     ]
-    if HAS_PREVIEW:
-        layers = ("--exr",) if HAS_EXR else ()
-        whole = run(*layers)
-        found += [
-            Scenario("run with pictures", whole, (), (*whole, "--resume")),
-            Scenario("render", ("render", "FOLDER", "--threads", "1", "--sheet", "2x2", "--gif"), (plain,)),
-        ]
+    layers = ("--exr",) if HAS_EXR else ()
+    whole = run(*layers)
+    found += [
+        Scenario("run with pictures", whole, (), (*whole, "--resume")),
+        Scenario("render", ("render", "FOLDER", "--threads", "1", "--sheet", "2x2", "--gif"), (plain,)),
+    ]
     return found
 
 

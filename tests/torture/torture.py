@@ -43,7 +43,7 @@ class Trial:
 
     @property
     def harmless(self):
-        # Singe does without threads that it cannot have; Embree does not
+        # Singe does without threads that it cannot have
         return self.error in HARMLESS.get(self.kind, []) or self.scenario.kinds == ("thread",)
 
     def environment(self, state):
