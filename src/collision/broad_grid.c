@@ -7,6 +7,8 @@
 // Within a bucket a box is tested against four others at once.
 #include "collision/broad_grid.h"
 
+#include "common/real.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -219,10 +221,11 @@ SingeResult broad_grid_pairs(Memory *memory, CollisionPlan *plan, const Shell *s
 
     // one over the part of it along each axis; all of it unless one axis has long cells and the others do not. A part is
     // a thousandth at least: boxes may be flat
-    double most = fmax(along[0], fmax(along[1], along[2])), least = fmin(along[0], fmin(along[1], along[2]));
+    double most = double_max(along[0], double_max(along[1], along[2])),
+           least = double_min(along[0], double_min(along[1], along[2]));
     double middle = along[0] + along[1] + along[2] - most - least;
     Float4 slim = float4_all(1);
-    for (int k = 0; k < 3 && middle < most / SLIM; k++) slim[k] = (float)(sum / fmax(along[k], 1e-3 * most));
+    for (int k = 0; k < 3 && middle < most / SLIM; k++) slim[k] = (float)(sum / double_max(along[k], 1e-3 * most));
 
     // larger cubes until all entries have room; then the entries, sorted by buckets
     uint64_t count = 0;

@@ -5,6 +5,7 @@
 // long as no corner deviates from its trajectory by more than half the slack; ccd.c watches that.
 #include "common/assertion.h"
 #include "common/error.h"
+#include "common/real.h"
 #include "collision/collision_plan.h"
 
 typedef struct Find {
@@ -113,14 +114,14 @@ SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell
             mean += float4_load(plan->speed[shell->cells[c][0]]);
             cells++;
         }
-    mean = mean / (float)fmax(cells, 1);
+    mean = mean / (float)double_max(cells, 1);
 
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         Float4 off = float4_load(plan->speed[shell->cells[c][0]]) - mean;
         if (plan->alive[c]) sum += (double)sqrtf(float4_dot(off, off));
     }
 
-    double step = sum / fmax(cells, 1) * (double)plan->h, max = (double)plan->cell_size / 2;
+    double step = sum / double_max(cells, 1) * (double)plan->h, max = (double)plan->cell_size / 2;
 
     // a step that is not finite, as with positions that overflow, gets the fewest
     plan->steps = step * COLLISION_STEPS < max ? COLLISION_STEPS : step * 2 <= max ? (uint32_t)(max / step) : 2;

@@ -13,6 +13,7 @@
 #include "common/assertion.h"
 #include "common/clock.h"
 #include "common/error.h"
+#include "common/real.h"
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 
@@ -180,7 +181,7 @@ static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float
 /// only a small part of it.
 static Float4 shifted_velocity(Float4 before, Float4 shift, Float4 displacement, float h) {
     Float4 after = before + shift / h, gone = displacement / h;
-    float max = fmaxf(float4_dot(before, before), float4_dot(gone, gone)), square = float4_dot(after, after);
+    float max = float_max(float4_dot(before, before), float4_dot(gone, gone)), square = float4_dot(after, after);
     return square > max ? sqrtf(max / square) * after : after;
 }
 

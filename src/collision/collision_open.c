@@ -5,6 +5,7 @@
 // result depends on the pair's positions and speeds alone, not on when it was measured.
 #include "common/clock.h"
 #include "common/error.h"
+#include "common/real.h"
 #include "collision/narrow_phase.h"
 #include "collision/feature_distance.h"
 
@@ -262,7 +263,7 @@ int collision_parts(CollisionPlan *plan, const Shell *shell, const StateInput *s
     double largest = 0;
     pool_sum(pool, (int)plan->cell_count, motion_sum, &job, plan->partial);
     for (int block = 0; block < pool_blocks((int)plan->cell_count); block++)
-        largest = fmax(largest, plan->partial[block]);
+        largest = double_max(largest, plan->partial[block]);
 
     const float cells = plan->cell_count < POOL_BLOCK ? (float)plan->cell_count : POOL_BLOCK;
     const float motion = h * (float)largest / cells;
@@ -360,8 +361,8 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
         for (int i = 0; i < 16; i++)
             if (a[i / 4] == b[i % 4]) nearest = 0; // towards shared corners
         for (int i = 0; i < 4; i++) {
-            room[a[i]] = fminf(room[a[i]], nearest);
-            room[b[i]] = fminf(room[b[i]], nearest);
+            room[a[i]] = float_min(room[a[i]], nearest);
+            room[b[i]] = float_min(room[b[i]], nearest);
         }
     }
 }

@@ -5,6 +5,7 @@
 // of a list does not affect results: any sufficient size gives the same items, so that a run continued from a snapshot,
 // where lists begin small again, has the same bytes.
 #include "common/error.h"
+#include "common/real.h"
 #include "collision/feature_distance.h"
 #include "collision/collision_plan.h"
 
@@ -121,11 +122,11 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     plan->cell_size = INFINITY;
     float far = 0;
     for (uint32_t s = 0; s < shell->sheet_count; s++)
-        plan->cell_size = fminf(plan->cell_size, shell->sheets[s].cell_size);
+        plan->cell_size = float_min(plan->cell_size, shell->sheets[s].cell_size);
     for (uint32_t v = 0; v < shell->vertex_count; v++)
-        for (int k = 0; k < 3; k++) far = fmaxf(far, fabsf(shell->rest_position[v][k]));
-    plan->thickness = fminf(plan->def.thickness, 0.4f * plan->cell_size);
-    plan->slack_max = fmaxf(0.3f * plan->cell_size, plan->thickness);
+        for (int k = 0; k < 3; k++) far = float_max(far, fabsf(shell->rest_position[v][k]));
+    plan->thickness = float_min(plan->def.thickness, 0.4f * plan->cell_size);
+    plan->slack_max = float_max(0.3f * plan->cell_size, plan->thickness);
     plan->noise = 4e-7f * far;
 
     // arrays
@@ -160,13 +161,13 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
         for (int i = 0; i < 4; i++) position[i] = float4_load(shell->rest_position[shell->cells[c][i]]);
         for (int i = 0; i < 4; i++) {
             Float4 side = position[(i + 1) & 3] - position[i];
-            shortest = fminf(shortest, float4_dot(side, side));
+            shortest = float_min(shortest, float4_dot(side, side));
         }
 
         plan->rest[c] = collision_mean(position);
         shortest = sqrtf(shortest);
-        plan->thin[c] = fminf(plan->thickness, 0.4f * shortest);
-        min = fminf(min, 4 * shortest);
+        plan->thin[c] = float_min(plan->thickness, 0.4f * shortest);
+        min = float_min(min, 4 * shortest);
     }
 
     plan->gap = 5e-3f * min + 4 * plan->noise;

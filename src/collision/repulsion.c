@@ -16,6 +16,7 @@
 // that are not beside each other share no vertex: threads take the even ones, then the odd ones. Stripes follow from the
 // positions alone, not from the number of threads.
 #include "common/clock.h"
+#include "common/real.h"
 #include "collision/collision_plan.h"
 
 #include <math.h>
@@ -142,7 +143,7 @@ void repulsion_sort(CollisionPlan *plan, const Shell *shell, const float (*x)[4]
     for (int d = 1; d < 3; d++)
         if (high[d] - low[d] > high[axis] - low[axis]) axis = d;
     const float length = high[axis] - low[axis];
-    const float width = fmaxf(2.1f * reach[axis], length / (COLLISION_STRIPES - 1));
+    const float width = float_max(2.1f * reach[axis], length / (COLLISION_STRIPES - 1));
     if (!(width > 0) || !(length > 3 * width)) return;
 
     // sort

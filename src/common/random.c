@@ -2,6 +2,8 @@
 // (Perlin, Improving Noise, 2002), whose first and second derivatives vanish at the lattice.
 #include "common/random.h"
 
+#include "common/real.h"
+
 #include <math.h>
 
 uint32_t random_hash(uint32_t a, uint32_t b, uint32_t c, uint32_t seed) {
@@ -55,5 +57,5 @@ float random_fractal(const SingeNoise *noise, float x, float y, float z) {
         frequency *= 2;
     }
     float centred = (sum / total - 0.5f) * 1.6f + 0.5f;
-    return fminf(fmaxf(centred, 0), 1);
+    return float_min(float_max(centred, 0), 1);
 }

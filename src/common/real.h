@@ -50,9 +50,11 @@ static inline double real_cbrt(double x) { return REAL(cbrt)(x); }
 
 #undef REAL
 
-/// fmaxf and fminf without a call: the other number where one is NaN.
+/// fmaxf, fminf, fmax and fmin without a call: the other number where one is NaN. Of zeros with both signs, b.
 static inline float float_max(float a, float b) { return a > b || b != b ? a : b; }
 static inline float float_min(float a, float b) { return a < b || b != b ? a : b; }
+static inline double double_max(double a, double b) { return a > b || b != b ? a : b; }
+static inline double double_min(double a, double b) { return a < b || b != b ? a : b; }
 
 /// False for NaN.
 static inline bool float_within(float value, float low, float high) { return value >= low && value <= high; }

@@ -60,7 +60,7 @@ static uint32_t attach_farthest(const Shell *shell, const StateInput *state, con
         for (int k = 0; k < count; k++) {
             Float3 displacement =
                 float3_sub(float3_load(shell->rest_position[v]), float3_load(shell->rest_position[source[k]]));
-            nearest = fminf(nearest, float3_dot(displacement, displacement));
+            nearest = float_min(nearest, float3_dot(displacement, displacement));
         }
 
         if (nearest > max) {
@@ -136,7 +136,7 @@ void attach_update(Attachments *attachments, const Shell *shell, const StateInpu
             for (int k = 0; k < ATTACH_SOURCES; k++) {
                 float *length = &attachments->length[v][k], goal = attachments->goal[v][k];
                 if (!(goal < *length)) continue;
-                *length -= fminf((*length - goal) * share, ATTACH_HASTE * *length);
+                *length -= float_min((*length - goal) * share, ATTACH_HASTE * *length);
                 attachments->settled = false;
             }
     }
@@ -212,10 +212,10 @@ void attach_position(Attachments *attachments, const Shell *shell, const Dynamic
                 float apart = float3_length(float3_sub(position, float3_load(spread->position[q])));
                 spread->apart[p][q] = apart;
                 spread->ratio[p][q] = apart / attachments->length[source[p]][q];
-                spread->max = fmaxf(spread->max, isfinite(spread->ratio[p][q]) ? spread->ratio[p][q] : 0);
+                spread->max = float_max(spread->max, isfinite(spread->ratio[p][q]) ? spread->ratio[p][q] : 0);
                 // sources held at their own distance are not pulled apart
                 spread->tight |= spread->ratio[p][q] > ATTACH_TIGHT;
-                if (shell->spare_count > 0) spread->ratio[p][q] = fmaxf(spread->ratio[p][q] / ATTACH_EASE, 1);
+                if (shell->spare_count > 0) spread->ratio[p][q] = float_max(spread->ratio[p][q] / ATTACH_EASE, 1);
             }
         }
 

@@ -19,6 +19,7 @@
 // one family share no corner; families follow each other. Contact of the particles comes after it and has the last
 // word.
 #include "common/float4.h"
+#include "common/real.h"
 #include "dynamics/dynamics_plan.h"
 
 #include <string.h>
@@ -56,7 +57,7 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
     const float ends[3][2] = {{low.x, high.x}, {low.y, high.y}, {low.z, high.z}};
     float size = 0;
     for (int i = 0; i < 3; i++) {
-        float far = fmaxf(fabsf(ends[i][0]), fabsf(ends[i][1]));
+        float far = float_max(fabsf(ends[i][0]), fabsf(ends[i][1]));
         if (isfinite(far)) size += far * far; // a collider without end along an axis is taken not to turn about another
     }
 
@@ -69,7 +70,7 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
         back += b * b;
     }
 
-    float angle = 2 * sqrtf(fminf(turn, back)) * 1.05f; // the chord of half the angle, in the space of quaternions
+    float angle = 2 * sqrtf(float_min(turn, back)) * 1.05f; // the chord of half the angle, in the space of quaternions
     float motion = float3_length(float3_sub(moving.after.position, moving.before.position)) +
                    (angle > 1e-6f ? angle * sqrtf(size) : 0);
 
@@ -111,9 +112,9 @@ typedef struct Entry {
 
 /// Follows the straight path from `from`, outside, to `to`, in the collider's frame.
 static bool contact_enters(const Collider *collider, Float3 from, Float3 to, Entry *entry) {
-    float skin = fmaxf(CONTACT_SKIN * collider->def.offset, CONTACT_SKIN_MIN);
+    float skin = float_max(CONTACT_SKIN * collider->def.offset, CONTACT_SKIN_MIN);
     Float3 displacement = float3_sub(to, from);
-    float length = float3_length(displacement), min = fmaxf(length / CONTACT_STEPS, skin), done = 0;
+    float length = float3_length(displacement), min = float_max(length / CONTACT_STEPS, skin), done = 0;
     while (done < length) {
         Entry next = {.position = float3_mad(from, displacement, done / length)};
         next.distance = collider_distance(collider, next.position, length - done, &next.normal);
@@ -124,7 +125,7 @@ static bool contact_enters(const Collider *collider, Float3 from, Float3 to, Ent
         *entry = next;
         if (next.distance <= skin && float3_dot(displacement, next.normal) < 0) return true;
 
-        done += fmaxf(next.distance, min);
+        done += float_max(next.distance, min);
     }
 
     return false;
@@ -306,8 +307,8 @@ static void nearby_list(Nearby *nearby, const DynamicsPlan *plan, uint32_t from,
     float low[3], high[3];
     for (int i = 0; i < 3; i++) {
         const Float4 least = nearby->low[i], most = nearby->high[i];
-        low[i] = fminf(fminf(least[0], least[1]), fminf(least[2], least[3]));
-        high[i] = fmaxf(fmaxf(most[0], most[1]), fmaxf(most[2], most[3]));
+        low[i] = float_min(float_min(least[0], least[1]), float_min(least[2], least[3]));
+        high[i] = float_max(float_max(most[0], most[1]), float_max(most[2], most[3]));
         nearby->low[i] = float4_all(low[i]);
         nearby->high[i] = float4_all(high[i]);
     }

@@ -146,11 +146,11 @@ void creases_measure(const Shell *shell, Hinge *hinges) {
         hinge.angle = isnan(angle) ? 0 : angle;
         hinge.twist = hinge_twist(normal, beyond, edge);
         hinge.max = real_atan2f(2 * thickness, hinge.arc);
-        hinge.lean = fmaxf(-1.5f, fminf(0.5f * hinge.angle - hinge.max, 1.5f)); // so that r cos phi is not 0
+        hinge.lean = float_max(-1.5f, float_min(0.5f * hinge.angle - hinge.max, 1.5f)); // so that r cos phi is not 0
 
         // curvature_max at the midpoint, if both ends have one, and at most what cells of this size can bear
         float a = field_at(matter->curvature_max, first), b = field_at(matter->curvature_max, second);
-        hinge.limit = a > 0 && b > 0 ? fminf(0.5f * (a + b), hinge.max / hinge.arc) : INFINITY;
+        hinge.limit = a > 0 && b > 0 ? float_min(0.5f * (a + b), hinge.max / hinge.arc) : INFINITY;
         hinges[k] = hinge;
     }
 }
@@ -161,14 +161,14 @@ void creases_measure(const Shell *shell, Hinge *hinges) {
 static float crease_lean(const Hinge *hinge, float angle) {
     float away = -(1 - CREASE_HOLDS) * hinge->max, towards = -CREASE_HOLDS * CREASE_PI / 2;
     float lean = hinge->lean + 0.5f * angle;
-    if (angle > 0) return fminf(lean, fmaxf(away, hinge->lean));
-    return fmaxf(lean, fminf(towards, hinge->lean));
+    if (angle > 0) return float_min(lean, float_max(away, hinge->lean));
+    return float_max(lean, float_min(towards, hinge->lean));
 }
 
 float crease_ratio(const Hinge *hinge, float stays, float now) {
     float kept = crease_lean(hinge, stays), lean = crease_lean(hinge, now), flat = real_sinf(hinge->max);
-    float moment = flat * flat * (lean - kept) / fminf(real_sinf(lean), -CREASE_LEVER * flat);
-    return fmaxf(real_cosf(lean) + moment, 0.05f) / real_cosf(hinge->lean);
+    float moment = flat * flat * (lean - kept) / float_min(real_sinf(lean), -CREASE_LEVER * flat);
+    return float_max(real_cosf(lean) + moment, 0.05f) / real_cosf(hinge->lean);
 }
 
 float crease_kept(const Shell *shell, const StateInput *state, uint32_t green) {
@@ -266,7 +266,7 @@ static double crease_springs(void *task, int begin, int end) {
             weight += 0.5f;
         }
         const float peak = CREASE_PEAK * fabsf(sum) / weight;
-        const float bend = sum * bends[k] > 0 ? fmaxf(-peak, fminf(bends[k], peak)) : 0;
+        const float bend = sum * bends[k] > 0 ? float_max(-peak, float_min(bends[k], peak)) : 0;
         float radius = 0.5f * (field_at(matter->crease_radius, ends[0]) + field_at(matter->crease_radius, ends[1]));
         if (fabsf(bend) * radius < CREASE_SLANT && *crease == 0) continue; // the usual case
 
@@ -280,13 +280,14 @@ static double crease_springs(void *task, int begin, int end) {
             uint32_t first = ends[0] - job->shell->vertex_count, second = ends[1] - job->shell->vertex_count;
             const float(*normal)[4] = (const float(*)[4])job->plan->cell_normal;
             const float lasting = job->dynamics->bend[k] * hinge->arc, now = crease_turned(job, k, lasting);
-            const float turn = fmaxf(fabsf(lasting), fabsf(now)); // also where now is NAN
+            const float turn = float_max(fabsf(lasting), fabsf(now)); // also where now is NAN
             float twist =
                 hinge_twist(float3_load(normal[first]), float3_load(normal[second]), crease_edge(job, ends, hinge));
             twist -= hinge->twist;
-            const float slant = fmaxf(turn * turn / fmaxf(turn * turn + twist * twist, 1e-20f), CREASE_SLANT);
+            const float slant = float_max(turn * turn / float_max(turn * turn + twist * twist, 1e-20f), CREASE_SLANT);
             const float held = kept * *crease;
-            const float max = slant * job->plan->hinges[k].limit, elastic = fmaxf(-max, fminf(bend, max)) - held;
+            const float max = slant * job->plan->hinges[k].limit,
+                        elastic = float_max(-max, float_min(bend, max)) - held;
             const float excess = fabsf(elastic) - slant / radius - (1 / share - 1) * fabsf(held);
             *crease += kept * (excess > 0 ? copysignf(share * excess, elastic) : 0);
         }

@@ -51,9 +51,9 @@ static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, 
 
     Float3 rest =
         float3_sub(float3_sub(float3_load(x[c]), float3_load(x[b])), float3_sub(float3_load(x[b]), float3_load(x[a])));
-    float turned = 2 * length * real_sinf(0.5f * fminf(curvature * length, 2.8f));
+    float turned = 2 * length * real_sinf(0.5f * float_min(curvature * length, 2.8f));
     float cosine = side / sqrtf(side * side + 4 * thickness * thickness); // of beta
-    turned = fminf(turned, 2 * length * length / side * sqrtf(0.5f * (1 - cosine)));
+    turned = float_min(turned, 2 * length * length / side * sqrtf(0.5f * (1 - cosine)));
     return sqrtf(float3_dot(rest, rest) + turned * turned);
 }
 

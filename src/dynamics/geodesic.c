@@ -13,6 +13,7 @@
 #include "dynamics/geodesic.h"
 
 #include "common/float3.h"
+#include "common/real.h"
 
 #include <math.h>
 
@@ -56,8 +57,8 @@ static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
     if (c <= 0) return INFINITY;
 
     // v at the origin, w at (c, 0), u above, the virtual source below
-    float ux = (vu * vu - wu * wu + c * c) / (2 * c), uy = sqrtf(fmaxf(0, vu * vu - ux * ux));
-    float sx = (dv * dv - dw * dw + c * c) / (2 * c), sy = -sqrtf(fmaxf(0, dv * dv - sx * sx));
+    float ux = (vu * vu - wu * wu + c * c) / (2 * c), uy = sqrtf(float_max(0, vu * vu - ux * ux));
+    float sx = (dv * dv - dw * dw + c * c) / (2 * c), sy = -sqrtf(float_max(0, dv * dv - sx * sx));
     if (uy - sy <= 0) return INFINITY;
 
     float cross = sx - (ux - sx) * sy / (uy - sy);
@@ -77,8 +78,8 @@ static float cell_length(const Shell *shell, const StateInput *state, uint32_t c
                                       : state->burn->spring_length[SINGE_BLUE][springs->blue[side]];
     uint32_t a = shell->cells[cell][i], b = shell->cells[cell][j];
     if (!dynamics->pinned[a] || !dynamics->pinned[b]) return length;
-    return fmaxf(length,
-                 float3_length(float3_sub(float3_load(dynamics->position[a]), float3_load(dynamics->position[b]))));
+    return float_max(length,
+                     float3_length(float3_sub(float3_load(dynamics->position[a]), float3_load(dynamics->position[b]))));
 }
 
 void geodesic_from(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t source, uint32_t first,
@@ -113,8 +114,8 @@ void geodesic_from(Geodesic *search, const Shell *shell, const StateInput *state
                 for (int other = 1; other < 4; other++) {
                     const int m = (i + other) & 3;
                     if (m == j || search->position[corner[m]] != GEODESIC_DONE) continue;
-                    d = fminf(d, geodesic_through(dv, distance[corner[m]], cell_length(shell, state, cell, i, m), vu,
-                                                  cell_length(shell, state, cell, m, j)));
+                    d = float_min(d, geodesic_through(dv, distance[corner[m]], cell_length(shell, state, cell, i, m),
+                                                      vu, cell_length(shell, state, cell, m, j)));
                 }
 
                 // the vertex rises in the heap with a shorter distance

@@ -11,6 +11,7 @@
 #include "dynamics/dynamics_plan.h"
 
 #include "common/float4.h"
+#include "common/real.h"
 
 #include <math.h>
 #include <string.h>
@@ -116,10 +117,10 @@ void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, Dyn
 
         float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], e = (square - target) * 0.5f;
         if (square < target * 0.17157288f) e = -patch->length * sqrtf(square); // crushed, as in strand_kernel.h
-        float beyond = fmaxf(e - square * 0.01f, 0);
+        float beyond = float_max(e - square * 0.01f, 0);
         float stiff = patch->compliance * inverse_h2;
         float diagonal = weights * (softness * square + beyond * STRAND_YIELD) + stiff * square;
-        float mu = patch->weight * e / fmaxf(diagonal, 1e-20f);
+        float mu = patch->weight * e / float_max(diagonal, 1e-20f);
         patch->pull += mu;
         d[3] = 0;
         float4_store(dynamics->position[patch->a], a + a[3] * mu * d);

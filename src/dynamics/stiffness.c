@@ -27,6 +27,8 @@
 // D66)/(k_P + 2 D66), which grows with k_P and is to be the material's 1/c_G.
 #include "dynamics/stiffness.h"
 
+#include "common/real.h"
+
 #include <math.h>
 
 /// a above, of red springs.
@@ -85,8 +87,8 @@ static float shared_compliance(const Stiffness *stiffness, const uint32_t *ends)
         const double own = (double)stiffness->red_softness[0] / (double)stiffness->mass;
         const double twist = (double)stiffness->red_softness[1] / (double)stiffness->mass;
         const double given = (double)field_at(matter->compliance[SINGE_RED], centre) * t * t / l2;
-        const double red = s * s / (4 * l2) / fmax(fmax(given - own, 0) + twist, 1e-12);
-        const double yellow = 1 / fmax((double)field_at(matter->compliance[SINGE_YELLOW], centre), 1e-12);
+        const double red = s * s / (4 * l2) / double_max(double_max(given - own, 0) + twist, 1e-12);
+        const double yellow = 1 / double_max((double)field_at(matter->compliance[SINGE_YELLOW], centre), 1e-12);
 
         double low = 0, high = BRACE_MAX * wanted;
         for (int i = 0; i < 40; i++) {
@@ -101,7 +103,7 @@ static float shared_compliance(const Stiffness *stiffness, const uint32_t *ends)
         const double less = 2 * low - wanted;
         stiff += 0.5 * (stiffness->braces ? low : 0.5 * (sqrt(less * less + 4 * wanted * low) - less));
     }
-    return (float)(1 / fmax(stiff, 1e-12));
+    return (float)(1 / double_max(stiff, 1e-12));
 }
 
 float stiffness_compliance(Stiffness *stiffness, uint32_t spring) {
@@ -128,7 +130,7 @@ int stiffness_carrying(const Shell *shell, float h) {
     float count = 1;
     for (uint32_t i = 0; i < shell->sheet_count; i++)
         if (shell->sheets[i].cell_count)
-            count = fmaxf(count, ceilf(sqrtf(shell_load(shell, i) / shell_carried(shell, i, h))));
+            count = float_max(count, ceilf(sqrtf(shell_load(shell, i) / shell_carried(shell, i, h))));
 
     return count < STIFFNESS_MAX ? (int)count : STIFFNESS_MAX;
 }
@@ -142,11 +144,11 @@ int stiffness_substeps(const Shell *shell, float h, float regularisation) {
         for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
             uint32_t centre = shell_centre(shell, c);
             float compliance = field_at(shell->matter.compliance[SINGE_RED], centre);
-            min = fminf(min, compliance * thickness_share(shell, sheet, centre));
+            min = float_min(min, compliance * thickness_share(shell, sheet, centre));
         }
 
         if (sheet->cell_count == 0) continue;
-        count = fmaxf(count, ceilf(h * sqrtf(softness / (min * mass))));
+        count = float_max(count, ceilf(h * sqrtf(softness / (min * mass))));
     }
 
     return count < STIFFNESS_MAX ? (int)count : STIFFNESS_MAX;

@@ -17,6 +17,7 @@
 // (Smagorinsky 1963): D = D_0 + (C cell)^2 |grad u|.
 //
 // The displacement of a step is divided so that along no axis it passes more than a cell at once.
+#include "common/real.h"
 #include "gas/advect_axis.h"
 
 #include <limits.h>
@@ -121,7 +122,7 @@ static void advect_look(void *context, int begin, int end) {
 
                 // ranges of cells that have something to carry
                 float calm = ADVECT_CALM;
-                for (int d = 0; d < 3; d++) calm = fmaxf(calm, fabsf(pass->wind[d]) + ADVECT_CALM);
+                for (int d = 0; d < 3; d++) calm = float_max(calm, fabsf(pass->wind[d]) + ADVECT_CALM);
                 for (int i = 0; i < count; i++) {
                     const bool something[GAS_BOXES] = {L[i] > 0, fuel[i] > 0, smoke[i] > 0,
                                                        speed[i] > calm || L[i] > ADVECT_LIGHT};

@@ -70,24 +70,24 @@ static void arrival_blocks(void *context, int begin, int end) {
             const float map = job->source->texture[i];
             if (map == SOURCE_UNMAPPED || !plan->alive[i]) continue;
             const float ignition = field_at(matter->ignition_temperature, i), T = heat->temperature[i];
-            const float warm = fmaxf(ambient, ambient + ARRIVAL_WARM * (ignition - ambient));
+            const float warm = float_max(ambient, ambient + ARRIVAL_WARM * (ignition - ambient));
             const double late = job->pass->state->time - source_arrival(job->source, i);
             float low = 0, high = INFINITY;
 
             if (late >= 0) {
-                const float rise = fminf(0.5f * field_at(matter->rate_ceiling, i), ARRIVAL_RISE);
+                const float rise = float_min(0.5f * field_at(matter->rate_ceiling, i), ARRIVAL_RISE);
                 if (fuel[i] > ARRIVAL_FUEL) low = ignition + rise;
             } else {
                 const float lag = (float)(late / (double)lead); // -infinity: never
                 if (lag > -ARRIVAL_LEADS) low = ambient + (ignition - ambient) * real_expf(lag);
-                high = fmaxf(low, warm);
+                high = float_max(low, warm);
             }
 
             const float held = T < low ? low : T > high ? high : T; // NaN stays
             if (!(held != T)) continue;
             given += (double)matter->capacity[i] * ((double)held - (double)T);
             heat->temperature[i] = held;
-            heat->temperature_peak[i] = fmaxf(heat->temperature_peak[i], held);
+            heat->temperature_peak[i] = float_max(heat->temperature_peak[i], held);
         }
         plan->partial[block][0] = given;
     }

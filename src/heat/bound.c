@@ -13,10 +13,11 @@
 #include <math.h>
 
 #include "common/random.h"
+#include "common/real.h"
 #include "heat/heat_plan.h"
 
 static double bound_within(const HeatPass *pass, double T) {
-    return T > (double)pass->min ? fmin(T, (double)pass->max) : (double)pass->min;
+    return T > (double)pass->min ? double_min(T, (double)pass->max) : (double)pass->min;
 }
 
 static bool bound_of_surface(const HeatPass *pass, uint32_t i) {
@@ -100,7 +101,7 @@ double heat_bound(HeatPass *pass) {
     HeatPlan *plan = pass->plan;
     heat_blocks(pass, bound_means);
     double lacking = heat_sum(plan, 0), room = heat_sum(plan, lacking > 0 ? 1 : 2);
-    pass->share = room > 0 ? fmin(fmax(lacking / room, -1), 1) : 0;
+    pass->share = room > 0 ? double_min(double_max(lacking / room, -1), 1) : 0;
     heat_blocks(pass, bound_shares);
     return heat_sum(plan, 0);
 }

@@ -26,6 +26,7 @@
 #include <string.h>
 
 #include "common/random.h"
+#include "common/real.h"
 #include "heat/heat_plan.h"
 
 enum { CONDUCT_ITERATIONS = 200 };
@@ -200,7 +201,8 @@ static void conduct_finish(void *context, int begin, int end) {
     const Matter *matter = &pass->shell->matter;
     uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);
     // never at 0 K, however large the slack is: a much hotter sheet may give the range
-    double min = fmax((double)pass->min - pass->slack, 0.5 * (double)pass->min), max = (double)pass->max + pass->slack;
+    double min = double_max((double)pass->min - pass->slack, 0.5 * (double)pass->min),
+           max = (double)pass->max + pass->slack;
     bool makes = false; // some sheet's operator makes heat
     for (uint32_t s = 0; s < pass->shell->sheet_count; s++)
         makes |= pass->shell->sheets[s].material.heat_operator != SINGE_HEAT_SURFACE;
@@ -242,8 +244,8 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
     // range of T*; a value that is not finite fails the step
     double min = INFINITY, max = 0;
     for (int block = 0; block < plan->blocks; block++) {
-        min = fmin(min, plan->partial[block][2]);
-        max = fmax(max, plan->partial[block][3]);
+        min = double_min(min, plan->partial[block][2]);
+        max = double_max(max, plan->partial[block][3]);
     }
 
     if (!(min > 0 && max < INFINITY) || !isfinite(residual + whole)) {
@@ -255,7 +257,7 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
 
     pass->min = (float)min;
     pass->max = (float)max;
-    pass->slack = tolerance * fmax(max - min, 0) + 1e-6 * max; // the tolerance, and rounding
+    pass->slack = tolerance * double_max(max - min, 0) + 1e-6 * max; // the tolerance, and rounding
 
     // conjugate gradients for the correction
     if (plan->sheets > 1) {

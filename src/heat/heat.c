@@ -26,6 +26,7 @@
 // capacity C, as in the stored enthalpy C (T - Ta).
 #include <math.h>
 
+#include "common/real.h"
 #include "heat/heat_plan.h"
 
 static const float STEFAN_BOLTZMANN = 5.670374e-8f; // W/(m2 K4)
@@ -99,8 +100,8 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
         // boiling; the steam takes the heat along
         const float excess = plan->star[i] - BOILING;
         if (water && water[i] > 0 && excess > 0) {
-            const float latent = STEAM + WATER * fmaxf(BOILING - ambient, 0), boils = matter->mass[i] * latent;
-            const float steam = fminf(water[i], excess * matter->capacity[i] / boils);
+            const float latent = STEAM + WATER * float_max(BOILING - ambient, 0), boils = matter->mass[i] * latent;
+            const float steam = float_min(water[i], excess * matter->capacity[i] / boils);
             const float cooling = steam * boils / matter->capacity[i];
             water[i] -= steam;
             plan->star[i] -= cooling;

@@ -38,6 +38,7 @@
 #include <math.h>
 
 #include "common/assertion.h"
+#include "common/real.h"
 #include "heat/heat_plan.h"
 
 /// The shortest length of eq 3 as printed, over the initial one: eq 6's least target (burn/shrink.c).
@@ -67,7 +68,7 @@ static float operator_rate(const HeatPlan *plan, const Shell *shell, uint32_t a,
 
 /// A weight less the sideways conduction of the red springs next to it, `leak` in m2/s.
 static double operator_less(double weight, double leak, float diffusivity) {
-    return weight > 0 && diffusivity > 0 ? fmax(0.1 * weight, weight - leak / (double)diffusivity) : weight;
+    return weight > 0 && diffusivity > 0 ? double_max(0.1 * weight, weight - leak / (double)diffusivity) : weight;
 }
 
 /// The exponent of a cell's width, m, as a power of two: division by this power changes no digits, and products of the
@@ -77,7 +78,7 @@ static int operator_scale(const Shell *shell, uint32_t cell) {
     float widest = 0;
     for (int k = 1; k < 4; k++)
         for (int d = 0; d < 3; d++)
-            widest = fmaxf(widest, fabsf(shell->rest_position[shell->cells[cell][k]][d] - first[d]));
+            widest = float_max(widest, fabsf(shell->rest_position[shell->cells[cell][k]][d] - first[d]));
     return ilogbf(widest);
 }
 
@@ -197,7 +198,7 @@ static float operator_length(const Shell *shell, const StateInput *state, SingeC
         return 0;
     const float(*x)[4] = (const float(*)[4])state->dynamics->position;
     const float length = float3_length(float3_sub(float3_load(x[a]), float3_load(x[b])));
-    return fmaxf(length, LIVE_LENGTH_MIN * rest);
+    return float_max(length, LIVE_LENGTH_MIN * rest);
 }
 
 /// A weight times alpha F. The sum of two cells' weights is 0 or more, unless mixing reduced one of them.

@@ -3,6 +3,7 @@
 //
 // Cells with d > 0 lie in a hashed grid by their centroids, filled in each step in which something burns. Its cubes are as
 // large as the farthest that any of them reaches, so the 27 cubes about a particle hold all cells that reach it.
+#include "common/real.h"
 #include "heat/heat_plan.h"
 #include "world/triangle.h"
 
@@ -12,7 +13,7 @@ static uint32_t smother_slot(const HeatSmother *smother, int x, int y, int z) {
 }
 
 static int smother_cube(const HeatSmother *smother, float x) {
-    return (int)floorf(fminf(fmaxf(x / smother->cube, -1e9f), 1e9f));
+    return (int)floorf(float_min(float_max(x / smother->cube, -1e9f), 1e9f));
 }
 
 SingeResult heat_smother_create(Memory *memory, HeatPlan *plan, const Shell *shell) {
@@ -23,7 +24,7 @@ SingeResult heat_smother_create(Memory *memory, HeatPlan *plan, const Shell *she
     if (smother->count == 0) return SINGE_OK;
 
     for (uint32_t i = 0; i < shell->particle_count; i++)
-        smother->thickness = fmaxf(smother->thickness, field_at(matter->thickness, i));
+        smother->thickness = float_max(smother->thickness, field_at(matter->thickness, i));
     smother->mask = 7;
     while (smother->mask < smother->count) smother->mask = 2 * smother->mask + 1;
     if (!NEW(memory, smother->cells, smother->count) || !NEW(memory, smother->balls, smother->count) ||
@@ -54,7 +55,7 @@ static void smother_balls(void *context, int begin, int end) {
         float *ball = smother->balls[k], radius = 0;
         Float3 sum = {0, 0, 0};
         for (int i = 0; i < 4; i++) sum = float3_mad(sum, float3_load(x[at[i]]), 0.25f);
-        for (int i = 0; i < 4; i++) radius = fmaxf(radius, float3_length(float3_sub(float3_load(x[at[i]]), sum)));
+        for (int i = 0; i < 4; i++) radius = float_max(radius, float3_length(float3_sub(float3_load(x[at[i]]), sum)));
         float3_store(ball, sum);
         const bool alive = pass->state->ablate->cell_flags[cell] & SINGE_ALIVE;
         const float distance = field_at(shell->matter.smother_distance, shell_centre(shell, cell));
@@ -111,7 +112,7 @@ void heat_smother(HeatPass *pass) {
 
     pool_for(pass->pool, (int)smother->count, POOL_BLOCK, smother_balls, pass);
     smother->cube = 0;
-    for (uint32_t k = 0; k < smother->count; k++) smother->cube = fmaxf(smother->cube, smother->balls[k][3]);
+    for (uint32_t k = 0; k < smother->count; k++) smother->cube = float_max(smother->cube, smother->balls[k][3]);
     if (!(smother->cube > 0)) return;
 
     // each slot is a list; in which order does not matter

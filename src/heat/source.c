@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "common/def_table.h"
+#include "common/real.h"
 #include "heat/heat_plan.h"
 #include "world/air.h"
 
@@ -81,14 +82,14 @@ static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *e
     float whitest = 0, strongest = def->strength_count ? 0 : 1;
     size_t count = (size_t)texture->width * (size_t)texture->height;
     for (size_t k = 0; k < count; k++) {
-        whitest = fmaxf(whitest, fabsf(texture->values[k]));
+        whitest = float_max(whitest, fabsf(texture->values[k]));
         if (!isfinite(texture->values[k]))
             return error_set(error, SINGE_ERROR_ARGUMENT, "source", (int64_t)k,
                              "value %lld of the texture is not finite", (long long)k);
     }
 
     TRY(source_check_strength(def, error));
-    for (uint32_t k = 0; k < def->strength_count; k++) strongest = fmaxf(strongest, fabsf(def->strength[k].value));
+    for (uint32_t k = 0; k < def->strength_count; k++) strongest = float_max(strongest, fabsf(def->strength[k].value));
 
     // the largest flux
     if (def->kind == SINGE_SOURCE_TEXTURE &&
@@ -320,7 +321,8 @@ static void source_wet_task(void *context, int begin, int end) {
     for (int i = begin; i < end; i++) {
         const float rain = 0.5f * job->strength * job->source->texture[i] * job->pass->h;
         if (rain > 0 && job->pass->plan->alive[i])
-            water[i] = fminf(water[i] + rain * matter->area[i] / matter->mass[i], fmaxf(water[i], HEAT_WATER_MAX));
+            water[i] =
+                float_min(water[i] + rain * matter->area[i] / matter->mass[i], float_max(water[i], HEAT_WATER_MAX));
     }
 }
 
@@ -351,7 +353,7 @@ static void source_blow_task(void *context, int begin, int end) {
         const float u = float3_length(float3_sub(air, float3_load(state->dynamics->velocity[i])));
         source_add(plan, i, SOURCE_COOLING * sqrtf(u), ambient);
         const float share = def->kind == SINGE_SOURCE_JET ? 2 * u / def->blow_out - 1 : 0;
-        plan->put_out[i] = fmaxf(plan->put_out[i], fminf(share, 1));
+        plan->put_out[i] = float_max(plan->put_out[i], float_min(share, 1));
     }
 }
 
@@ -439,10 +441,10 @@ static void source_gas_task(void *context, int begin, int end) {
 
             // the convective loss: at most what heats the particle to the gas's temperature; or the convective gain, if
             // it is colder than the ambient air
-            float left = fmaxf(mass[i], field_at(matter->loss_mass_floor, (uint32_t)i));
+            float left = float_max(mass[i], field_at(matter->loss_mass_floor, (uint32_t)i));
             float real = convection / (left * plan->thickening[matter->sheet[i]] * slower);
             float max = (hot - T) * (matter->capacity[i] / matter->area[i]) / job->pass->dt + real * (hot - ambient);
-            plan->flux[i] += T > ambient ? fminf(back, max) : fmaxf(back, real * (T - ambient));
+            plan->flux[i] += T > ambient ? float_min(back, max) : float_max(back, real * (T - ambient));
         }
 }
 

@@ -31,7 +31,7 @@ float heat_thickening_for(float thickening, const FrontMatter *front, float ambi
     float rise = front->heating - (front->ignition_temperature - ambient_temperature);
     if (!(rise > 0) || !(front->diffusivity > 0)) return 1;
 
-    rise = fminf(rise, front->rate_ceiling);
+    rise = float_min(rise, front->rate_ceiling);
 
     // mu theta, 1/s
     float rate = front->mass_rate * rise;

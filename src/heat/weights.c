@@ -69,8 +69,8 @@ bool heat_cell_linear(const Float3 x[4], double w[6]) {
         int a = split, b = split + 1, c = split + 2, d = (split + 3) % 4;
         double one = float3_dot(float3_cross(float3_sub(x[b], x[a]), float3_sub(x[c], x[a])), normal);
         double two = float3_dot(float3_cross(float3_sub(x[c], x[a]), float3_sub(x[d], x[a])), normal);
-        min[split] = fmin(one, two);
-        total = fmax(total, one + two);
+        min[split] = double_min(one, two);
+        total = double_max(total, one + two);
     }
 
     bool good[2] = {min[0] > 1e-3 * total, min[1] > 1e-3 * total};
@@ -79,13 +79,13 @@ bool heat_cell_linear(const Float3 x[4], double w[6]) {
     // of two good splits the one whose diagonal has the larger weight
     for (int split = 0; split < 2; split++) {
         if (good[split]) weights_linear(x, split, 1, each[split]);
-        for (int k = 0; k < SIDES; k++) largest = fmax(largest, fabs(each[split][k]));
+        for (int k = 0; k < SIDES; k++) largest = double_max(largest, fabs(each[split][k]));
     }
 
     double one = each[0][SIDES], two = each[1][SIDES + 1];
 
     // the rounding error of a right angle needs no entry in the matrix
-    bool square = good[0] && good[1] && fmax(fabs(one), fabs(two)) <= 6e-5 * largest;
+    bool square = good[0] && good[1] && double_max(fabs(one), fabs(two)) <= 6e-5 * largest;
     if (good[0] && good[1] && !square) good[one < two ? 0 : 1] = false;
     for (int split = 0; split < 2; split++)
         if (good[split]) weights_linear(x, split, square ? 0.5 : 1, w);
@@ -165,7 +165,7 @@ static double weights_rest(double a, double square) {
 static double weights_length(double u, double v) {
     double uu = u * u, vv = v * v, length = sqrt(uu + vv);
     if (!(length > 1e-140 && length < 1e140)) return length;
-    double square = length * length, big = fmax(uu, vv), small = fmin(uu, vv);
+    double square = length * length, big = double_max(uu, vv), small = double_min(uu, vv);
     double miss =
         ((square - big) - small) + (weights_rest(length, square) - (weights_rest(u, uu) + weights_rest(v, vv)));
     return length - miss / (2 * length);
@@ -189,17 +189,17 @@ void heat_cell_weights(const Float3 x[4], const double across[4], double w[6]) {
             // Newton step, of length 1 at most: the mean is the gradient of a convex function of lambda
             double a = slope[0] + 1e-9, b = slope[1], c = slope[2] + 1e-9, determinant = a * c - b * b;
             double u = (b * mean[1] - c * mean[0]) / determinant, v = (b * mean[0] - a * mean[1]) / determinant;
-            double shorter = fmax(weights_length(u, v), 1);
+            double shorter = double_max(weights_length(u, v), 1);
             lambda[0] += u / shorter;
             lambda[1] += v / shorter;
-            double steep = fmax(weights_length(lambda[0], lambda[1]) / STEEPEST, 1);
+            double steep = double_max(weights_length(lambda[0], lambda[1]) / STEEPEST, 1);
             lambda[0] /= steep;
             lambda[1] /= steep;
             moved = weights_length(lambda[0] - before[0], lambda[1] - before[1]);
             weights_mean(springs, lambda, k, mean, slope);
         }
 
-        even = sqrt(fmax(1 - mean[0] * mean[0] - mean[1] * mean[1], DBL_EPSILON));
+        even = sqrt(double_max(1 - mean[0] * mean[0] - mean[1] * mean[1], DBL_EPSILON));
     }
 
     for (int e = 0; e < SPRINGS; e++)
@@ -207,13 +207,13 @@ void heat_cell_weights(const Float3 x[4], const double across[4], double w[6]) {
 
     // the smallest s for which no weight is negative
     for (int e = 0; e < SPRINGS && linear; e++) {
-        double min = e < SIDES ? fmin(-across[e], 0) : 0;
-        if (w[e] < min) mix = fmax(mix, (min - w[e]) / (positive[e] - w[e]));
+        double min = e < SIDES ? double_min(-across[e], 0) : 0;
+        if (w[e] < min) mix = double_max(mix, (min - w[e]) / (positive[e] - w[e]));
     }
 
-    mix = linear ? fmin(mix, 1) : 1;
+    mix = linear ? double_min(mix, 1) : 1;
     for (int e = 0; e < SPRINGS; e++) {
         w[e] += mix * (positive[e] - w[e]);
-        if (e >= SIDES) w[e] = fmax(w[e], 0);
+        if (e >= SIDES) w[e] = double_max(w[e], 0);
     }
 }

@@ -2,6 +2,7 @@
 // they show is smaller than a cell. The ends of short sides are merged, the shortest side first, as long as the set
 // that becomes one vertex is no larger than the limit for sides. Of two vertices one of which is on an open edge, that
 // one stays; two on open edges are merged only along such an edge, so that nothing is pinched off.
+#include "common/real.h"
 #include "mesh/work.h"
 
 #include <math.h>
@@ -48,8 +49,8 @@ static bool join_ends(Shrink *shrink, uint32_t half) {
 
     double low[3], high[3], size[3];
     for (int k = 0; k < 3; k++) {
-        low[k] = fmin(shrink->low[a][k], shrink->low[b][k]);
-        high[k] = fmax(shrink->high[a][k], shrink->high[b][k]);
+        low[k] = double_min(shrink->low[a][k], shrink->low[b][k]);
+        high[k] = double_max(shrink->high[a][k], shrink->high[b][k]);
         size[k] = high[k] - low[k];
     }
 
@@ -80,8 +81,8 @@ static void join_uv(Shrink *shrink, const uint8_t *several) {
     for (uint32_t h = 0; h < faces->corner_count; h++) {
         uint32_t v = faces->corner[h], to = faces_next(faces, work->face, h), g;
         if (!several[v]) continue;
-        double length = fmax(side_length(work, h), shrink->min), same = 0;
-        for (int k = 0; k < 2; k++) same = fmax(same, fabs((double)faces->uv[to][k] - (double)faces->uv[h][k]));
+        double length = double_max(side_length(work, h), shrink->min), same = 0;
+        for (int k = 0; k < 2; k++) same = double_max(same, fabs((double)faces->uv[to][k] - (double)faces->uv[h][k]));
         same *= 4 * shrink->min / length;
 
         for (g = head[v]; g != MESH_NONE; g = next[g])

@@ -41,19 +41,22 @@ void mesh_grid_wear(Mesh *mesh, uint32_t cells_x, uint32_t cells_y, const GridWe
     const double jitter_wavelength = 3.7; // cells: neighbours move nearly alike, so cells stay convex
     uint32_t row = cells_x + 1, last = mesh->vertex_count - 1;
     double size_x = (double)mesh->positions[3 * last] * 2, size_y = (double)mesh->positions[3 * last + 1] * 2;
-    double wavelength = 0.45 * fmin(size_x, size_y);
+    double wavelength = 0.45 * double_min(size_x, size_y);
 
     // along the longer sides of slim cells at most twice their width: more would shear them into needles many cells long
     double slim = size_x * cells_y / (size_y * cells_x);
-    double jitter_x = (double)wear->jitter * fmin(1, 2 / slim), jitter_y = (double)wear->jitter * fmin(1, 2 * slim);
+    double jitter_x = (double)wear->jitter * double_min(1, 2 / slim),
+           jitter_y = (double)wear->jitter * double_min(1, 2 * slim);
 
     for (uint32_t v = 0; v <= last; v++) {
         uint32_t i = v % row, j = v / row;
 
         // border vertices move only along the border
         bool free_x = i > 0 && i<cells_x, free_y = j> 0 && j < cells_y;
-        double dx = free_x ? fmax(-1, fmin(1, 0.5 * grid_noise(i, j, jitter_wavelength, 2 * wear->seed))) : 0;
-        double dy = free_y ? fmax(-1, fmin(1, 0.5 * grid_noise(i, j, jitter_wavelength, 2 * wear->seed + 1))) : 0;
+        double dx =
+            free_x ? double_max(-1, double_min(1, 0.5 * grid_noise(i, j, jitter_wavelength, 2 * wear->seed))) : 0;
+        double dy =
+            free_y ? double_max(-1, double_min(1, 0.5 * grid_noise(i, j, jitter_wavelength, 2 * wear->seed + 1))) : 0;
         double x = (i + jitter_x * dx) / cells_x, y = (j + jitter_y * dy) / cells_y;
         float *position = mesh->positions + 3 * (size_t)v, *uv = mesh->uv + 2 * (size_t)v;
         uv[0] = (float)x;

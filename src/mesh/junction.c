@@ -1,5 +1,6 @@
 // T-junctions: a vertex of an open edge that lies on another open edge becomes a corner of that edge's face, too, if
 // that closes the gap.
+#include "common/real.h"
 #include "mesh/loops.h"
 
 #include <math.h>
@@ -34,10 +35,10 @@ static int junction_by_position(const void *a, const void *b) {
 static void look_along(Junctions *j, uint32_t a, uint32_t b) {
     const Work *work = j->work;
     const double length = distance3(work->position[a], work->position[b]);
-    const int steps = (int)fmin(1e4, ceil(length / j->positions.size));
+    const int steps = (int)double_min(1e4, ceil(length / j->positions.size));
     double d[3];
     sub3(work->position[b], work->position[a], d);
-    const double square = dot3(d, d), max = fmax(work->weld, beside * sqrt(square));
+    const double square = dot3(d, d), max = double_max(work->weld, beside * sqrt(square));
     j->count = 0;
 
     for (int s = 0; s <= steps && length > 0; s++) {
@@ -106,7 +107,7 @@ static bool list_open(Junctions *j) {
     if (!count) return false;
 
     work_mark_open(work, open);
-    j->positions = positions_make(work, fmax(total / count, 1e-12));
+    j->positions = positions_make(work, double_max(total / count, 1e-12));
     if (work->no_memory) return false;
 
     for (uint32_t v = 0; v < work->vertex_count; v++)

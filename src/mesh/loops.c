@@ -2,6 +2,8 @@
 // the ring returns to a vertex it is split in two, unless the part in between is a hole.
 #include "mesh/loops.h"
 
+#include "common/real.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -108,7 +110,7 @@ bool loops_is_flat(const Loops *loops, const uint32_t *ring, uint32_t n) {
     for (uint32_t i = 0; i < n; i++) {
         double p[3], q[3], m[3];
         const double *a = position_of(loops, ring[i]), *b = position_of(loops, ring[(i + 1) % n]);
-        longest = fmax(longest, distance3(a, b));
+        longest = double_max(longest, distance3(a, b));
         sub3(a, position_of(loops, ring[0]), p);
         sub3(b, position_of(loops, ring[0]), q);
         cross3(p, q, m);

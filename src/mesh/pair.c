@@ -11,6 +11,7 @@
 // match.c, which shifts pairs along a path of triangles until two single ones meet, or one reaches the border. A pair
 // that would make a bad quad (an angle above 175 degrees, a sharp fold, a seam of the uv) gets a new vertex at the
 // midpoint of its shared side, which makes both triangles quads; so does a single triangle at the border.
+#include "common/real.h"
 #include "mesh/polygon.h"
 
 #include <math.h>
@@ -61,7 +62,7 @@ static double pair_angle(const Work *work, uint32_t a, uint32_t b, uint32_t c) {
     sub3(work->position[a], work->position[b], p);
     sub3(work->position[c], work->position[b], q);
     const double square = dot3(p, p) * dot3(q, q);
-    return DEGREES * acos(square > 0 ? fmax(-1, fmin(1, dot3(p, q) / sqrt(square))) : 1);
+    return DEGREES * acos(square > 0 ? double_max(-1, double_min(1, dot3(p, q) / sqrt(square))) : 1);
 }
 
 /// The smallest angle of a triangle, in degrees; negative if it is flipped against the normal.
@@ -72,7 +73,8 @@ static double worth_of(const Pairs *pairs, const uint32_t half[3], const double 
     sub3(work->position[b], work->position[a], p);
     sub3(work->position[c], work->position[b], q);
     cross3(p, q, m);
-    double min = fmin(pair_angle(work, a, b, c), fmin(pair_angle(work, b, c, a), pair_angle(work, c, a, b)));
+    double min =
+        double_min(pair_angle(work, a, b, c), double_min(pair_angle(work, b, c, a), pair_angle(work, c, a, b)));
     return dot3(m, normal) > 0 ? min : -1 - min;
 }
 
@@ -118,7 +120,7 @@ static bool cut_faces(Pairs *pairs) {
             for (uint32_t k = 0; k < 2; k++) {
                 const uint32_t last = whole[(k + 3) % 4], ear[3] = {last, whole[k], whole[k + 1]};
                 const uint32_t other[3] = {whole[k + 1], whole[k + 2], last};
-                value[k] = fmin(worth_of(pairs, ear, normal), worth_of(pairs, other, normal));
+                value[k] = double_min(worth_of(pairs, ear, normal), worth_of(pairs, other, normal));
             }
             const uint32_t s = value[1] >= value[0] ? 0 : 1, t = out.count; // the ears are at s + 1 and s + 3
             push_triangle(pairs, &out, first + s, first + s + 1, first + s + 2, old->origin[f]);
@@ -165,15 +167,15 @@ static void cost_pair(Pairs *pairs, uint32_t half, uint32_t twin) {
                        corner_angle(pairs, pair_last3(half)), corner_angle(pairs, pair_last3(twin))};
     double worst = 0, max = 0;
     for (int i = 0; i < 4; i++) {
-        worst = fmax(worst, fabs(angle[i] - 90));
-        max = fmax(max, angle[i]);
+        worst = double_max(worst, fabs(angle[i] - 90));
+        max = double_max(max, angle[i]);
     }
 
     double n[3], m[3];
     face_area(work, half / 3, n);
     face_area(work, twin / 3, m);
     const double square = dot3(n, n) * dot3(m, m);
-    const double fold = square > 0 ? DEGREES * acos(fmax(-1, fmin(1, dot3(n, m) / sqrt(square)))) : 180;
+    const double fold = square > 0 ? DEGREES * acos(double_max(-1, double_min(1, dot3(n, m) / sqrt(square)))) : 180;
 
     // an interior vertex must keep three cells
     bool thin_fan = corner[pair_last3(half)] == corner[pair_last3(twin)];
@@ -227,7 +229,7 @@ static void offer(Pairs *pairs, uint32_t triangle) {
             uint32_t beyond = work->twin[shared];
             double from = quad_angle(pairs, side, inner, other) + quad_angle(pairs, pair_next3(across), shared, beyond);
             double to = quad_angle(pairs, pair_next3(side), inner, other) + quad_angle(pairs, across, shared, beyond);
-            gain += fmax(0, straight_within - 0.5 * (fabs(from - 180) + fabs(to - 180)));
+            gain += double_max(0, straight_within - 0.5 * (fabs(from - 180) + fabs(to - 180)));
         }
 
         PairHeap *heap = &pairs->heap;

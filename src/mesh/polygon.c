@@ -10,6 +10,8 @@
 // the best corner is cut off (Meisters' ears, 1975) until they are small.
 #include "mesh/polygon.h"
 
+#include "common/real.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,13 +114,13 @@ static double angle_at(const PolygonCut *cut, uint32_t a, uint32_t b, uint32_t c
     sub3(position_of(cut, a), position_of(cut, b), p);
     sub3(position_of(cut, c), position_of(cut, b), q);
     double square = dot3(p, p) * dot3(q, q);
-    return square > 0 ? DEGREES * acos(fmax(-1, fmin(1, dot3(p, q) / sqrt(square)))) : 0;
+    return square > 0 ? DEGREES * acos(double_max(-1, double_min(1, dot3(p, q) / sqrt(square)))) : 0;
 }
 
 /// A triangle's smallest angle, in degrees; negative if it is flipped or has no area. Corners are indices of the ring.
 static double worth_of(const PolygonCut *cut, uint32_t i, uint32_t k, uint32_t j) {
     const uint32_t a = cut->ring[i], b = cut->ring[k], c = cut->ring[j];
-    double min = fmin(angle_at(cut, a, b, c), fmin(angle_at(cut, b, c, a), angle_at(cut, c, a, b)));
+    double min = double_min(angle_at(cut, a, b, c), double_min(angle_at(cut, b, c, a), angle_at(cut, c, a, b)));
     return turn2(cut->at[i], cut->at[k], cut->at[j]) > 0 ? min : -1 - min;
 }
 
@@ -165,8 +167,8 @@ static double ear_worth(PolygonCut *cut, uint32_t n, uint32_t k) {
     const double *const ear[3] = {cut->at[a], cut->at[k], cut->at[c]};
     double worth = worth_of(cut, a, k, c), low[2], high[2];
     for (int axis = 0; axis < 2; axis++) {
-        low[axis] = fmin(ear[0][axis], fmin(ear[1][axis], ear[2][axis]));
-        high[axis] = fmax(ear[0][axis], fmax(ear[1][axis], ear[2][axis]));
+        low[axis] = double_min(ear[0][axis], double_min(ear[1][axis], ear[2][axis]));
+        high[axis] = double_max(ear[0][axis], double_max(ear[1][axis], ear[2][axis]));
     }
 
     for (uint32_t i = 0; i < n && worth >= 0; i++) {
@@ -196,7 +198,7 @@ static bool cut_best(PolygonCut *cut, uint32_t n) {
             uint32_t j = i + span;
             worst[i][j] = span == 1 ? 180 : -1e9;
             for (uint32_t k = i + 1; k < j; k++) {
-                double value = fmin(worth_of(cut, i, k, j), fmin(worst[i][k], worst[k][j]));
+                double value = double_min(worth_of(cut, i, k, j), double_min(worst[i][k], worst[k][j]));
                 if (value > worst[i][j]) {
                     worst[i][j] = value;
                     apex[i][j] = (uint8_t)k;
@@ -266,7 +268,7 @@ bool polygon_cut(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
         polygon_normal(cut, a, 3, p);
         polygon_normal(cut, b, 3, q);
         double square = dot3(p, p) * dot3(q, q);
-        double fold = square > 0 ? DEGREES * acos(fmax(-1, fmin(1, dot3(p, q) / sqrt(square)))) : 180;
+        double fold = square > 0 ? DEGREES * acos(double_max(-1, double_min(1, dot3(p, q) / sqrt(square)))) : 180;
         if (fold < best) {
             best = fold;
             start = s;
@@ -312,10 +314,10 @@ bool polygon_overlaps(PolygonCut *cut, const double normal[3]) {
         project(cut, cut->triangle[t], 3, normal);
         const bool turned = turn2(cut->at[0], cut->at[1], cut->at[2]) < 0;
         for (int k = 0; k < 3; k++) memcpy(own->at[k], cut->at[turned ? 2 - k : k], sizeof own->at[k]);
-        own->low = fmin(own->at[0][0], fmin(own->at[1][0], own->at[2][0]));
-        own->high = fmax(own->at[0][0], fmax(own->at[1][0], own->at[2][0]));
-        low = fmin(low, own->low);
-        high = fmax(high, own->high);
+        own->low = double_min(own->at[0][0], double_min(own->at[1][0], own->at[2][0]));
+        own->high = double_max(own->at[0][0], double_max(own->at[1][0], own->at[2][0]));
+        low = double_min(low, own->low);
+        high = double_max(high, own->high);
     }
 
     const double rounding = 1e-7 * (high - low) * (high - low);

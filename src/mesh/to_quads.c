@@ -1,6 +1,7 @@
 // Makes the quads of a sheet from the polygons of a file: the steps in their order, and the resulting mesh.
 #include "mesh/to_quads.h"
 
+#include "common/real.h"
 #include "common/store.h"
 #include "mesh/work.h"
 
@@ -198,8 +199,8 @@ static uint32_t unsound_quad(const Work *work) {
             for (int k = 0; k < i; k++)
                 if (at[i] == at[k]) return f;
             double length = distance3(work->position[at[i]], work->position[at[(i + 1) & 3]]);
-            longest = fmax(longest, length);
-            shortest = fmin(shortest, length);
+            longest = double_max(longest, length);
+            shortest = double_min(shortest, length);
         }
         face_area(work, f, normal);
         if (!(sqrt(dot3(normal, normal)) > FACE_THIN * longest * longest && shortest > FACE_THIN * longest)) return f;
@@ -260,8 +261,8 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
     for (uint32_t h = 0; h < work->faces.corner_count; h++)
         for (int k = 0; k < 3; k++) {
             double x = work->position[work->faces.corner[h]][k];
-            low[k] = fmin(low[k], x);
-            high[k] = fmax(high[k], x);
+            low[k] = double_min(low[k], x);
+            high[k] = double_max(high[k], x);
         }
     work->weld = options->weld > 0 ? (double)options->weld : (double)MESH_WELD * distance3(low, high);
     work->smallest = (double)options->smallest;

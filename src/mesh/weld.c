@@ -1,5 +1,6 @@
 // Merges vertices at the same position. Only those on open edges are merged: there files cut connected surfaces, along
 // the seams of their uv. The vertices of layers that touch are interior, and stay separate.
+#include "common/real.h"
 #include "mesh/work.h"
 
 #include <math.h>
@@ -13,7 +14,8 @@ uint32_t positions_slot(const Positions *positions, const int64_t box[3]) {
 
 void positions_box(const Positions *positions, const double *position, int64_t box[3]) {
     const double far = 0x1p62; // the number of a far box may overflow; all beyond share the last
-    for (int k = 0; k < 3; k++) box[k] = (int64_t)fmin(fmax(floor(position[k] / positions->size), -far), far);
+    for (int k = 0; k < 3; k++)
+        box[k] = (int64_t)double_min(double_max(floor(position[k] / positions->size), -far), far);
 }
 
 Positions positions_make(Work *work, double size) {
@@ -34,7 +36,7 @@ void positions_add(const Work *work, Positions *positions, uint32_t v) {
 
 void mesh_weld(Work *work) {
     work_edges(work);
-    Positions positions = positions_make(work, fmax(2 * work->weld, 1e-12));
+    Positions positions = positions_make(work, double_max(2 * work->weld, 1e-12));
     uint8_t *open = work_new(work, work->vertex_count, 1);
     uint32_t *to = work_sets(work, work->vertex_count);
     if (work->no_memory) return;

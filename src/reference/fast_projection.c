@@ -12,6 +12,7 @@
 //   S = compliance/h^2 + regularisation (w_a + w_b)/2
 //
 // is solved for mu = D^(1/2) lambda, D the diagonal:  D^(-1/2) (J M^-1 J^T + S) D^(-1/2) mu = D^(-1/2) W C.
+#include "common/real.h"
 #include "reference/spring_network.h"
 
 #include <math.h>
@@ -32,7 +33,7 @@ static Row projection_row(const Network *network, const SpringGroup *group, uint
     if (network->rules.literal) return (Row){{2 * d[0] / l, 2 * d[1] / l, 2 * d[2] / l}, square / l - l};
 
     // a spring crushed below half its length has hardly a direction: its row's request is limited
-    double inverse = 1 / fmax(distance, 1e-30), divisor = 2 * fmax(distance, 0.5 * l);
+    double inverse = 1 / double_max(distance, 1e-30), divisor = 2 * double_max(distance, 0.5 * l);
     return (Row){{d[0] * inverse, d[1] * inverse, d[2] * inverse}, (square - l * l) / divisor};
 }
 
@@ -122,7 +123,7 @@ ProjectionReport network_project(Network *network, uint32_t group, Pool *pool) {
     // the error at which to stop
     if (rules->early_exit) {
         double lengths = pool_sum(pool, rows, projection_lengths, &job, network->partial);
-        enough = fmax(enough, rules->tolerance * rules->tolerance * lengths);
+        enough = double_max(enough, rules->tolerance * rules->tolerance * lengths);
     }
 
     // assemble, solve and move

@@ -20,6 +20,8 @@
 // thickness and temperature are the same.
 #include "shell/matter.h"
 
+#include "common/real.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -68,13 +70,13 @@ float matter_value(const SheetSource *source, int param, uint32_t i) {
     case PARAM_HEAT_SHARE:
         return value * sheet_param(source, PARAM_HEAT_OF_COMBUSTION, i) / sheet_param(source, PARAM_SPECIFIC_HEAT, i);
     case PARAM_CHAR_HEAT: return value / sheet_param(source, PARAM_SPECIFIC_HEAT, i);
-    case PARAM_CHAR_YIELD: return fmaxf(value, sheet_param(source, PARAM_MASS_MIN, i));
+    case PARAM_CHAR_YIELD: return float_max(value, sheet_param(source, PARAM_MASS_MIN, i));
     case PARAM_HEAT_OF_COMBUSTION: return value * (1 - sheet_param(source, PARAM_HEAT_SHARE, i));
     case PARAM_COMPLIANCE + SINGE_GREEN: {
         // both layers are in series: t^2/(c_green + c_blue) is D
         const float bending = sheet_param(source, PARAM_BENDING, i), t = sheet_param(source, PARAM_THICKNESS, i);
         if (!(bending > 0)) return value;
-        return fmaxf(0, t * t / bending - sheet_param(source, PARAM_COMPLIANCE + SINGE_BLUE, i));
+        return float_max(0, t * t / bending - sheet_param(source, PARAM_COMPLIANCE + SINGE_BLUE, i));
     }
     default: return value;
     }

@@ -1,5 +1,6 @@
 // Whether sheets begin inside colliders. A collider throws particles inside it out in the first step, over their whole
 // depth in one time step, each vertex by a different distance.
+#include "common/real.h"
 #include "sim/sim_internal.h"
 
 enum { BURIED_SAMPLES = 4096 }; // vertices that are looked at, evenly spread
@@ -7,7 +8,7 @@ enum { BURIED_SAMPLES = 4096 }; // vertices that are looked at, evenly spread
 void sim_find_buried(const SingeSim *sim) {
     const uint32_t count = sim->shell.vertex_count, stride = count / BURIED_SAMPLES + 1;
     float cell = INFINITY;
-    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) cell = fminf(cell, sim->shell.sheets[s].cell_size);
+    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) cell = float_min(cell, sim->shell.sheets[s].cell_size);
     for (uint32_t i = 0; sim->def.log.write && i < sim->colliders.count; i++) {
         const Collider *collider = &sim->colliders.items[i];
         if (collider->generation == 0) continue;

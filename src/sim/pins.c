@@ -2,6 +2,7 @@
 // textures of sources do, and its particles are found there.
 #include "common/assertion.h"
 #include "common/def_table.h"
+#include "common/real.h"
 #include "sim/objects.h"
 
 #include <math.h>
@@ -77,8 +78,8 @@ static void pin_aim(const SingeSim *sim, const SingePinDef *def, const Pin *pin,
 
     for (uint32_t v = sheet->vertex_first; v < end; v++)
         for (int i = 0; i < 3 && shell->matter.area[v] > 0; i++) {
-            low[i] = fminf(low[i], shell->rest_position[v][i]);
-            high[i] = fmaxf(high[i], shell->rest_position[v][i]);
+            low[i] = float_min(low[i], shell->rest_position[v][i]);
+            high[i] = float_max(high[i], shell->rest_position[v][i]);
         }
     const float diagonal = float3_length(float3_sub(float3_load(high), float3_load(low)));
 

@@ -4,6 +4,7 @@
 // Enthalpy H = sum over the remaining particles of C (T - T_amb), C the heat capacity of the unburnt particle (eq 1
 // adds heat to T without regard to the mass left). Removed particles take their enthalpy along; that counts as lost.
 // Ledger: heat_in + heat_of_combustion - heat_lost = H - H_start.
+#include "common/real.h"
 #include "sim/sim_internal.h"
 
 #include <math.h>
@@ -138,8 +139,8 @@ static void stats_ledgers(const SingeSim *sim, SingeStats *stats) {
     stats->heat_of_combustion = state->heat.heat_of_combustion;
     stats->heat_lost = state->heat.heat_lost + state->ablate.heat_removed;
     stats->heat_stored = sim_enthalpy(sim) - sim->heat_start;
-    double max = fmax(fmax(fabs(stats->heat_in), fabs(stats->heat_of_combustion)),
-                      fmax(fabs(stats->heat_lost), fabs(stats->heat_stored)));
+    double max = double_max(double_max(fabs(stats->heat_in), fabs(stats->heat_of_combustion)),
+                            double_max(fabs(stats->heat_lost), fabs(stats->heat_stored)));
     double error = stats->heat_in + stats->heat_of_combustion - stats->heat_lost - stats->heat_stored;
     stats->ledger_error = max > 0 ? fabs(error) / max : 0;
     stats->ledgers_close = stats->ledger_error <= SINGE_LEDGER_BOUND && stats->mass_ledger_error <= SINGE_LEDGER_BOUND;
@@ -172,7 +173,7 @@ void singe_sim_read_stats(const SingeSim *sim, SingeStats *out, size_t struct_si
         stats.particles++;
         stats.mass += (double)matter->mass[i] * (double)state->burn.mass[i];
         if (state->heat.water) stats.water += (double)matter->mass[i] * (double)state->heat.water[i];
-        stats.temperature_max = fmaxf(stats.temperature_max, state->heat.temperature[i]);
+        stats.temperature_max = float_max(stats.temperature_max, state->heat.temperature[i]);
         const double mass = (double)matter->mass[i] * (double)state->burn.mass[i],
                      speed2 = stats_square(float3_load(state->dynamics.velocity[i]));
         stats.energy_kinetic += 0.5 * mass * speed2;
@@ -197,6 +198,7 @@ void singe_sim_read_stats(const SingeSim *sim, SingeStats *out, size_t struct_si
     stats.front_speed = stats_front_speed(sim);
     stats_arrival(sim, &stats);
     stats.pace = sim->def.pace;
-    for (uint32_t s = 0; s < shell->sheet_count; s++) stats.thickening = fmaxf(stats.thickening, sim->thickening[s]);
+    for (uint32_t s = 0; s < shell->sheet_count; s++)
+        stats.thickening = float_max(stats.thickening, sim->thickening[s]);
     sim_write_result(out, struct_size, &stats, sizeof stats);
 }

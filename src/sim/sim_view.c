@@ -1,4 +1,5 @@
 // Read-only views, events, timers, counts and the drawn surface.
+#include "common/real.h"
 #include "sim/calls.h"
 #include "surface/surface.h"
 
@@ -97,8 +98,8 @@ void singe_sim_read_counts(const SingeSim *sim, SingeCounts *out, size_t struct_
 /// where it does not report them as near.
 static float bulge_max(const SingeSim *sim) {
     float cell = INFINITY;
-    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) cell = fminf(cell, sim->shell.sheets[s].cell_size);
-    return sim->def.contact.enabled ? 0.45f * fminf(sim->def.contact.thickness, 0.4f * cell) : 0;
+    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) cell = float_min(cell, sim->shell.sheets[s].cell_size);
+    return sim->def.contact.enabled ? 0.45f * float_min(sim->def.contact.thickness, 0.4f * cell) : 0;
 }
 
 void singe_init_render_mesh(SingeRenderMeshDef *def, size_t struct_size) {

@@ -2,6 +2,7 @@
 // there. Cells lie in a hashed grid by their centroids; its cubes have sides of the reach and the largest cell's radius,
 // so the 27 cubes around a position hold all cells within reach. By uv it is the same in the plane of uv, where the reach
 // is the largest cell's radius.
+#include "common/real.h"
 #include "surface/render_parts.h"
 
 typedef struct Binding {
@@ -22,7 +23,7 @@ static uint32_t slot_of(const Binding *binding, int x, int y, int z) {
 }
 
 static int cube_of(const Binding *binding, float x) {
-    return (int)floorf(fminf(fmaxf(x / binding->cube, -1e9f), 1e9f));
+    return (int)floorf(float_min(float_max(x / binding->cube, -1e9f), 1e9f));
 }
 
 static Float3 corner_of(const Binding *binding, uint32_t cell, int i) {
@@ -144,14 +145,14 @@ static void fill_grid(Binding *binding) {
         float3_store(binding->centroid[c], centroid);
         for (int i = 0; i < 4; i++) {
             const Float3 from = float3_sub(corner_of(binding, c, i), centroid);
-            binding->centroid[c][3] = fmaxf(binding->centroid[c][3], float3_length(from));
+            binding->centroid[c][3] = float_max(binding->centroid[c][3], float3_length(from));
         }
-        radius = fmaxf(radius, binding->centroid[c][3]);
+        radius = float_max(radius, binding->centroid[c][3]);
     }
 
     // counted, then listed from the end of each slot
     if (binding->by_uv) binding->reach = radius;
-    binding->cube = fmaxf(binding->reach + radius, 1e-5f);
+    binding->cube = float_max(binding->reach + radius, 1e-5f);
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t c = 0; c < shell->cell_count; c++) {
             const float *at = binding->centroid[c];

@@ -14,6 +14,7 @@
 // Edges are halved until none is longer than `edge_max`, at most half a cell's side: long triangles would neither follow
 // the sheet's folds nor notice its holes. A triangle becomes two, three or four, as one, two or all of its edges are long,
 // so neighbours meet without cracks.
+#include "common/real.h"
 #include "surface/render_parts.h"
 
 #include <string.h>
@@ -200,7 +201,7 @@ static SingeResult find_parts(Memory *memory, float rigid, RenderMesh *mesh, Sin
         for (uint32_t v = 0; v < mesh->vertex_count; v++) {
             Part *part = &parts[root_of(parent, place[v])];
             const Float3 from = float3_sub(float3_load(mesh->vertices[v].rest), middle_of(part));
-            part->extent = fmaxf(part->extent, 2 * float3_length(from));
+            part->extent = float_max(part->extent, 2 * float3_length(from));
         }
 
         for (uint32_t v = 0; v < mesh->vertex_count; v++) {
@@ -333,7 +334,7 @@ static SingeResult halve(Memory *memory, float max, RenderMesh *mesh, uint32_t *
 /// Feet of what was given, then edges, then the feet of their middles. `fine` has the sheet at rest.
 static SingeResult bind(const Fine *fine, float cell, const SingeRenderMeshDef *def, RenderMesh *mesh,
                         SingeError *error) {
-    const float max = def->edge_max > 0 ? fminf(def->edge_max, 0.5f * cell) : 0.5f * cell;
+    const float max = def->edge_max > 0 ? float_min(def->edge_max, 0.5f * cell) : 0.5f * cell;
     const float reach = def->reach > 0 ? def->reach : cell;
     const uint32_t given = mesh->vertex_count;
     if (def->by_uv) { // first, as its edges are as long as they are on the sheet

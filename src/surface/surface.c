@@ -19,6 +19,7 @@
 // mass and times are those of the cell's centre particle.
 #include "common/assertion.h"
 #include "common/float3.h"
+#include "common/real.h"
 #include "surface/surface_parts.h"
 
 #include <math.h>
@@ -144,7 +145,7 @@ static Sample sample_particle(const Shell *shell, const State *state, uint32_t p
         .mass = burn->mass[particle],
         .burn_rate = burn->burn_rate[particle],
         .coal = coal,
-        .ash = fmaxf(burn->mass[particle] - burn->fuel[particle] - coal, 0),
+        .ash = float_max(burn->mass[particle] - burn->fuel[particle] - coal, 0),
         .burn = shell_burn_progress(burn->mass[particle], min),
         .time_ignited = burn->time_ignited[particle],
         .water = state->heat.water ? state->heat.water[particle] : 0,

@@ -9,6 +9,7 @@
 #include "common/assertion.h"
 #include "surface/surface_parts.h"
 #include "common/float3.h"
+#include "common/real.h"
 
 #include <string.h>
 
@@ -81,7 +82,8 @@ static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], floa
 static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end) {
     const float(*uvs)[2] = (const float(*)[2])seams->shell->corner_uv[cell];
     float size = 0;
-    for (int i = 1; i < 4; i++) size = fmaxf(size, fmaxf(fabsf(uvs[i][0] - uvs[0][0]), fabsf(uvs[i][1] - uvs[0][1])));
+    for (int i = 1; i < 4; i++)
+        size = float_max(size, float_max(fabsf(uvs[i][0] - uvs[0][0]), fabsf(uvs[i][1] - uvs[0][1])));
     const float same = SEAM_SAME * size;
 
     for (uint32_t t = begin; t < end; t++) {
@@ -97,7 +99,7 @@ static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end)
         for (int s = 0; s < 4; s++) {
             float weight[3];
             weights_at(seams->shell, cell, s, centroid, weight);
-            float min = fminf(weight[0], fminf(weight[1], weight[2]));
+            float min = float_min(weight[0], float_min(weight[1], weight[2]));
             if (min > max) {
                 max = min;
                 side = s;

@@ -38,7 +38,7 @@ static float air_profile(float y) { return 2 * y / (1 + y * y); }
 Float3 source_air(const Source *source, Float3 position, double time) {
     const SingeSourceDef *def = &source->def;
     const Float3 still = {0, 0, 0};
-    const float speed = def->speed * source_strength(source, time), radius = fmaxf(def->radius, AIR_RADIUS_MIN);
+    const float speed = def->speed * source_strength(source, time), radius = float_max(def->radius, AIR_RADIUS_MIN);
     if (!source_blows(def) || speed == 0) return still;
 
     if (def->kind == SINGE_SOURCE_TURBULENCE) {
@@ -61,7 +61,7 @@ Float3 source_air(const Source *source, Float3 position, double time) {
                             speed * air_profile(float3_length(across) / radius));
 
     if (x < 0) return still;
-    const float width = fmaxf(radius, JET_WIDTH * x), y = float3_length(across) / width;
+    const float width = float_max(radius, JET_WIDTH * x), y = float3_length(across) / width;
     const float decay = x > JET_DECAY * radius ? JET_DECAY * radius / x : 1;
     return float3_scale(axis, speed * decay * real_expf(-0.69314718f * y * y));
 }

@@ -2,6 +2,7 @@
 #include "world/collider.h"
 
 #include "common/def_table.h"
+#include "common/real.h"
 
 #include <string.h>
 
@@ -82,7 +83,7 @@ float collider_distance(const Collider *collider, Float3 p, float limit, Float3 
     case SINGE_COLLIDER_SPHERE: return collider_round(p, def->radius, normal);
     case SINGE_COLLIDER_BOX: return collider_box(def->half_size, p, normal);
     case SINGE_COLLIDER_CAPSULE: {
-        float half = def->height / 2, along = fminf(fmaxf(p.z, -half), half);
+        float half = def->height / 2, along = float_min(float_max(p.z, -half), half);
         return collider_round(float3(p.x, p.y, p.z - along), def->radius, normal);
     }
     case SINGE_COLLIDER_HEIGHTFIELD: return height_solid_distance(&collider->heights, p, limit, normal);

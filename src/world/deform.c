@@ -1,5 +1,6 @@
 #include "world/deform.h"
 
+#include "common/real.h"
 #include "world/triangle.h"
 
 #include <math.h>
@@ -83,7 +84,7 @@ void deform_between(const Deform *deform, double before, double after) {
     for (uint32_t v = 0; v < deform->motion.count; v++) {
         Float3 displacement = float3_sub(float3_load(pose->solid[pose->now].vertices[v]),
                                          float3_load(pose->solid[1 - pose->now].vertices[v]));
-        farthest = fmaxf(farthest, float3_dot(displacement, displacement));
+        farthest = float_max(farthest, float3_dot(displacement, displacement));
     }
 
     pose->farthest = sqrtf(farthest);
@@ -109,6 +110,6 @@ Float3 deform_drift(const Deform *deform, Float3 p) {
 
 void deform_bounds(const Deform *deform, Float3 *low, Float3 *high) {
     const MeshSolid *a = &deform->pose->solid[0], *b = &deform->pose->solid[1];
-    *low = float3(fminf(a->low.x, b->low.x), fminf(a->low.y, b->low.y), fminf(a->low.z, b->low.z));
-    *high = float3(fmaxf(a->high.x, b->high.x), fmaxf(a->high.y, b->high.y), fmaxf(a->high.z, b->high.z));
+    *low = float3(float_min(a->low.x, b->low.x), float_min(a->low.y, b->low.y), float_min(a->low.z, b->low.z));
+    *high = float3(float_max(a->high.x, b->high.x), float_max(a->high.y, b->high.y), float_max(a->high.z, b->high.z));
 }

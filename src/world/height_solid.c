@@ -4,6 +4,7 @@
 //
 // The surface straight above or below is |z - h| away, so only cells within this distance can contain the foot; blocks
 // of cells whose heights are farther away are skipped.
+#include "common/real.h"
 #include "world/height_solid.h"
 #include "world/triangle.h"
 
@@ -47,8 +48,8 @@ SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows,
     // copy, and the range of each block
     for (size_t k = 0; k < count; k++) {
         solid->heights[k] = heights[k];
-        solid->low = fminf(solid->low, heights[k]);
-        solid->high = fmaxf(solid->high, heights[k]);
+        solid->low = float_min(solid->low, heights[k]);
+        solid->high = float_max(solid->high, heights[k]);
     }
 
     for (uint32_t bj = 0; bj < solid->blocks[1]; bj++)
@@ -61,8 +62,8 @@ SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows,
             for (uint32_t j = bj * HEIGHT_BLOCK; j <= j_last; j++)
                 for (uint32_t i = bi * HEIGHT_BLOCK; i <= i_last; i++) {
                     float h = heights[(size_t)j * columns + i];
-                    range[0] = fminf(range[0], h);
-                    range[1] = fmaxf(range[1], h);
+                    range[0] = float_min(range[0], h);
+                    range[1] = float_max(range[1], h);
                 }
         }
 
@@ -92,7 +93,7 @@ static uint32_t height_cell(const HeightSolid *solid, int axis, float x, float *
     uint32_t last = (axis ? solid->rows : solid->columns) - 2;
     float at = (x + solid->half[axis]) / solid->step[axis];
     uint32_t cell = at > 0 ? at < (float)last ? (uint32_t)at : last : 0;
-    *part = fminf(fmaxf(at - (float)cell, 0), 1);
+    *part = float_min(float_max(at - (float)cell, 0), 1);
     return cell;
 }
 
@@ -133,11 +134,11 @@ static void height_surface(const HeightSolid *solid, Float3 p, TriangleClosest *
             for (int d = 0; d < 2; d++) {
                 double low = (double)((float)first[d] * solid->step[d] - solid->half[d]) - (double)x[d];
                 double high = (double)x[d] - (double)((float)end[d] * solid->step[d] - solid->half[d]);
-                double out = fmax(fmax(low, high), 0);
+                double out = double_max(double_max(low, high), 0);
                 sum += out * out;
             }
 
-            double out = fmax(fmax((double)range[0] - (double)p.z, (double)p.z - (double)range[1]), 0);
+            double out = double_max(double_max((double)range[0] - (double)p.z, (double)p.z - (double)range[1]), 0);
             if (sum + out * out >= best->square) continue;
 
             // the triangles of its cells that are within reach
@@ -160,7 +161,7 @@ static void height_surface(const HeightSolid *solid, Float3 p, TriangleClosest *
 float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Float3 *normal) {
     float dx = fabsf(p.x) - solid->half[0], dy = fabsf(p.y) - solid->half[1];
     bool over = dx <= 0 && dy <= 0;
-    Float3 out = float3(fmaxf(dx, 0), fmaxf(dy, 0), fmaxf(p.z - solid->high, 0));
+    Float3 out = float3(float_max(dx, 0), float_max(dy, 0), float_max(p.z - solid->high, 0));
     float bound = float3_length(out);
     *normal = float3(0, 0, 1);
     if (bound > 0 && bound >= limit) return bound;
@@ -173,7 +174,7 @@ float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Flo
     // upper bound: the surface above or below the nearest position of the rectangle
     double slack = 1e-6 * (double)(solid->half[0] + solid->half[1] + float3_length(p)); // heights are rounded
     double max = (double)float3_length(float3(out.x, out.y, above)) + slack;
-    if (!inside) max = fmin(max, (double)limit); // surface beyond the limit need not be found
+    if (!inside) max = double_min(max, (double)limit); // surface beyond the limit need not be found
     TriangleClosest best = {.square = max * max};
     double unfound = best.square;
 
@@ -182,7 +183,7 @@ float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Flo
         float side = wall & 1 ? 1 : -1, at[2] = {p.x, p.y};
         int axis = wall >> 1;
         at[axis] = side * solid->half[axis];
-        at[1 - axis] = fminf(fmaxf(at[1 - axis], -solid->half[1 - axis]), solid->half[1 - axis]);
+        at[1 - axis] = float_min(float_max(at[1 - axis], -solid->half[1 - axis]), solid->half[1 - axis]);
         Float3 unused;
         TriangleClosest foot = {.away = {(double)p.x - (double)at[0], (double)p.y - (double)at[1], 0}};
         foot.square = dot3(foot.away, foot.away);

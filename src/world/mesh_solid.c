@@ -90,11 +90,12 @@ static float solid_signed(const MeshSolid *solid, Float3 p, uint32_t t, Float3 *
 /// Computes the grid's distances, one after another along x: each bounds the search radius of the next.
 static bool solid_grid(Memory *memory, MeshSolid *solid) {
     Float3 size = float3_sub(solid->high, solid->low);
-    double wanted = fmin(fmax(GRID_SHARE * solid->triangle_count, GRID_MIN), GRID_MAX);
+    double wanted = double_min(double_max(GRID_SHARE * solid->triangle_count, GRID_MIN), GRID_MAX);
 
     // a flat mesh counts as thicker: otherwise all cells would lie in its plane
-    double min = (double)fmaxf(size.x, fmaxf(size.y, size.z)) / 256;
-    double side[3] = {fmax((double)size.x, min), fmax((double)size.y, min), fmax((double)size.z, min)};
+    double min = (double)float_max(size.x, float_max(size.y, size.z)) / 256;
+    double side[3] = {double_max((double)size.x, min), double_max((double)size.y, min),
+                      double_max((double)size.z, min)};
     solid->cell = (float)real_cbrt(side[0] * side[1] * side[2] / wanted);
     size_t count = 1;
     for (int d = 0; d < 3; d++) { // and a margin of one cell
@@ -162,8 +163,8 @@ SingeResult mesh_solid_create_moving(Memory *memory, uint32_t vertex_count, cons
     for (uint32_t t = 0; t < solid->triangle_count; t++)
         for (uint32_t i = 0; i < 3; i++) {
             Float3 v = solid_corner(solid, t, i), low = solid->low, high = solid->high;
-            solid->low = float3(fminf(low.x, v.x), fminf(low.y, v.y), fminf(low.z, v.z));
-            solid->high = float3(fmaxf(high.x, v.x), fmaxf(high.y, v.y), fmaxf(high.z, v.z));
+            solid->low = float3(float_min(low.x, v.x), float_min(low.y, v.y), float_min(low.z, v.z));
+            solid->high = float3(float_max(high.x, v.x), float_max(high.y, v.y), float_max(high.z, v.z));
         }
 
     return SINGE_OK;
@@ -206,8 +207,8 @@ float mesh_solid_distance(const MeshSolid *solid, Float3 p, float limit, Float3 
         if (min > 0 && min >= limit && (coarse > 0 || limit == 0)) return coarse > 0 ? min : -min;
     } else {
         Float3 low = float3_sub(solid->low, p), high = float3_sub(p, solid->high);
-        Float3 out =
-            float3(fmaxf(fmaxf(low.x, high.x), 0), fmaxf(fmaxf(low.y, high.y), 0), fmaxf(fmaxf(low.z, high.z), 0));
+        Float3 out = float3(float_max(float_max(low.x, high.x), 0), float_max(float_max(low.y, high.y), 0),
+                            float_max(float_max(low.z, high.z), 0));
         min = float3_length(out);
         if (min > 0 && min >= limit) return min;
     }

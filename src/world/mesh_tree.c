@@ -2,6 +2,7 @@
 // tested at once (Wald et al., Getting rid of packets, 2008, for rays). Triangles are halved along the longest axis of
 // the centroids; all leaves but the last are full, so that the number of nodes follows from that of triangles.
 #include "common/assertion.h"
+#include "common/real.h"
 #include "world/mesh_solid.h"
 
 #include <string.h>
@@ -42,8 +43,8 @@ static void tree_box_add(float box[2][3], const MeshSolid *solid, uint32_t trian
     for (int i = 0; i < 3; i++)
         for (int d = 0; d < 3; d++) {
             float x = solid->vertices[solid->triangles[triangle][i]][d];
-            box[0][d] = fminf(box[0][d], x);
-            box[1][d] = fmaxf(box[1][d], x);
+            box[0][d] = float_min(box[0][d], x);
+            box[1][d] = float_max(box[1][d], x);
         }
 }
 
@@ -63,8 +64,8 @@ static void tree_split(TreeBuild *build, uint32_t first, uint32_t count, uint32_
     for (int d = 0; d < 3; d++) {
         float min = INFINITY, max = -INFINITY;
         for (uint32_t k = first; k < first + count; k++) {
-            min = fminf(min, build->centroid[order[k]][d]);
-            max = fmaxf(max, build->centroid[order[k]][d]);
+            min = float_min(min, build->centroid[order[k]][d]);
+            max = float_max(max, build->centroid[order[k]][d]);
         }
 
         if (!(max - min > widest)) continue;
@@ -189,16 +190,16 @@ void mesh_tree_refit(MeshSolid *solid) {
                 uint32_t slot = (uint32_t)~child * SOLID_WIDE + (uint32_t)lane;
                 if (child < 0) tree_box_add(box, solid, solid->order[slot < count ? slot : count - 1]);
                 for (int d = 0; d < 3 && child > 0; d++) {
-                    box[0][d] = fminf(box[0][d], solid->nodes[child].low[d][lane]);
-                    box[1][d] = fmaxf(box[1][d], solid->nodes[child].high[d][lane]);
+                    box[0][d] = float_min(box[0][d], solid->nodes[child].low[d][lane]);
+                    box[1][d] = float_max(box[1][d], solid->nodes[child].high[d][lane]);
                 }
             }
 
             for (int d = 0; d < 3; d++) {
                 node->low[d][i] = box[0][d];
                 node->high[d][i] = box[1][d];
-                all[0][d] = n > 0 ? all[0][d] : fminf(all[0][d], box[0][d]);
-                all[1][d] = n > 0 ? all[1][d] : fmaxf(all[1][d], box[1][d]);
+                all[0][d] = n > 0 ? all[0][d] : float_min(all[0][d], box[0][d]);
+                all[1][d] = n > 0 ? all[1][d] : float_max(all[1][d], box[1][d]);
             }
         }
     }

@@ -67,3 +67,19 @@ TEST(functions_end_as_the_c_library_says) {
     assert_true(portable_atan2f(0, 0) == 0 && portable_atan2f(0, -1) == (float)acos(-1));
     assert_true(portable_cbrt(0) == 0 && fabs(portable_cbrt(1e-310) / cbrt(1e-310) - 1) < 1e-12);
 }
+
+TEST(the_larger_and_the_smaller_are_the_c_library_s) {
+    const double values[] = {-INFINITY, -1, -0.0, 0, 1e-40, 2, INFINITY, (double)NAN};
+    const size_t count = sizeof values / sizeof values[0];
+    for (size_t i = 0; i < count * count; i++) {
+        const double a = values[i / count], b = values[i % count];
+        const float fa = (float)a, fb = (float)b, larger = float_max(fa, fb), smaller = float_min(fa, fb);
+        if (isnan(a) && isnan(b)) {
+            assert_true(isnan(larger) && isnan(smaller) && isnan(double_max(a, b)) && isnan(double_min(a, b)));
+            continue;
+        }
+        assert_true(larger == fmaxf(fa, fb) && smaller == fminf(fa, fb)); // not of a NaN
+        assert_true(double_max(a, b) == fmax(a, b) && double_min(a, b) == fmin(a, b));
+        if (a == 0 && b == 0) assert_true(signbit(larger) == signbit(fb) && signbit(smaller) == signbit(fb));
+    }
+}

@@ -34,7 +34,7 @@ MUTATIONS = [
      "heat_diffusion", "gaussian_spreads_at_the_right_rate"),
     ("heat/operator.c", "plan->measure[a] += length / 2;", "plan->measure[a] += length;",
      "heat_diffusion", "umbrella_has_its_derived_diffusivity"),
-    ("heat/operator.c", "return fmaxf(length, LIVE_LENGTH_MIN * rest);", "return rest;",
+    ("heat/operator.c", "return float_max(length, LIVE_LENGTH_MIN * rest);", "return rest;",
      "heat_diffusion", "the_printed_umbrella_uses_current_lengths"),
     # eq 4 to 6: burning
     ("burn/lose_mass.c", "if (p == 0.0f) return k > x ? x : k;", "if (p == 0.0f) return k > x ? x : 0.9f * k;",
