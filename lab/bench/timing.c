@@ -8,6 +8,10 @@
 /// One 2.6 GHz Zen 4 core (AMD EPYC, gcc 12 -O3), between steps.
 static const double yardstick_reference_ms = 8.6;
 
+/// Steps between two runs of the yardstick. It takes the caches from the step that follows, and the other threads go to
+/// sleep meanwhile: no run has that before each of its steps.
+enum { YARDSTICK_STEPS = 20 };
+
 double timing_yardstick_reference(void) { return yardstick_reference_ms; }
 
 int timing_steps(double springs, int min, int max) {
@@ -32,8 +36,9 @@ SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, 
 
     if (!good) return SINGE_ERROR_MEMORY;
     SingeTimers first = singe_sim_timers(sim);
+    double yardstick_ms = 0;
     for (int step = -warm_up; step < steps; step++) {
-        double yardstick_ms = yardstick ? yardstick_run(yardstick) : 0;
+        if (yardstick && (step + warm_up) % YARDSTICK_STEPS == 0) yardstick_ms = yardstick_run(yardstick);
         SingeTimers before = singe_sim_timers(sim);
         if (step == 0) first = before;
         SingeResult result = singe_sim_step(sim);
@@ -50,7 +55,7 @@ SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, 
             timing->ms[TIMED_PROJECTION][step] = 1e3 * (after.projection_seconds - before.projection_seconds);
             timing->ms[TIMED_YARDSTICK][step] = yardstick_ms;
 
-            // scaled by the yardstick just before it: a temporarily slow machine slows both
+            // scaled by the last yardstick: a temporarily slow machine slows both
             timing->ms[TIMED_SCALED][step] = total / fmax(1, yardstick_ms / yardstick_reference_ms);
         }
     }

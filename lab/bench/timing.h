@@ -25,7 +25,7 @@ typedef struct Timing {
 /// The yardstick's time on the reference machine, ms.
 double timing_yardstick_reference(void);
 
-/// Runs `warm_up` steps and times `steps` more. With a yardstick, that is run before every step.
+/// Runs `warm_up` steps and times `steps` more. With a yardstick, that is run before every 20th step.
 SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, int warm_up, int steps);
 
 double timing_median(const Timing *timing, int what);
