@@ -51,7 +51,7 @@ static void shrink_cells(void *context, int begin, int end) {
 }
 
 void burn_shrink(BurnJob *job, Pool *pool) {
-    pool_for(pool, (int)job->shell->cell_count, POOL_BLOCK, shrink_cells, job);
+    pool_for(pool, (int)job->shell->cell_count, POOL_GRAIN, shrink_cells, job);
 }
 
 void burn_restore_lengths(const Shell *shell, const AblateState *ablate, BurnState *burn) {

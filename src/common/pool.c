@@ -1,20 +1,26 @@
-// A fork-join pool. A job is cut into ranges of `grain` items; the remaining ones are [first, last) in one word. The
+// A fork-join pool. A job is cut into pieces of `grain` items; the remaining ones are [first, last) in one word. A thread
+// takes a fixed share of them at a time, so ranges are long at first and short when threads have to end together. The
 // caller takes them from the front and workers from the back, so that from job to job most items stay with the thread
 // whose cache they are in. Which thread takes which range does not matter for the result, since items are independent.
 //
-// A job is over when its ranges are done, not when every worker has seen it: a worker that sleeps, or is preempted,
+// A job is over when its pieces are done, not when every worker has seen it: a worker that sleeps, or is preempted,
 // delays nobody. A thread reads the job only after it has taken a range, and the job stays until that is done.
 //
 // Idle workers watch for the next job for a short while, as a step has many, and then block; no more of them watch, or
 // are woken, than there are processors to run them.
 #include "common/pool.h"
 
+#include "common/clock.h"
 #include "common/error.h"
 #include "common/thread.h"
 
 #include <stdatomic.h>
 
-enum { POOL_PAUSES = 1000, POOL_YIELDS = 50, POOL_THREADS_MAX = 64 };
+enum { POOL_PAUSES = 50, POOL_THREADS_MAX = 64 };
+
+/// s, that a thread watches for another before it sleeps. To be woken costs some 15 us of the one that wakes and 25 us of
+/// delay, several times as much on a virtual machine whose processors sleep, too.
+static const double POOL_WATCH = 200e-6;
 
 struct Pool {
     SingeTasks tasks; ///< the host's scheduler, when set
@@ -25,9 +31,9 @@ struct Pool {
     // the job: written while no range is left, published by `left`
     SingeTaskFn *run;
     void *context;
-    int count, grain, ranges;
-    _Atomic uint64_t left;       ///< first << 32 | last
-    atomic_int done;             ///< ranges
+    int count, grain, pieces;
+    _Atomic uint64_t left;       ///< pieces: first << 32 | last
+    atomic_uint done;            ///< pieces
     atomic_uint generation;      ///< of jobs
     atomic_int watching, asleep; ///< workers
     atomic_bool caller_asleep;
@@ -44,26 +50,44 @@ static inline void pool_pause(void) {
 #endif
 }
 
-/// Takes a range from the front or the back. False when none is left.
-static bool pool_take(Pool *pool, bool back, uint32_t *range) {
+/// Waits for a short while until a word is `value`, or with `leaves` until it is not. False if that was in vain.
+static bool pool_watch(const atomic_uint *word, unsigned value, bool leaves) {
+    const double start = clock_seconds();
+    do {
+        for (int i = 0; i < POOL_PAUSES; i++) {
+            if ((atomic_load(word) == value) != leaves) return true;
+            pool_pause();
+        }
+        thread_yield(); // to a thread that has work, if there is one
+    } while (clock_seconds() - start < POOL_WATCH);
+    return false;
+}
+
+/// Takes pieces [*first, *last) from the front or the back. False when none are left.
+static bool pool_take(Pool *pool, bool back, uint32_t *first, uint32_t *last) {
     uint64_t left = atomic_load_explicit(&pool->left, memory_order_relaxed);
     for (;;) {
-        uint32_t first = (uint32_t)(left >> 32), last = (uint32_t)left;
-        if (first >= last) return false;
-        *range = back ? last - 1 : first;
-        uint64_t rest = back ? left - 1 : left + (UINT64_C(1) << 32);
-        if (atomic_compare_exchange_weak(&pool->left, &left, rest)) return true;
+        *first = (uint32_t)(left >> 32), *last = (uint32_t)left;
+        if (*first >= *last) return false;
+        const uint32_t share = (*last - *first) / (2 * (uint32_t)pool->thread_count), taken = share > 1 ? share : 1;
+        const uint64_t rest = back ? left - taken : left + ((uint64_t)taken << 32);
+        if (atomic_compare_exchange_weak(&pool->left, &left, rest)) {
+            if (back) *first = *last - taken;
+            else *last = *first + taken;
+            return true;
+        }
     }
 }
 
 static void pool_run_ranges(Pool *pool, bool back) {
-    uint32_t range;
-    while (pool_take(pool, back, &range)) {
-        int ranges = pool->ranges, begin = (int)range * pool->grain;
-        int end = pool->count - begin < pool->grain ? pool->count : begin + pool->grain;
+    uint32_t first, last;
+    while (pool_take(pool, back, &first, &last)) {
+        const unsigned pieces = (unsigned)pool->pieces, taken = last - first;
+        const int begin = (int)first * pool->grain;
+        const int end = (int)last == pool->pieces ? pool->count : (int)last * pool->grain;
         pool->run(pool->context, begin, end);
         // the job may change from here on
-        if (atomic_fetch_add(&pool->done, 1) + 1 == ranges && atomic_load(&pool->caller_asleep)) {
+        if (atomic_fetch_add(&pool->done, taken) + taken == pieces && atomic_load(&pool->caller_asleep)) {
             mutex_lock(&pool->mutex);
             condition_signal(&pool->over);
             mutex_unlock(&pool->mutex);
@@ -78,11 +102,7 @@ static void pool_worker(void *argument) {
         // watches for a while
         bool found = false;
         if (atomic_fetch_add(&pool->watching, 1) + 1 < pool->processors)
-            for (int i = 0; i < POOL_PAUSES + POOL_YIELDS && !found; i++) {
-                if (i < POOL_PAUSES) pool_pause();
-                else thread_yield();
-                found = atomic_load_explicit(&pool->generation, memory_order_relaxed) != seen;
-            }
+            found = pool_watch(&pool->generation, seen, true);
         atomic_fetch_sub(&pool->watching, 1);
 
         // then sleeps
@@ -132,6 +152,11 @@ void pool_destroy(Memory *memory, Pool *pool) {
     memory_free(memory, (void *)&pool, 1, sizeof *pool);
 }
 
+int pool_threads(const Pool *pool) {
+    if (!pool) return 1;
+    return pool->tasks.enqueue ? POOL_THREADS_MAX : pool->thread_count; // of a host's scheduler nothing is known
+}
+
 void pool_set_cancel(Pool *pool, SingeCancel cancel) {
     pool->cancel = cancel;
     atomic_store(&pool->cancelled, false);
@@ -161,23 +186,20 @@ void pool_for(Pool *pool, int count, int grain, SingeTaskFn *run, void *context)
         pool->tasks.finish(pool->tasks.context, token);
         return;
     }
-    // about four ranges a thread even out the load without much counting
-    int even = (count - 1) / (4 * pool->thread_count) + 1;
-    if (grain < even) grain = even;
-    int ranges = (count - 1) / grain + 1;
+    const int pieces = (count - 1) / grain + 1;
     pool->run = run;
     pool->context = context;
     pool->count = count;
     pool->grain = grain;
-    pool->ranges = ranges;
+    pool->pieces = pieces;
     atomic_store(&pool->done, 0);
-    atomic_store(&pool->left, (uint64_t)ranges);
+    atomic_store(&pool->left, (uint64_t)pieces);
 
-    // wakes as many sleepers as the ranges and processors can use, less the threads awake. The generation is raised
+    // wakes as many sleepers as the pieces and processors can use, less the threads awake. The generation is raised
     // before `asleep` is read: a worker that is not counted as asleep here sees the new generation before it sleeps
     atomic_fetch_add(&pool->generation, 1);
     int asleep = atomic_load(&pool->asleep), awake = pool->thread_count - asleep;
-    int useful = ranges < pool->processors ? ranges : pool->processors;
+    int useful = pieces < pool->processors ? pieces : pool->processors;
     if (asleep > 0 && awake < useful) {
         mutex_lock(&pool->mutex);
         for (; awake < useful && asleep > 0; awake++, asleep--) condition_signal(&pool->wake);
@@ -186,15 +208,11 @@ void pool_for(Pool *pool, int count, int grain, SingeTaskFn *run, void *context)
 
     pool_run_ranges(pool, false);
 
-    // waits until the ranges taken by others are done
-    for (int i = 0; i < POOL_PAUSES + POOL_YIELDS; i++) {
-        if (atomic_load(&pool->done) == ranges) return;
-        if (i < POOL_PAUSES) pool_pause();
-        else thread_yield();
-    }
+    // waits until the pieces taken by others are done
+    if (pool_watch(&pool->done, (unsigned)pieces, false)) return;
     mutex_lock(&pool->mutex);
     atomic_store(&pool->caller_asleep, true);
-    while (atomic_load(&pool->done) != ranges) condition_wait(&pool->over, &pool->mutex);
+    while (atomic_load(&pool->done) != (unsigned)pieces) condition_wait(&pool->over, &pool->mutex);
     atomic_store(&pool->caller_asleep, false);
     mutex_unlock(&pool->mutex);
 }
@@ -217,7 +235,7 @@ static void pool_sum_blocks(void *task, int begin, int end) {
 double pool_sum(Pool *pool, int count, PoolSumFn *sum, void *context, double *partial) {
     PoolSum job = {sum, context, partial, count};
     int blocks = pool_blocks(count);
-    pool_for(pool, blocks, 4, pool_sum_blocks, &job);
+    pool_for(pool, blocks, 1, pool_sum_blocks, &job);
     double total = 0;
     for (int block = 0; block < blocks; block++) total += partial[block];
     return total;

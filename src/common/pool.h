@@ -9,10 +9,16 @@ typedef struct Pool Pool;
 /// Items in one block of a reduction. Part of the numerics: sums are taken block by block.
 enum { POOL_BLOCK = 1024 };
 
+/// Items of some 10 ns in the shortest range that is worth a thread of its own.
+enum { POOL_GRAIN = 256 };
+
 /// A pool of `thread_count` threads (the caller is one of them), or one that hands its work to
 /// `tasks` when that is set.
 SingeResult pool_create(Memory *memory, SingeTasks tasks, int thread_count, Pool **pool);
 void pool_destroy(Memory *memory, Pool *pool);
+
+/// Threads that may share a job, the caller among them.
+int pool_threads(const Pool *pool);
 
 /// Sets what pool_cancelled asks, and forgets its answer.
 void pool_set_cancel(Pool *pool, SingeCancel cancel);

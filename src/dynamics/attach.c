@@ -259,5 +259,5 @@ void attach_project(Attachments *attachments, const Shell *shell, AttachHold *ho
                     DynamicsState *dynamics) {
     attach_position(attachments, shell, dynamics);
     Attach job = {attachments, shell, hold, dynamics};
-    pool_for(pool, (int)shell->vertex_count, POOL_BLOCK, attach_task, &job);
+    pool_for(pool, (int)shell->vertex_count, POOL_GRAIN, attach_task, &job);
 }

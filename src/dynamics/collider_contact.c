@@ -631,6 +631,6 @@ void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState
     for (uint32_t f = 0; any && f < shell->cell_family_count; f++) {
         uint32_t first = shell->cell_family_first[f], count = shell->cell_family_first[f + 1] - first;
         Centroid job = {plan, shell, ablate, pool, dynamics, shell->cell_order + first, collider_count, h};
-        pool_for(pool, (int)count, POOL_BLOCK, centroid_cells, &job);
+        pool_for(pool, (int)count, POOL_GRAIN, centroid_cells, &job);
     }
 }

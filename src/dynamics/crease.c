@@ -309,8 +309,8 @@ void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const StateInput *s
     if (!plan->hinges) return;
 
     Crease job = {plan, shell, state, dynamics, 1 - real_expf(-h / CREASE_TIME), state->burn->mass_burnt > 0};
-    pool_for(pool, (int)shell->cell_count, POOL_BLOCK, crease_normals, &job);
-    pool_for(pool, (int)shell->springs[SINGE_GREEN].count, POOL_BLOCK, crease_bends, &job);
+    pool_for(pool, (int)shell->cell_count, POOL_GRAIN, crease_normals, &job);
+    pool_for(pool, (int)shell->springs[SINGE_GREEN].count, POOL_GRAIN, crease_bends, &job);
     double creased = pool_sum(pool, (int)shell->springs[SINGE_GREEN].count, crease_springs, &job, plan->partial);
     plan->creased = creased > 0;
 }

@@ -74,7 +74,7 @@ void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *a
         uint32_t blocks = (count + HEIGHT_BLOCK - 1) / HEIGHT_BLOCK;
         lanes.cells = shell->cell_order + first;
         Height job = {plan->kernels->height, lanes, count, wait};
-        pool_for(pool, (int)blocks, POOL_BLOCK / HEIGHT_BLOCK, height_blocks, &job);
+        pool_for(pool, (int)blocks, POOL_GRAIN / HEIGHT_BLOCK, height_blocks, &job);
         wait += blocks;
     }
 }
@@ -126,5 +126,5 @@ void dynamics_order(const DynamicsPlan *plan, const Shell *shell, const AblateSt
     if (plan->settings.solver.height_min <= 0) return;
 
     Order job = {plan, shell, ablate, dynamics};
-    pool_for(pool, (int)shell->cell_count, POOL_BLOCK, order_cells, &job);
+    pool_for(pool, (int)shell->cell_count, POOL_GRAIN, order_cells, &job);
 }

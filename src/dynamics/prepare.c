@@ -107,7 +107,7 @@ void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *
                       const SourceList *sources, Pool *pool, DynamicsState *dynamics) {
     Prepare job = {plan, shell, state, wind, air_of(sources, state->time), dynamics};
     memset(plan->height_wait, 0, height_wait_count(shell));
-    pool_for(pool, (int)shell->cell_count, POOL_BLOCK, prepare_cells, &job);
-    pool_for(pool, (int)shell->particle_count, POOL_BLOCK, prepare_particles, &job);
+    pool_for(pool, (int)shell->cell_count, POOL_GRAIN, prepare_cells, &job);
+    pool_for(pool, (int)shell->particle_count, POOL_GRAIN, prepare_particles, &job);
     if (plan->solver->prepare) plan->solver->prepare(plan, shell, state, pool, dynamics);
 }

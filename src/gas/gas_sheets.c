@@ -60,8 +60,8 @@ static void sheets_corners(void *context, int begin, int end) {
 }
 
 void gas_normals(GasPass *pass) {
-    pool_for(pass->pool, (int)pass->shell->cell_count, POOL_BLOCK, sheets_cells, pass);
-    pool_for(pass->pool, (int)pass->shell->vertex_count, POOL_BLOCK, sheets_corners, pass);
+    pool_for(pass->pool, (int)pass->shell->cell_count, POOL_GRAIN, sheets_cells, pass);
+    pool_for(pass->pool, (int)pass->shell->vertex_count, POOL_GRAIN, sheets_corners, pass);
 }
 
 /// A particle's own side of the sheet.
@@ -231,7 +231,7 @@ void gas_meet(GasPass *pass) {
     float volume = plan->cell * plan->cell * plan->cell, scale = pass->dt / (GAS_HEAT * volume), position[3];
     Float3 x;
 
-    pool_for(pass->pool, (int)plan->particles, POOL_BLOCK, sheets_meet, pass);
+    pool_for(pass->pool, (int)plan->particles, POOL_GRAIN, sheets_meet, pass);
 
     // the gas loses the heat that it gives to the sheets in a step
     for (uint32_t i = 0; i < plan->particles; i++) {

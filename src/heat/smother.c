@@ -110,7 +110,7 @@ void heat_smother(HeatPass *pass) {
     for (uint32_t i = 0; i < pass->plan->particles && !burns; i++) burns = pass->state->burn->release[i] > 0;
     if (!burns) return;
 
-    pool_for(pass->pool, (int)smother->count, POOL_BLOCK, smother_balls, pass);
+    pool_for(pass->pool, (int)smother->count, POOL_GRAIN, smother_balls, pass);
     smother->cube = 0;
     for (uint32_t k = 0; k < smother->count; k++) smother->cube = float_max(smother->cube, smother->balls[k][3]);
     if (!(smother->cube > 0)) return;
@@ -125,5 +125,5 @@ void heat_smother(HeatPass *pass) {
         smother->next[k] = smother->first[slot];
         smother->first[slot] = k;
     }
-    pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, smother_particles, pass);
+    pool_for(pass->pool, (int)pass->plan->particles, POOL_GRAIN, smother_particles, pass);
 }

@@ -295,7 +295,7 @@ static void source_ball_task(void *context, int begin, int end) {
 static void source_ball(HeatPass *pass, const Source *source, const SingeView *view) {
     (void)view;
     SourceJob job = {.pass = pass, .source = source, .pose = path_pose(&source->path, pass->state->time)};
-    pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_ball_task, &job);
+    pool_for(pass->pool, (int)pass->plan->particles, POOL_GRAIN, source_ball_task, &job);
 }
 
 static void source_texture_task(void *context, int begin, int end) {
@@ -310,7 +310,7 @@ static void source_texture(HeatPass *pass, const Source *source, const SingeView
     float strength = source_strength(source, pass->state->time);
     SourceJob job = {.pass = pass, .source = source, .strength = source->def.flux * strength};
     if (source->texture && job.strength != 0)
-        pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_texture_task, &job);
+        pool_for(pass->pool, (int)pass->plan->particles, POOL_GRAIN, source_texture_task, &job);
 }
 
 /// In the time of motion: a spray is not part of the fire. Each layer takes half of it.
@@ -331,7 +331,7 @@ static void source_wets(HeatPass *pass, const Source *source, const SingeView *v
     SourceJob job = {.pass = pass, .source = source};
     job.strength = source->def.wetting * source_strength(source, pass->state->time);
     if (source->texture && job.strength > 0)
-        pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_wet_task, &job);
+        pool_for(pass->pool, (int)pass->plan->particles, POOL_GRAIN, source_wet_task, &job);
 }
 
 // Forced convection at a flat plate of length l in laminar flow (Incropera et al., Nu = .664 Re^(1/2) Pr^(1/3)), with
@@ -360,7 +360,7 @@ static void source_blow_task(void *context, int begin, int end) {
 static void source_blow(HeatPass *pass, const Source *source, const SingeView *view) {
     (void)view;
     SourceJob job = {.pass = pass, .source = source};
-    pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_blow_task, &job);
+    pool_for(pass->pool, (int)pass->plan->particles, POOL_GRAIN, source_blow_task, &job);
 }
 
 /// A map adds no heat before conduction (arrival.c).
@@ -472,9 +472,9 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
         const Collider *collider = &colliders->items[k];
         if (collider->generation == 0 || (!(collider->def.conductance > 0) && !collider->def.smothers)) continue;
         SourceJob job = {.pass = pass, .collider = collider, .pose = path_pose(&collider->path, time)};
-        pool_for(pass->pool, (int)plan->particles, POOL_BLOCK, source_contact_task, &job);
+        pool_for(pass->pool, (int)plan->particles, POOL_GRAIN, source_contact_task, &job);
     }
 
     if (pass->state->gas->warm)
-        pool_for(pass->pool, (int)plan->particles, POOL_BLOCK, source_gas_task, &(SourceJob){.pass = pass});
+        pool_for(pass->pool, (int)plan->particles, POOL_GRAIN, source_gas_task, &(SourceJob){.pass = pass});
 }

@@ -245,7 +245,7 @@ void tear_smooth(TearPlan *plan, const Shell *shell, const State *state, Pool *p
     Measure job = {.plan = plan, .shell = shell, .state = (State *)(uintptr_t)state};
     for (int k = 0; k < count; k++) {
         job.from = k & 1;
-        pool_for(pool, (int)shell->cell_count, POOL_BLOCK, smooth_cells, &job);
+        pool_for(pool, (int)shell->cell_count, POOL_GRAIN, smooth_cells, &job);
     }
 }
 

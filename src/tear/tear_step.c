@@ -352,7 +352,7 @@ uint32_t tear_step(TearPlan *plan, Shell *shell, State *state, const float *cons
     // how close each vertex is to tearing
     Ratios job = {plan, shell, state};
     tear_smooth(plan, shell, state, pool);
-    pool_for(pool, (int)plan->vertex_count, POOL_BLOCK, fill_ratios, &job);
+    pool_for(pool, (int)plan->vertex_count, POOL_GRAIN, fill_ratios, &job);
 
     // of every piece, that a tear runs in it, or the vertex where one may begin
     memset(plan->leader, 0xff, plan->particle_count * sizeof *plan->leader);
