@@ -102,9 +102,6 @@ void curvature_project(const DynamicsPlan *plan, Pool *pool, DynamicsState *dyna
     for (int i = 0; i < 2; i++) {
         const StrandSet *set = &plan->strands.sets[colours[i]];
         Curvature job = {set, plan->kernels->bend, dynamics->position[0], 0};
-        for (uint32_t f = 0; set->bend_limit && f < set->family_count; f++) {
-            job.first_group = set->family_first[f];
-            pool_for(pool, (int)(set->family_first[f + 1] - job.first_group), 1, curvature_range, &job);
-        }
+        if (set->bend_limit) strand_families(set, pool, curvature_range, &job, &job.first_group);
     }
 }

@@ -10,6 +10,7 @@
 #ifndef DYNAMICS_STRAND_STRAND_LANES_H
 #define DYNAMICS_STRAND_STRAND_LANES_H
 
+#include "common/pool.h"
 #include "shell/shell.h"
 
 #include <stdatomic.h>
@@ -71,6 +72,9 @@ static inline uint32_t strand_column(uint32_t width, uint32_t lane) { return lan
 /// Lays out the strands of a colour. `nowhere` is the first particle of no mass. False when out of memory.
 bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowhere, bool pulls, StrandSet *set);
 void strand_set_free(Memory *memory, StrandSet *set);
+
+/// Runs `run` over the groups of one family after the other; *first_group is what item 0 of a family is.
+void strand_families(const StrandSet *set, Pool *pool, SingeTaskFn *run, void *context, uint32_t *first_group);
 
 typedef struct StrandJob {
     const StrandSet *set;

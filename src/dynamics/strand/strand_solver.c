@@ -186,6 +186,20 @@ static void strands_prepare(DynamicsPlan *plan, const Shell *shell, const StateI
 
 // ---- a substep
 
+/// A thread that shares a family fetches half of its particles, or more, from the caches of the threads that had the
+/// strands across. Two or three threads take longer for that than one alone for a family of fewer springs than this.
+enum { SHARED_SPRINGS = 65536, SHARING_THREADS = 4 };
+
+void strand_families(const StrandSet *set, Pool *pool, SingeTaskFn *run, void *context, uint32_t *first_group) {
+    for (uint32_t f = 0; f < set->family_count; f++) {
+        const uint32_t first = set->family_first[f], last = set->family_first[f + 1];
+        const uint32_t springs = first < last ? (set->groups[last - 1].row - set->groups[first].row) * STRAND_LANES : 0;
+        const bool alone = springs < SHARED_SPRINGS && pool_threads(pool) < SHARING_THREADS;
+        *first_group = first;
+        pool_for(pool, (int)(last - first), alone ? (int)(last - first) : 1, run, context);
+    }
+}
+
 typedef struct Project {
     StrandJob job;
     Strands *strands;
@@ -219,10 +233,7 @@ void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h,
     for (const StrandSet *next = set; next; next = next == set ? braces : NULL) {
         Project project = {
             {next, dynamics->position[0], plan->settings.solver.regularisation[colour], 1 / (h * h)}, strands, 0};
-        for (uint32_t f = 0; f < next->family_count; f++) {
-            project.first_group = next->family_first[f];
-            pool_for(pool, (int)(next->family_first[f + 1] - project.first_group), 1, project_range, &project);
-        }
+        strand_families(next, pool, project_range, &project, &project.first_group);
     }
 
     patch_project(plan, colour, 1 / (h * h), dynamics);
