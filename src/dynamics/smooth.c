@@ -28,8 +28,8 @@ typedef struct Smooth {
     const uint32_t *reach; ///< [strands] of the plan
     const uint8_t *flags;  ///< of the springs
     float (*velocity)[4];
-    const float (*position)[4];                      ///< fourth: inverse mass
-    uint32_t first_group, group_count, first_strand; ///< of a family
+    const float (*position)[4];         ///< fourth: inverse mass
+    uint32_t first_group, first_strand; ///< of a family
     float share;
 } Smooth;
 
@@ -129,19 +129,20 @@ static void smooth_strand(const Smooth *job, uint32_t begin, uint32_t end, uint3
     }
 }
 
-/// Groups in lanes, then the strands of the others.
-static void smooth_range(void *task, int begin, int end) {
+static void smooth_groups(void *task, int begin, int end) {
+    const Smooth *job = task;
+    for (uint32_t g = job->first_group + (uint32_t)begin; g < job->first_group + (uint32_t)end; g++)
+        if (!job->lanes.set->groups[g].apart) job->group(&job->lanes, g);
+}
+
+/// The strands of groups that are apart.
+static void smooth_strands(void *task, int begin, int end) {
     const Smooth *job = task;
     const StrandSet *set = job->lanes.set;
-    for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
-        if (i < job->group_count) {
-            if (!set->groups[job->first_group + i].apart) job->group(&job->lanes, job->first_group + i);
-            continue;
-        }
-
-        const uint32_t strand = job->first_strand + i - job->group_count, *first = &job->set->strand_first[strand];
-        if (set->group_count > 0 && !set->groups[set->strand_group[strand]].apart) continue;
-        smooth_strand(job, first[0], first[1], job->reach[strand]);
+    for (uint32_t s = job->first_strand + (uint32_t)begin; s < job->first_strand + (uint32_t)end; s++) {
+        if (set->group_count > 0 && !set->groups[set->strand_group[s]].apart) continue;
+        const uint32_t *first = &job->set->strand_first[s];
+        smooth_strand(job, first[0], first[1], job->reach[s]);
         smooth_strand(job, first[0], first[1], 1);
     }
 }
@@ -165,17 +166,20 @@ void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *
 
         // families in turn, their groups and strands in parallel
         for (uint32_t f = 0; f < set->family_count; f++) {
-            if (lanes->group_count > 0) {
+            bool apart = lanes->group_count == 0;
+            if (!apart) {
                 job.first_group = lanes->family_first[f];
-                job.group_count = lanes->family_first[f + 1] - job.first_group;
+                const uint32_t groups = lanes->family_first[f + 1] - job.first_group;
+                for (uint32_t g = 0; g < groups; g++) apart |= lanes->groups[job.first_group + g].apart;
+                pool_for(pool, (int)groups, 1, smooth_groups, &job);
             }
+            if (!apart) continue;
 
             job.first_strand = set->family_first[f];
             const uint32_t last = set->family_first[f + 1], strands = last - job.first_strand;
             const uint32_t springs = set->strand_first[last] - set->strand_first[job.first_strand];
-            const int grain =
-                (int)(128 * strands / (springs + 1)) + 1; // about 2,048 springs in lanes: the min for a thread
-            pool_for(pool, (int)(job.group_count + strands), grain, smooth_range, &job);
+            const int grain = 1 + (int)((uint64_t)2 * POOL_BLOCK * strands / (springs + 1));
+            pool_for(pool, (int)strands, grain, smooth_strands, &job);
         }
     }
 }
