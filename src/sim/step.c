@@ -140,6 +140,15 @@ static SingeResult step_stages(SingeSim *sim) {
     return SINGE_OK;
 }
 
+enum { BACKUP_PART = 32768 };
+
+/// Copies parts of the State's basic arena into the backup.
+static void step_copy(void *task, int begin, int end) {
+    SingeSim *sim = task;
+    const size_t size = sim->state.basic_size, first = (size_t)begin * BACKUP_PART, last = (size_t)end * BACKUP_PART;
+    memcpy((char *)sim->backup + first, (char *)sim->state.arena + first, (last < size ? last : size) - first);
+}
+
 SingeResult sim_step(SingeSim *sim) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit must come before the first step");
@@ -154,7 +163,7 @@ SingeResult sim_step(SingeSim *sim) {
     // a copy for rollback
     State before = sim->state;
     SingeTimers timers = sim->timers;
-    memcpy(sim->backup, sim->state.arena, sim->state.basic_size);
+    pool_for(sim->pool, (int)(sim->state.basic_size / BACKUP_PART) + 1, 1, step_copy, sim);
 
     // the stages; if one fails, everything is as before
     SingeResult result = step_stages(sim);
