@@ -148,7 +148,8 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
     case ROW_BASE: // its values are all written
     case ROW_MAP:
     case ROW_LIST:
-    case ROW_STRENGTH: break; // dump_row
+    case ROW_STRENGTH:    // dump_row
+    case ROW_NODE: break; // scenes have none
     }
 }
 

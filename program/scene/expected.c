@@ -128,6 +128,7 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
             "dot in front");
         break;
     case ROW_FILE: expected_add(buffer, size, "the name of a file"); break;
+    case ROW_NODE: expected_add(buffer, size, "any value"); break;
     case ROW_BASE: add_base(buffer, size); break;
     case ROW_ENUM: add_names(buffer, size, row->names); break;
     case ROW_ORDER: expected_add(buffer, size, "a list of red, green, blue and yellow, each once"); break;

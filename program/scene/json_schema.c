@@ -177,6 +177,7 @@ static void put_value(Definitions *definitions, const SchemaRow *row) {
 
         fputs("]}", file);
         break;
+    case ROW_NODE: fputs("{}", file); break;
     case ROW_STRENGTH:
     case ROW_LIST:
         if (row->type == ROW_STRENGTH) {

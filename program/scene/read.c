@@ -227,6 +227,7 @@ static void read_row(Reader *reader, const SchemaRow *row, const YamlNode *node,
         if (value_word(reader, row, node, row->names, &value)) memcpy(field, &value, sizeof value);
         break;
     }
+    case ROW_NODE: *(const YamlNode **)field = node; break;
     case ROW_BASE: read_base(reader, row, node, field); break;
     case ROW_ORDER: value_order(reader, row, node, field); break;
     case ROW_FORMATS: value_formats(reader, row, node, field); break;

@@ -30,6 +30,7 @@ typedef enum RowType {
     ROW_STRENGTH, ///< a number or a list of maps by `sub`; count at `extra`
     ROW_POSITION, ///< SceneKey *: the position of its only key
     ROW_ROTATION, ///< SceneKey *: the rotation of its only key
+    ROW_NODE,     ///< const YamlNode *: whatever is there
 } RowType;
 
 enum {

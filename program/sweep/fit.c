@@ -74,10 +74,10 @@ typedef struct Fit {
 /// Reads the files of a target. Errors have been printed unless the result is EXIT_GOOD.
 static ExitCode read_target(FitTarget *target, const PlanTarget *plan, Console *console) {
     *target = (FitTarget){.plan = plan};
-    if (!plan->curve) return EXIT_GOOD;
+    if (!plan->curve.path) return EXIT_GOOD;
     FitCurve *curve = &target->curve;
     Csv csv;
-    ExitCode code = csv_read(&csv, plan->curve, console);
+    ExitCode code = csv_read(&csv, plan->curve.path, console);
     if (code) return code;
 
     const int time = csv_column(&csv, "time"), temperature = csv_column(&csv, "temperature");
@@ -99,7 +99,7 @@ static ExitCode read_target(FitTarget *target, const PlanTarget *plan, Console *
     else if (count != curve->count || count < 2) why = "needs at least two lines, each with a time and a temperature";
     else if (!ascending) why = "times must ascend";
     else if (!(high > low)) why = "all temperatures are the same";
-    if (why) console_error(console, "%s: %s", plan->curve, why);
+    if (why) console_error(console, "%s: %s", plan->curve.path, why);
     return why ? EXIT_INPUT : EXIT_GOOD;
 }
 
@@ -143,7 +143,7 @@ static bool draw_mask(const Folder *folder, int number, bool whole, uint8_t *pix
 }
 
 static bool masks_error(const FitTarget *target, const Sweep *sweep, uint32_t row, double *error) {
-    const char *pattern = target->plan->masks, *slash = strrchr(pattern, '/');
+    const char *pattern = target->plan->masks.path, *slash = strrchr(pattern, '/');
     const char *run = strchr(slash ? slash : pattern, '#');
     const int width = (int)strspn(run, "#");
 
@@ -218,7 +218,7 @@ static bool fit_error(const FitTarget *target, const Sweep *sweep, uint32_t row,
         free(folder);
     }
 
-    if (good && target->plan->curve) {
+    if (good && target->plan->curve.path) {
         char *folder = sweep_row_folder(sweep, row, true), *path = text_format("%s/probes.csv", folder);
         const FitCurve *measured = &target->curve;
         Csv csv = {0};
@@ -256,7 +256,7 @@ static bool fit_error(const FitTarget *target, const Sweep *sweep, uint32_t row,
         free(folder);
     }
 
-    return good && target->plan->masks ? masks_error(target, sweep, row, error) : good;
+    return good && target->plan->masks.path ? masks_error(target, sweep, row, error) : good;
 }
 
 // ---- fit.csv
@@ -382,7 +382,7 @@ static double objective(unsigned count, const double *coordinates, double *gradi
 
 static void print_result(const Fit *fit) {
     const Plan *plan = &fit->sweep->plan;
-    char *scene = text_shell_quote(plan->scene);
+    char *scene = text_shell_quote(plan->scene.path);
 
     printf("row %u of %u, error %.6g:\nsinge run %s", fit->best_row + 1, fit->row, fit->best, scene);
     free(scene);

@@ -63,16 +63,16 @@ ExitCode sweep_check_row(Sweep *sweep, uint32_t row) {
     for (int with = 0; with < 2 && foreign; with++) {
         SceneMessages messages = {0};
         Scene *scene;
-        const SingeResult result = scene_read(plan->scene, sets.items, with ? sets.count : 0, &scene, &messages);
+        const SingeResult result = scene_read(plan->scene.path, sets.items, with ? sets.count : 0, &scene, &messages);
         scene_messages_free(&messages);
         if (!result) scene_free(scene);
         foreign = result == SINGE_ERROR_FORMAT;
     }
 
-    ExitCode code = foreign ? EXIT_INPUT : job_read(&job, sweep->console, plan->scene, &sets, 1);
+    ExitCode code = foreign ? EXIT_INPUT : job_read(&job, sweep->console, plan->scene.path, &sets, 1);
     if (foreign) {
         console_error(sweep->console, "%s, which %s names, is not a valid scene; `singe check` says why",
-                      shown_path(plan->scene).text, sweep->options->plan);
+                      shown_path(plan->scene.path).text, sweep->options->plan);
     } else if (code) {
         console_error(sweep->console, "row %u of %s is not a valid scene", row + 1, sweep->options->plan);
     } else {
@@ -121,9 +121,9 @@ static char *plan_table(const Sweep *sweep) {
 
     if (target->given) {
         fprintf(file, "\ntarget,%d,%.9g", (int)plan->search, target->front_speed);
-        put_cell(file, target->curve ? target->curve : "");
+        put_cell(file, target->curve.path ? target->curve.path : "");
         put_cell(file, target->probe ? target->probe : "");
-        put_cell(file, target->masks ? target->masks : "");
+        put_cell(file, target->masks.path ? target->masks.path : "");
     }
 
     for (uint32_t row = 0; row < plan->row_count && !target->given; row++) {
@@ -174,7 +174,7 @@ ExitCode sweep_note_plan(Sweep *sweep) {
     SetList sets = {0};
     Job job;
     for (uint32_t i = 0; i < sweep->plan.set_count; i++) set_add(&sets, sweep->plan.sets[i]);
-    ExitCode code = job_open(&job, sweep->console, sweep->plan.scene, &sets, 1);
+    ExitCode code = job_open(&job, sweep->console, sweep->plan.scene.path, &sets, 1);
     set_free(&sets);
     if (code) return code;
 
@@ -209,9 +209,9 @@ ExitCode sweep_note_plan(Sweep *sweep) {
     if (file)
         fprintf(file, "{\"frames\": %d, \"scene\": \"%016llx\", \"preview\": \"%016llx\"", frames,
                 (unsigned long long)hash.result, (unsigned long long)hash.looks);
-    if (file && sweep->plan.from) {
+    if (file && sweep->plan.from.path) {
         fputs(", \"from\": ", file);
-        text_json_string(file, sweep->plan.from);
+        text_json_string(file, sweep->plan.from.path);
     }
     if (file) fputs("}\n", file);
     if (!text_stream_end(file, &note)) code = EXIT_FAILED;
@@ -237,13 +237,13 @@ char **sweep_run_command(const Sweep *sweep, uint32_t row) {
     command[n++] = text_format("--output=%s/unfinished/%04u", sweep->folder, row + 1);
     command[n++] = text_format("--threads=%d", sweep->options->threads);
     command[n++] = text_format("--resume");
-    if (plan->from) command[n++] = text_format("--from=%s", plan->from);
+    if (plan->from.path) command[n++] = text_format("--from=%s", plan->from.path);
     if (sweep->options->no_preview) command[n++] = text_format("--no-preview");
     for (uint32_t i = 0; i < plan->set_count; i++) command[n++] = text_format("--set=%s", plan->sets[i]);
     for (uint32_t p = 0; p < plan->parameter_count; p++)
         command[n++] = text_format("--set=%s=%s", plan->parameters[p].key, plan_value(plan, row, p));
     command[n++] = text_format("--");
-    command[n++] = text_format("%s", plan->scene);
+    command[n++] = text_format("%s", plan->scene.path);
     return command;
 }
 

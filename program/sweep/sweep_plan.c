@@ -1,4 +1,4 @@
-// Reads a plan: YAML by the tree of scene files, so that errors have their lines.
+// Reads a plan as scenes are read, by tables of its keys, so that errors have their lines.
 #include "sweep/sweep_plan.h"
 
 #include <stdio.h>
@@ -9,30 +9,76 @@
 #include "common/printable.h"
 #include "formats/formats.h"
 #include "formats/number.h"
-#include "scene/messages.h"
-#include "scene/units.h"
-
-typedef struct PlanReader {
-    Plan *plan;
-    SceneText text;
-    SceneMessages messages;
-    const char *folder; ///< of the plan, "" or ending in a slash
-} PlanReader;
+#include "scene/schema_rows.h"
 
 enum { PLAN_BYTES_MAX = 1 << 20, PLAN_KEYS_MAX = 1000 };
 
-static const char *const methods[PLAN_METHODS] = {"grid", "list", "random", "latin-hypercube"};
-
-static const char *const searches[PLAN_SEARCHES] = {"local", "global"};
-
 /// Reports an error: what was expected at a node, and what it is.
-static void plan_complain(PlanReader *reader, const YamlNode *node, const char *key, const char *expected) {
+static void plan_complain(Reader *reader, const YamlNode *node, const char *key, const char *expected) {
     char seen[NODE_WORDS];
-    message_add(&reader->messages, &reader->text, node->location, "%s: expected %s, got %s", key, expected,
+    message_add(reader->messages, reader->text, node->location, "%s: expected %s, got %s", key, expected,
                 node_describe(node, seen, sizeof seen));
 }
 
-// ---- values
+// ---- tables of keys
+
+static const SchemaRow curve_rows[] = {
+    {"file", ROW_FILE, DIM_NONE, AT(PlanTarget, curve), .flags = ROW_REQUIRED, .doc = "a CSV table"},
+    {"probe", ROW_TEXT, DIM_NONE, AT(PlanTarget, probe), .flags = ROW_REQUIRED, .doc = "the name of the scene's probe"},
+};
+static const Schema schema_curve = {.title = "a curve", .size = sizeof(PlanTarget), ROWS(curve_rows)};
+
+static void finish_target(Reader *reader, const YamlNode *map, void *object) {
+    PlanTarget *target = object;
+    const YamlNode *speed = node_find(map, "front_speed");
+    if (!map->count)
+        message_add(reader->messages, reader->text, map->location, "a target needs front_speed, temperature or masks");
+    if (target->speed_text && (quantity_read(target->speed_text, DIM_SPEED, &target->front_speed) ||
+                               !(target->front_speed > 0 && target->front_speed < 1e3)))
+        plan_complain(reader, speed, "front_speed", "a speed above 0 such as 2.5 mm/s");
+}
+
+static const SchemaRow target_rows[] = {
+    {"front_speed", ROW_TEXT, DIM_NONE, AT(PlanTarget, speed_text), .doc = "of the last frame"},
+    {"temperature", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_curve, .doc = "of a probe over time"},
+    {"masks", ROW_FILE, DIM_NONE, AT(PlanTarget, masks), .flags = ROW_NUMBERED, .doc = "where the sheet has burnt"},
+};
+static const Schema schema_target = {
+    .title = "a target", .size = sizeof(PlanTarget), ROWS(target_rows), .finish = finish_target};
+
+typedef struct PlanEnds {
+    char *from, *to;
+    PlanParameter parameter;
+} PlanEnds;
+
+static const SchemaRow range_rows[] = {
+    {"from", ROW_TEXT, DIM_NONE, AT(PlanEnds, from), .flags = ROW_REQUIRED, .doc = "its first value"},
+    {"to", ROW_TEXT, DIM_NONE, AT(PlanEnds, to), .flags = ROW_REQUIRED, .doc = "its last value"},
+    {"steps", ROW_UINT32, DIM_NONE, AT(PlanEnds, parameter.steps), WITHIN(2, PLAN_ROWS_MAX), .doc = "how many values"},
+    {"logarithmic", ROW_BOOL, DIM_NONE, AT(PlanEnds, parameter.logarithmic), .doc = "equal ratios"},
+    {"whole", ROW_BOOL, DIM_NONE, AT(PlanEnds, parameter.whole), .doc = "whole numbers"},
+};
+static const Schema schema_range = {.title = "a range", .size = sizeof(PlanEnds), ROWS(range_rows)};
+
+static const char *const methods[] = {"grid", "list", "random", "latin-hypercube", NULL};
+static const char *const searches[] = {"local", "global", NULL};
+
+static const SchemaRow plan_rows[] = {
+    {"scene", ROW_FILE, DIM_NONE, AT(Plan, scene), .flags = ROW_REQUIRED, .doc = "the scene file"},
+    {"from", ROW_FILE, DIM_NONE, AT(Plan, from), .doc = "DIR:FRAME of an earlier run"},
+    {"method", ROW_ENUM, DIM_NONE, AT(Plan, method), .names = methods, .doc = "of making rows"},
+    {"samples", ROW_UINT32, DIM_NONE, AT(Plan, samples), WITHIN(1, PLAN_ROWS_MAX), .doc = "rows that are drawn"},
+    {"seed", ROW_UINT32, DIM_NONE, AT(Plan, seed), .doc = "of the random numbers"},
+    {"set", ROW_NODE, DIM_NONE, AT(Plan, set), .doc = "keys of the scene and their values for all rows"},
+    {"parameters", ROW_NODE, DIM_NONE, AT(Plan, varied), .flags = ROW_REQUIRED, .doc = "keys of the scene that vary"},
+    {"target", ROW_MAP, DIM_NONE, AT(Plan, target), EXTRA(Plan, target.given), .sub = &schema_target,
+     .doc = "of a fit"},
+    {"search", ROW_ENUM, DIM_NONE, AT(Plan, search), .names = searches, .doc = "of a fit"},
+    {"evaluations", ROW_UINT32, DIM_NONE, AT(Plan, evaluations), WITHIN(1, PLAN_ROWS_MAX), .doc = "at most, of a fit"},
+};
+static const Schema schema_plan = {.title = "a plan", .size = sizeof(Plan), ROWS(plan_rows)};
+
+// ---- keys of the scene
 
 /// A value in flow style, as --set reads it; strings keep their quotes.
 static void write_flow(const YamlNode *node, FILE *file) {
@@ -78,156 +124,57 @@ static char *flow_text(Plan *plan, const YamlNode *node, const char *prefix) {
     return kept;
 }
 
-static void read_count(PlanReader *reader, const YamlNode *node, const char *key, uint32_t low, uint32_t high,
-                       uint32_t *count) {
-    char expected[64];
-    int64_t number = -1;
-    if (node->kind == NODE_VALUE && !node->quoted) {
-        const uint8_t *at = (const uint8_t *)node->text, *end = at + strlen(node->text);
-        if (number_integer(&at, end, &number) != NUMBER_OK || at != end) number = -1;
+/// Refuses keys that a map has twice: the last would count for some readers and the first for others. Returns false
+/// after an error.
+static bool check_once(Reader *reader, const YamlNode *map, const char *what) {
+    const uint32_t before = message_total(reader->messages);
+    if (map->count > PLAN_KEYS_MAX)
+        message_add(reader->messages, reader->text, map->location, "%s has %u keys; at most %d are possible", what,
+                    (unsigned)map->count, PLAN_KEYS_MAX);
+    for (const YamlNode *node = map->count > PLAN_KEYS_MAX ? NULL : map->first; node; node = node->next) {
+        const YamlNode *last = node_find(map, node->key);
+        if (last == node) continue;
+        message_add(reader->messages, reader->text, last->key_location, "'%s' is given twice in %s",
+                    shown(node->key).text, what);
     }
-    snprintf(expected, sizeof expected, "a whole number from %u to %u", low, high);
-    if (number >= low && number <= high) *count = (uint32_t)number;
-    else plan_complain(reader, node, key, expected);
+
+    return message_total(reader->messages) == before;
 }
 
-static bool read_switch(PlanReader *reader, const YamlNode *node, const char *key) {
-    const char *text = node->kind == NODE_VALUE ? node->text : "";
-    const bool yes = strcmp(text, "yes") == 0 || strcmp(text, "true") == 0;
-    if (!yes && strcmp(text, "no") != 0 && strcmp(text, "false") != 0) plan_complain(reader, node, key, "yes or no");
-    return yes;
-}
-
-/// A path from the plan's folder; NULL after an error.
-static char *read_path(PlanReader *reader, const YamlNode *node, const char *key) {
-    if (node->kind != NODE_VALUE || !node->text[0]) {
-        plan_complain(reader, node, key, "the path of a file");
+/// "850 C": the number, and the unit as written. Returns NULL after an error.
+static const char *read_end(Reader *reader, const YamlNode *map, const char *key, const char *text, double *number) {
+    const uint8_t *at = (const uint8_t *)text;
+    if (number_double(&at, at + strlen(text), number) != NUMBER_OK) {
+        plan_complain(reader, node_find(map, key), key, "a number, with a unit or without");
         return NULL;
     }
 
-    const char *folder = node->text[0] == '/' ? "" : reader->folder;
-    char *path = arena_new(reader->plan->arena, strlen(folder) + strlen(node->text) + 1, 1);
-    if (path) sprintf(path, "%s%s", folder, node->text);
-    return path;
+    while (*at == ' ') at++;
+    return (const char *)at;
 }
 
-/// The index of a word in a list.
-static int read_word(PlanReader *reader, const YamlNode *node, const char *key, const char *const *words, int count,
-                     const char *expected) {
-    for (int i = 0; i < count && node->kind == NODE_VALUE; i++)
-        if (strcmp(node->text, words[i]) == 0) return i;
-    plan_complain(reader, node, key, expected);
-    return 0;
-}
+static void read_range(Reader *reader, const YamlNode *map, PlanParameter *parameter) {
+    PlanEnds ends = {.parameter = *parameter};
+    schema_read(reader, &schema_range, map, &ends);
+    *parameter = ends.parameter;
+    if (!ends.from || !ends.to) return;
 
-/// Refuses keys that a map has twice: the last would count for some readers and the first for others. Returns false
-/// after an error.
-static bool check_once(PlanReader *reader, const YamlNode *map, const char *what) {
-    const uint32_t before = message_total(&reader->messages);
-    if (map->kind == NODE_MAP && map->count > PLAN_KEYS_MAX)
-        message_add(&reader->messages, &reader->text, map->location, "%s has %u keys; at most %d are possible", what,
-                    (unsigned)map->count, PLAN_KEYS_MAX);
-    else if (map->kind == NODE_MAP)
-        for (const YamlNode *node = map->first; node; node = node->next) {
-            const YamlNode *last = node_find(map, node->key);
-            if (last == node) continue;
-            message_add(&reader->messages, &reader->text, last->key_location, "'%s' is given twice in %s",
-                        shown(node->key).text, what);
-        }
-    return message_total(&reader->messages) == before;
-}
-
-// ---- parameters
-
-static void read_range(PlanReader *reader, const YamlNode *map, PlanParameter *parameter) {
-    const char *units[2] = {"", ""};
-    bool ends[2] = {false, false};
-    if (!check_once(reader, map, "a range")) return;
-
-    for (const YamlNode *node = map->first; node; node = node->next) {
-        const char *key = node->key;
-        const int end = strcmp(key, "from") == 0 ? 0 : strcmp(key, "to") == 0 ? 1 : -1;
-        if (end >= 0) {
-            // "850 C": the number, and the unit as written
-            const bool plain = node->kind == NODE_VALUE && !node->quoted;
-            const uint8_t *at = (const uint8_t *)(plain ? node->text : ""), *last = at + strlen((const char *)at);
-            ends[end] = true;
-            if (number_double(&at, last, end ? &parameter->to : &parameter->from) != NUMBER_OK) {
-                plan_complain(reader, node, key, "a number, with a unit or without");
-                continue;
-            }
-            while (*at == ' ') at++;
-            units[end] = (const char *)at;
-        } else if (strcmp(key, "steps") == 0) {
-            read_count(reader, node, key, 2, PLAN_ROWS_MAX, &parameter->steps);
-        } else if (strcmp(key, "whole") == 0) {
-            parameter->whole = read_switch(reader, node, key);
-        } else if (strcmp(key, "logarithmic") == 0) {
-            parameter->logarithmic = read_switch(reader, node, key);
-        } else {
-            message_add(&reader->messages, &reader->text, node->key_location,
-                        "unknown key '%s' of a range: expected from, to, steps, logarithmic or whole", shown(key).text);
-        }
-    }
-
-    parameter->unit = arena_text(reader->plan->arena, units[0], strlen(units[0]));
-    if (!ends[0] || !ends[1])
-        message_add(&reader->messages, &reader->text, map->location, "a range needs both 'from' and 'to'");
-    else if (strcmp(units[0], units[1]) != 0)
-        message_add(&reader->messages, &reader->text, map->location,
-                    "a range needs one unit: 'from' has %s and 'to' has %s", *units[0] ? shown(units[0]).text : "none",
-                    *units[1] ? shown(units[1]).text : "none");
+    const char *unit = read_end(reader, map, "from", ends.from, &parameter->from);
+    const char *other = read_end(reader, map, "to", ends.to, &parameter->to);
+    if (!unit || !other) return;
+    parameter->unit = unit;
+    if (strcmp(unit, other) != 0)
+        message_add(reader->messages, reader->text, map->location,
+                    "a range needs one unit: 'from' has %s and 'to' has %s", *unit ? shown(unit).text : "none",
+                    *other ? shown(other).text : "none");
     else if (parameter->logarithmic && !(parameter->from > 0 && parameter->to > 0))
-        message_add(&reader->messages, &reader->text, map->location, "a logarithmic range must be above 0");
+        message_add(reader->messages, reader->text, map->location, "a logarithmic range must be above 0");
 }
 
-/// The target of a fit.
-static void read_target(PlanReader *reader, const YamlNode *map) {
-    PlanTarget *target = &reader->plan->target;
-    if (map->kind != NODE_MAP || !map->count) {
-        plan_complain(reader, map, "target", "a map of front_speed, temperature or masks");
-        return;
-    }
-
-    target->given = true;
-    if (!check_once(reader, map, "a target")) return;
-
-    for (const YamlNode *node = map->first; node; node = node->next) {
-        const char *key = node->key;
-        if (strcmp(key, "front_speed") == 0) {
-            if (node->kind != NODE_VALUE || quantity_read(node->text, DIM_SPEED, &target->front_speed) ||
-                !(target->front_speed > 0 && target->front_speed < 1e3))
-                plan_complain(reader, node, key, "a speed above 0 such as 2.5 mm/s");
-        } else if (strcmp(key, "temperature") == 0 && node->kind != NODE_MAP) {
-            plan_complain(reader, node, key, "{file: CURVE.csv, probe: NAME}");
-        } else if (strcmp(key, "temperature") == 0) {
-            if (!check_once(reader, node, "a curve")) return;
-            for (const YamlNode *part = node->first; part; part = part->next)
-                if (strcmp(part->key, "file") == 0) target->curve = read_path(reader, part, "file");
-                else if (strcmp(part->key, "probe") == 0 && part->kind == NODE_VALUE) target->probe = part->text;
-                else
-                    message_add(&reader->messages, &reader->text, part->key_location,
-                                "unknown key '%s' of a curve: expected file or probe", shown(part->key).text);
-            if (!node_find(node, "file") || !node_find(node, "probe"))
-                message_add(&reader->messages, &reader->text, node->location, "a curve needs 'file' and 'probe'");
-        } else if (strcmp(key, "masks") == 0) {
-            char *path = target->masks = read_path(reader, node, key);
-            const char *name = path ? strrchr(path, '/') : NULL, *run = path ? strchr(name ? name : path, '#') : NULL;
-            const bool elsewhere = name && memchr(path, '#', (size_t)(name - path));
-            if (path && (!run || strchr(run + strspn(run, "#"), '#') || elsewhere))
-                plan_complain(reader, node, key, "a file name with one run of # for the frame's number");
-        } else {
-            message_add(&reader->messages, &reader->text, node->key_location,
-                        "unknown key '%s' of a target: expected front_speed, temperature or masks", shown(key).text);
-        }
-    }
-}
-
-// ---- the plan
-
-static void read_sets(PlanReader *reader, const YamlNode *node) {
-    Plan *plan = reader->plan;
-    if (!check_once(reader, node, "set")) return;
+static void read_sets(Reader *reader, Plan *plan) {
+    const YamlNode *node = plan->set;
+    if (node->kind != NODE_MAP) plan_complain(reader, node, "set", "a map of keys of the scene");
+    if (node->kind != NODE_MAP || !check_once(reader, node, "set")) return;
     plan->sets = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->sets);
     plan->set_locations = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->set_locations);
     for (const YamlNode *child = node->first; child && plan->sets && plan->set_locations; child = child->next) {
@@ -239,8 +186,13 @@ static void read_sets(PlanReader *reader, const YamlNode *node) {
     }
 }
 
-static void read_parameters(PlanReader *reader, const YamlNode *node) {
-    Plan *plan = reader->plan;
+static void read_parameters(Reader *reader, Plan *plan) {
+    const YamlNode *node = plan->varied;
+    if (node->kind != NODE_MAP || !node->count || node->count > PLAN_PARAMETERS_MAX) {
+        plan_complain(reader, node, "parameters", "a map of 1 to 64 keys of the scene");
+        return;
+    }
+
     if (!check_once(reader, node, "parameters")) return;
     plan->parameters = arena_new(plan->arena, node->count, sizeof *plan->parameters);
 
@@ -250,7 +202,7 @@ static void read_parameters(PlanReader *reader, const YamlNode *node) {
         parameter->location = child->location;
         parameter->key_location = child->key_location;
         if (strcmp(child->key, "name") == 0)
-            message_add(&reader->messages, &reader->text, child->key_location, "all rows have the scene's name");
+            message_add(reader->messages, reader->text, child->key_location, "all rows have the scene's name");
         if (child->kind == NODE_MAP) {
             read_range(reader, child, parameter);
         } else if (child->kind == NODE_LIST && child->count) {
@@ -260,44 +212,6 @@ static void read_parameters(PlanReader *reader, const YamlNode *node) {
         } else {
             plan_complain(reader, child, child->key, "a list of values, or a range {from: A, to: B, steps: N}");
         }
-    }
-}
-
-static void read_key(PlanReader *reader, const YamlNode *node) {
-    Plan *plan = reader->plan;
-    const char *key = node->key;
-    if (strcmp(key, "scene") == 0) {
-        plan->scene = read_path(reader, node, key);
-    } else if (strcmp(key, "from") == 0) {
-        plan->from = read_path(reader, node, key);
-    } else if (strcmp(key, "method") == 0) {
-        plan->method =
-            (PlanMethod)read_word(reader, node, key, methods, PLAN_METHODS, "grid, list, random or latin-hypercube");
-    } else if (strcmp(key, "samples") == 0) {
-        read_count(reader, node, key, 1, PLAN_ROWS_MAX, &plan->samples);
-    } else if (strcmp(key, "seed") == 0) {
-        read_count(reader, node, key, 0, UINT32_MAX, &plan->seed);
-    } else if (strcmp(key, "set") == 0 && node->kind != NODE_MAP) {
-        plan_complain(reader, node, "set", "a map of keys of the scene");
-    } else if (strcmp(key, "set") == 0) {
-        read_sets(reader, node);
-    } else if (strcmp(key, "parameters") == 0 &&
-               (node->kind != NODE_MAP || !node->count || node->count > PLAN_PARAMETERS_MAX)) {
-        plan_complain(reader, node, "parameters", "a map of 1 to 64 keys of the scene");
-    } else if (strcmp(key, "parameters") == 0) {
-        read_parameters(reader, node);
-    } else if (strcmp(key, "target") == 0) {
-        read_target(reader, node);
-    } else if (strcmp(key, "search") == 0) {
-        plan->search = (PlanSearch)read_word(reader, node, key, searches, PLAN_SEARCHES, "local or global");
-    } else if (strcmp(key, "evaluations") == 0) {
-        read_count(reader, node, key, 1, PLAN_ROWS_MAX, &plan->evaluations);
-    } else {
-        message_add(
-            &reader->messages, &reader->text, node->key_location,
-            "unknown key '%s' of a plan: expected scene, from, method, samples, seed, set, parameters, and for a fit "
-            "target, search, evaluations",
-            shown(key).text);
     }
 }
 
@@ -343,20 +257,19 @@ static const YamlNode *path_blocked(const YamlNode *node, const char *skipped, c
 }
 
 /// Refuses parameters that replace each other or what `set` gives. A parameter may be a part of what `set` gives as a map.
-static void check_overlaps(PlanReader *reader, const YamlNode *set) {
-    const Plan *plan = reader->plan;
+static void check_overlaps(Reader *reader, const Plan *plan) {
     for (uint32_t p = 0; p < plan->parameter_count; p++) {
         const PlanParameter *parameter = &plan->parameters[p];
-        const YamlNode *given = set ? set->first : NULL;
+        const YamlNode *given = plan->set ? plan->set->first : NULL;
         for (uint32_t i = 0; i < plan->set_count; i++, given = given->next) {
             const bool inside = path_covers(plan->sets[i], parameter->key);
             const YamlNode *word = inside ? path_blocked(given, plan->sets[i], parameter->key) : NULL;
             if (path_covers(parameter->key, plan->sets[i]))
-                message_add(&reader->messages, &reader->text, parameter->key_location,
+                message_add(reader->messages, reader->text, parameter->key_location,
                             "'%s' is already set in line %d; remove one", shown(parameter->key).text,
                             plan->set_locations[i].line);
             if (word)
-                message_add(&reader->messages, &reader->text, word->location,
+                message_add(reader->messages, reader->text, word->location,
                             "'%s' sets a part of this, so 'set' must give a map (of a material: {base: %s})",
                             shown(parameter->key).text, shown(word->text).text);
         }
@@ -364,16 +277,15 @@ static void check_overlaps(PlanReader *reader, const YamlNode *set) {
         for (uint32_t q = 0; q < p; q++)
             if (path_covers(parameter->key, plan->parameters[q].key) ||
                 path_covers(plan->parameters[q].key, parameter->key))
-                message_add(&reader->messages, &reader->text, parameter->key_location,
+                message_add(reader->messages, reader->text, parameter->key_location,
                             "'%s' and '%s' set the same value; give one of them", shown(parameter->key).text,
                             shown(plan->parameters[q].key).text);
     }
 }
 
-static void read_plan(PlanReader *reader, bool fit) {
-    Plan *plan = reader->plan;
-    const SceneText *text = &reader->text;
-    SceneMessages *messages = &reader->messages;
+static void read_plan(Reader *reader, Plan *plan, bool fit) {
+    const SceneText *text = reader->text;
+    SceneMessages *messages = reader->messages;
     YamlNode *root = tree_read(plan->arena, text, text->bytes, text->size, (SceneLocation){0}, messages);
     if (!root) return;
     if (root->kind != NODE_MAP) {
@@ -381,13 +293,12 @@ static void read_plan(PlanReader *reader, bool fit) {
         return;
     }
 
-    if (!check_once(reader, root, "the plan")) return;
-    for (const YamlNode *node = root->first; node; node = node->next) read_key(reader, node);
-    if (!arena_failed(plan->arena)) check_overlaps(reader, node_find(root, "set"));
+    schema_read(reader, &schema_plan, root, plan);
+    if (plan->set) read_sets(reader, plan);
+    if (plan->varied) read_parameters(reader, plan);
+    if (!arena_failed(plan->arena)) check_overlaps(reader, plan);
 
     const bool drawn = plan->method == PLAN_RANDOM || plan->method == PLAN_LATIN_HYPERCUBE;
-    if (!node_find(root, "scene")) message_add(messages, text, root->location, "a plan needs 'scene'");
-    if (!node_find(root, "parameters")) message_add(messages, text, root->location, "a plan needs 'parameters'");
     if (drawn && !node_find(root, "samples"))
         message_add(messages, text, root->location, "method %s needs 'samples'", methods[plan->method]);
     if (fit && !plan->target.given && !messages->count)
@@ -418,16 +329,19 @@ ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan) {
 
     // "plans/wind.yaml": the folder "plans/" and the name "wind"
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
-    PlanReader reader = {.plan = plan,
-                         .text = {.name = path, .bytes = (const char *)bytes.data, .size = bytes.size},
-                         .folder = arena_text(plan->arena, path, (size_t)(name - path))};
+    SceneText text = {.name = path, .bytes = (const char *)bytes.data, .size = bytes.size};
+    SceneMessages messages = {0};
+    Reader reader = {.arena = plan->arena,
+                     .text = &text,
+                     .messages = &messages,
+                     .prefix = arena_text(plan->arena, path, (size_t)(name - path))};
     plan->name = arena_text(plan->arena, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
-    read_plan(&reader, fit);
+    if (reader.prefix) read_plan(&reader, plan, fit);
 
     const bool failed = arena_failed(plan->arena);
-    const bool bad = reader.messages.count || reader.messages.left_out;
-    scene_messages_print(&reader.messages, stderr);
-    scene_messages_free(&reader.messages);
+    const bool bad = message_total(&messages) > 0;
+    scene_messages_print(&messages, stderr);
+    scene_messages_free(&messages);
     bytes_free(&bytes);
     if (failed) console_error(console, "out of memory");
     if (failed || bad) plan_free(plan);

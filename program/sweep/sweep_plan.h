@@ -4,7 +4,7 @@
 
 #include "cli/cli.h"
 #include "cli/console.h"
-#include "scene/arena.h"
+#include "scene/scene.h"
 #include "scene/tree.h"
 
 typedef enum PlanMethod {
@@ -12,17 +12,16 @@ typedef enum PlanMethod {
     PLAN_LIST,            ///< the first values of all parameters, then the second, ...
     PLAN_RANDOM,          ///< each value independently
     PLAN_LATIN_HYPERCUBE, ///< each range is cut into as many parts as there are rows; each is used once
-    PLAN_METHODS
 } PlanMethod;
 
 /// The values of a parameter: `values`, or numbers from `from` to `to`, both included.
 typedef struct PlanParameter {
-    char *key;       ///< PATH of --set
-    uint32_t count;  ///< of values; 0: a range
-    char **values;   ///< as --set takes them
-    double from, to; ///< in `unit`
-    char *unit;      ///< as written; "" for none
-    uint32_t steps;  ///< of a range, for a grid or a list; 0: not given
+    char *key;        ///< PATH of --set
+    uint32_t count;   ///< of values; 0: a range
+    char **values;    ///< as --set takes them
+    double from, to;  ///< in `unit`
+    const char *unit; ///< as written; "" for none
+    uint32_t steps;   ///< of a range, for a grid or a list; 0: not given
     bool logarithmic, whole;
     SceneLocation location, key_location;
 } PlanParameter;
@@ -30,16 +29,16 @@ typedef struct PlanParameter {
 /// The target of a fit (docs/sweep.md): the sum of the given terms.
 typedef struct PlanTarget {
     bool given;
+    char *speed_text;   ///< of front_speed as written; NULL: none
     double front_speed; ///< m/s; 0: none
-    char *curve;        ///< path of a CSV table with columns time (s) and temperature (K); NULL: none
+    SceneFile curve;    ///< a CSV table with columns time (s) and temperature (K)
     char *probe;        ///< the scene's probe for the curve
-    char *masks;        ///< path of PNGs with # for the frame's number, white where the sheet has burnt; NULL: none
+    SceneFile masks;    ///< PNGs with # for the frame's number, white where the sheet has burnt
 } PlanTarget;
 
 typedef enum PlanSearch {
     PLAN_SEARCH_LOCAL,  ///< from the centre of the ranges: Subplex (Rowan 1990)
     PLAN_SEARCH_GLOBAL, ///< over the whole ranges: DIRECT-L (Gablonsky and Kelley 2001)
-    PLAN_SEARCHES
 } PlanSearch;
 
 enum { PLAN_ROWS_MAX = 10000, PLAN_PARAMETERS_MAX = 64 };
@@ -47,13 +46,14 @@ enum { PLAN_ROWS_MAX = 10000, PLAN_PARAMETERS_MAX = 64 };
 typedef struct Plan {
     SceneArena *arena; ///< owns all of the below
     char *name;        ///< the file's, without its ending
-    char *scene;       ///< path of the scene
-    char *from;        ///< DIR:FRAME, of which all rows are branches; NULL: none
+    SceneFile scene;   ///< from the plan's folder, as are all
+    SceneFile from;    ///< DIR:FRAME, of which all rows are branches
     PlanMethod method;
     uint32_t samples, seed;
     PlanTarget target;
     PlanSearch search;
-    uint32_t evaluations; ///< max rows of a fit
+    uint32_t evaluations;         ///< max rows of a fit
+    const YamlNode *set, *varied; ///< the maps `set` and `parameters`
     uint32_t set_count, parameter_count, row_count;
     char **sets;                  ///< [set_count] PATH=VALUE for all rows
     SceneLocation *set_locations; ///< [set_count] of their keys

@@ -150,12 +150,12 @@ class Fit(Case):
                 file.write(text)
         for target, expected in (
             ("", "needs 'target'"),
-            ("target: {}\n", "expected a map of front_speed, temperature or masks"),
+            ("target: {}\n", "a target needs front_speed, temperature or masks"),
             ("target: {speed: 1}\n", "unknown key 'speed'"),
             ("target: {front_speed: -1}\n", "a speed above 0"),
             ("target: {front_speed: 3 kg}\n", "a speed above 0"),
-            ("target: {temperature: curve.csv}\n", "{file: CURVE.csv, probe: NAME}"),
-            ("target: {temperature: {file: curve.csv}}\n", "needs 'file' and 'probe'"),
+            ("target: {temperature: curve.csv}\n", "temperature must be a map"),
+            ("target: {temperature: {file: curve.csv}}\n", "a curve needs 'probe'"),
             ("target: {temperature: {file: none.csv, probe: p}}\n", "none.csv"),
             ("target: {temperature: {file: a.csv, probe: p}}\n", "times must ascend"),
             ("target: {temperature: {file: b.csv, probe: p}}\n", "needs columns 'time' and 'temperature'"),
@@ -164,7 +164,7 @@ class Fit(Case):
             ("target: {masks: mask.png}\n", "one run of #"),
             ("target: {masks: '#/mask##.png'}\n", "one run of #"),
             ("target: {front_speed: 1}\nsearch: far\n", "local or global"),
-            ("target: {front_speed: 1}\nevaluations: 0\n", "whole number from 1"),
+            ("target: {front_speed: 1}\nevaluations: 0\n", "evaluations must be 1 to 10000"),
         ):
             with self.subTest(target):
                 self.assertIn(expected, self.fit("scene: tiny.yaml\n" + target + RANGE, expect=2)[1])

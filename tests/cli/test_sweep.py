@@ -94,7 +94,7 @@ class Sweep(Case):
 
     def test_bad_plans(self):
         for text, line, expected in (
-            ("method: grd\nparameters: {pace: [1]}\n", 2, "expected grid, list, random or latin-hypercube, got 'grd'"),
+            ("method: grd\nparameters: {pace: [1]}\n", 2, "method must be grid, list, random or latin-hypercube, not 'grd'"),
             ("parameters:\n  pace: {from: 1, to: 2 C, steps: 2}\n", 3, "'from' has none and 'to' has C"),
             ("parameters:\n  pace: {from: 1, to: 2}\n", 3, "needs 'steps'"),
             ("parameters:\n  pace: {from: 1, to: 2, steps: 2, stop: 2}\n", 3, "unknown key 'stop'"),
@@ -102,7 +102,7 @@ class Sweep(Case):
             ("parameters:\n  pace: []\n", 3, "expected a list of values, or a range"),
             ("parameters:\n  pace: {from: 0, to: 1, steps: 3, logarithmic: yes}\n", 3, "above 0"),
             ("parameters:\n  pace: {from: nan, to: 1, steps: 3}\n", 3, "expected a number"),
-            ("parameters:\n  pace: {from: 0, to: 1, steps: 1}\n", 3, "whole number from 2 to 10000"),
+            ("parameters:\n  pace: {from: 0, to: 1, steps: 1}\n", 3, "steps must be 2 to 10000"),
             ("parameters:\n  name: [a, b]\n", 3, "the scene's name"),
             ("method: list\nparameters:\n  pace: [1, 2]\n  fps: [24]\n", 5, "1 here, 2 for the first"),
             ("method: random\nparameters:\n  pace: [1, 2]\n", 1, "needs 'samples'"),
@@ -117,7 +117,7 @@ class Sweep(Case):
             ("parameters:\n  pace: [1, 2]\n  pace: [3]\n", 4, "'pace' is given twice in parameters"),
             ("parameters:\n  pace: {from: 1, to: 2, from: 2, steps: 2}\n", 3, "'from' is given twice in a range"),
             ("set: {fps: 24, fps: 25}\nparameters: {pace: [1]}\n", 2, "'fps' is given twice in set"),
-            ("parameters: {pace: [1]}\nscene: tiny.yaml\n", 3, "'scene' is given twice in the plan"),
+            ("parameters: {pace: [1]}\nscene: tiny.yaml\n", 3, "'scene' is given twice in a plan"),
             ("set: {pace: 3}\nparameters:\n  pace: [1]\n", 4, "'pace' is already set in line 2"),
             ("set: {'sources[0].start': 1}\nparameters:\n  sources.00.start: [1]\n", 4, "is already set"),
             ("set: {gas.cell_size: 1 cm}\nparameters:\n  gas: [no]\n", 4, "'gas' is already set"),
