@@ -44,6 +44,11 @@ void sink_align(Sink *sink, size_t unit) {
     if (over) sink_zeros(sink, unit - over);
 }
 
+void sink_u16(Sink *sink, uint32_t value) {
+    const uint8_t bytes[2] = {(uint8_t)value, (uint8_t)(value >> 8)};
+    sink_bytes(sink, bytes, 2);
+}
+
 void sink_u32(Sink *sink, uint32_t value) {
     uint8_t *room = sink_room(sink, 4);
     if (room) store_u32_little(room, value);

@@ -26,6 +26,7 @@ void sink_zeros(Sink *sink, size_t count);
 void sink_align(Sink *sink, size_t unit);
 
 // little-endian
+void sink_u16(Sink *sink, uint32_t value);
 void sink_u32(Sink *sink, uint32_t value);
 void sink_u64(Sink *sink, uint64_t value);
 void sink_double(Sink *sink, double value);

@@ -22,17 +22,12 @@ enum {
     ZIP_PADDING = 0x1986
 };
 
-static void put_u16(Sink *sink, uint32_t value) {
-    const uint8_t bytes[2] = {(uint8_t)value, (uint8_t)(value >> 8)};
-    sink_bytes(sink, bytes, 2);
-}
-
 /// Fields common to an entry and its line in the directory.
 static void put_entry(Sink *sink, uint32_t sum, size_t size, size_t name, size_t extra) {
-    put_u16(sink, ZIP_VERSION), put_u16(sink, ZIP_UTF8), put_u16(sink, 0);
-    put_u16(sink, 0), put_u16(sink, ZIP_DAY);
+    sink_u16(sink, ZIP_VERSION), sink_u16(sink, ZIP_UTF8), sink_u16(sink, 0);
+    sink_u16(sink, 0), sink_u16(sink, ZIP_DAY);
     sink_u32(sink, sum), sink_u32(sink, (uint32_t)size), sink_u32(sink, (uint32_t)size);
-    put_u16(sink, (uint32_t)name), put_u16(sink, (uint32_t)extra);
+    sink_u16(sink, (uint32_t)name), sink_u16(sink, (uint32_t)extra);
 }
 
 /// Adds a file; the bytes are copied.
@@ -58,11 +53,11 @@ static void zip_add(Zip *zip, const char *name, const void *bytes, size_t size) 
     sink_bytes(&zip->sink, "PK\3\4", 4);
     put_entry(&zip->sink, sum, size, length, extra);
     sink_bytes(&zip->sink, name, length);
-    put_u16(&zip->sink, ZIP_PADDING), put_u16(&zip->sink, (uint32_t)extra - 4);
+    sink_u16(&zip->sink, ZIP_PADDING), sink_u16(&zip->sink, (uint32_t)extra - 4);
     sink_zeros(&zip->sink, extra - 4);
     sink_bytes(&zip->sink, bytes, size);
     sink_bytes(&zip->directory, "PK\1\2", 4);
-    put_u16(&zip->directory, ZIP_VERSION);
+    sink_u16(&zip->directory, ZIP_VERSION);
     put_entry(&zip->directory, sum, size, length, 0);
     sink_zeros(&zip->directory, 10); // no comment, the first disk, no attributes
     sink_u32(&zip->directory, (uint32_t)offset);
@@ -146,9 +141,9 @@ SingeResult usdz_write(const char *path, const OutputScene *scene, const OutputC
     sink_bytes(sink, zip.directory.bytes, size);
     sink_bytes(sink, "PK\5\6", 4);
     sink_zeros(sink, 4);
-    put_u16(sink, zip.count), put_u16(sink, zip.count);
+    sink_u16(sink, zip.count), sink_u16(sink, zip.count);
     sink_u32(sink, (uint32_t)size), sink_u32(sink, (uint32_t)offset);
-    put_u16(sink, 0);
+    sink_u16(sink, 0);
     sink->failed = sink->failed || zip.directory.failed;
     sink_free(&zip.directory);
     return sink_write(sink, path, error);

@@ -11,8 +11,8 @@
 // compression is by active values alone and there are none, one zero byte; a leaf is the mask of its cells. The buffers
 // hold, for each leaf, the mask again, a zero byte and the values of its cells. A node's entries, and a mask's bits
 // from the lowest, are numbered with z fastest.
-#include "common/store.h"
 #include "formats/gas_grid.h"
+#include "formats/sink.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -61,7 +61,7 @@ static bool vdb_bit(const uint8_t *mask, uint32_t n) { return mask[n >> 3] >> (n
 
 // ---- writing: one leaf for every block of cells that is not still air; all of its cells are active
 
-enum { HEADER_MAX = 2048, GRID_MAX = 2048, NODE_SIDE = 1 << VDB_LOWER_LOG };
+enum { NODE_SIDE = 1 << VDB_LOWER_LOG };
 
 /// Blocks that are leaves, in the order of the tree; those of a node are contiguous.
 typedef struct Leaf {
@@ -72,39 +72,11 @@ typedef struct Leaf {
 typedef struct Writer {
     const Gas *gas;
     Leaf *leaves;
-    size_t leaf_count, node_count, block_count;
+    size_t leaf_count, block_count;
     float coolest;
     bool half; ///< values are 16-bit floats
-    uint8_t *begin, *at;
+    Sink sink;
 } Writer;
-
-// ---- bytes
-
-static void put_bytes(Writer *w, const void *bytes, size_t size) {
-    memcpy(w->at, bytes, size);
-    w->at += size;
-}
-
-static void put_zeros(Writer *w, size_t size) {
-    memset(w->at, 0, size);
-    w->at += size;
-}
-
-static void put_u32(Writer *w, uint32_t value) {
-    store_u32_little(w->at, value);
-    w->at += 4;
-}
-
-static void put_u64(Writer *w, uint64_t value) {
-    put_u32(w, (uint32_t)value);
-    put_u32(w, (uint32_t)(value >> 32));
-}
-
-static void put_float(Writer *w, float value) {
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put_u32(w, bits);
-}
 
 /// Rounds to the nearest 16-bit float, ties to even.
 static uint16_t to_half(float value) {
@@ -124,37 +96,31 @@ static uint16_t to_half(float value) {
     return sign | (uint16_t)((bits - 0x38000000u) >> 13);
 }
 
-static void put_double(Writer *w, double value) {
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put_u64(w, bits);
+static void put_string(Sink *sink, const char *text) {
+    sink_u32(sink, (uint32_t)strlen(text));
+    sink_bytes(sink, text, strlen(text));
 }
 
-static void put_string(Writer *w, const char *text) {
-    put_u32(w, (uint32_t)strlen(text));
-    put_bytes(w, text, strlen(text));
+/// The head of a value of `size` bytes, which follow.
+static void put_metadata(Sink *sink, const char *name, const char *type, size_t size) {
+    put_string(sink, name);
+    put_string(sink, type);
+    sink_u32(sink, (uint32_t)size);
 }
 
-// ---- metadata
-
-static void put_text(Writer *w, const char *name, const char *value) {
-    put_string(w, name);
-    put_string(w, "string");
-    put_string(w, value);
+static void put_text(Sink *sink, const char *name, const char *value) {
+    put_metadata(sink, name, "string", strlen(value));
+    sink_bytes(sink, value, strlen(value));
 }
 
-static void put_triple(Writer *w, const char *name, const uint32_t value[3]) {
-    put_string(w, name);
-    put_string(w, "vec3i");
-    put_u32(w, 12);
-    for (int c = 0; c < 3; c++) put_u32(w, value[c]);
+static void put_triple(Sink *sink, const char *name, const uint32_t value[3]) {
+    put_metadata(sink, name, "vec3i", 12);
+    sink_words(sink, value, 3);
 }
 
-static void put_number(Writer *w, const char *name, double value) {
-    put_string(w, name);
-    put_string(w, "double");
-    put_u32(w, 8);
-    put_double(w, value);
+static void put_number(Sink *sink, const char *name, double value) {
+    put_metadata(sink, name, "double", 8);
+    sink_double(sink, value);
 }
 
 // ---- the tree
@@ -173,15 +139,9 @@ static void leaf_mask(const Writer *w, const Leaf *leaf, uint8_t mask[VDB_LEAF_M
             for (uint32_t z = 0; z < high[2] - low[2]; z++) set_bit(mask, x, y, z, VDB_LEAF_LOG);
 }
 
-/// The masks of an inner node: children, then values, of which there are none.
-static uint8_t *put_node(Writer *w, size_t mask_bytes) {
-    uint8_t *children = w->at;
-    put_zeros(w, 2 * mask_bytes + 1);
-    return children;
-}
-
 static void put_topology(Writer *w, const VdbFieldInfo *field) {
-    put_u32(w, 1);            // buffers a leaf
+    Sink *sink = &w->sink;
+    sink_u32(sink, 1);        // buffers a leaf
     float still = w->coolest; // the background, a whole float anyway
     if (w->half) {
         const uint16_t half = to_half(w->coolest);
@@ -190,24 +150,30 @@ static void put_topology(Writer *w, const VdbFieldInfo *field) {
         if (half & 0x8000) still = -still;
     }
 
-    for (uint32_t k = 0; k < field->width; k++) put_float(w, field == &vdb_fields[VDB_TEMPERATURE] ? still : 0);
-    put_u32(w, 0); // tiles
-    put_u32(w, w->leaf_count > 0);
+    if (field != &vdb_fields[VDB_TEMPERATURE]) still = 0;
+    for (uint32_t k = 0; k < field->width; k++) sink_words(sink, &still, 1);
+    sink_u32(sink, 0); // tiles
+    sink_u32(sink, w->leaf_count > 0);
     if (!w->leaf_count) return;
-    put_zeros(w, 12);
-    uint8_t *upper = put_node(w, VDB_UPPER_MASK), *lower = NULL;
+    sink_zeros(sink, 12);
 
+    // nodes: the mask of the children, and that of the values, of which there are none. The sink may move while it grows
+    const size_t upper = sink->size;
+    size_t lower = 0;
+    sink_zeros(sink, 2 * VDB_UPPER_MASK + 1);
     for (size_t i = 0; i < w->leaf_count; i++) {
         const Leaf *leaf = &w->leaves[i];
         const uint16_t *b = leaf->block;
         if (leaf->opens) {
-            set_bit(upper, b[0] / NODE_SIDE, b[1] / NODE_SIDE, b[2] / NODE_SIDE, VDB_UPPER_LOG);
-            lower = put_node(w, VDB_LOWER_MASK);
+            lower = sink->size;
+            sink_zeros(sink, 2 * VDB_LOWER_MASK + 1);
         }
 
-        set_bit(lower, b[0] % NODE_SIDE, b[1] % NODE_SIDE, b[2] % NODE_SIDE, VDB_LOWER_LOG);
-        leaf_mask(w, leaf, w->at);
-        w->at += VDB_LEAF_MASK;
+        uint8_t *mask = sink_room(sink, VDB_LEAF_MASK);
+        if (!mask) return;
+        leaf_mask(w, leaf, mask);
+        set_bit(sink->bytes + upper, b[0] / NODE_SIDE, b[1] / NODE_SIDE, b[2] / NODE_SIDE, VDB_UPPER_LOG);
+        set_bit(sink->bytes + lower, b[0] % NODE_SIDE, b[1] % NODE_SIDE, b[2] % NODE_SIDE, VDB_LOWER_LOG);
     }
 }
 
@@ -228,121 +194,100 @@ static void put_grid_metadata(Writer *w, const char *name, bool vector) {
         cells += volume;
     }
 
-    put_u32(w, (w->leaf_count ? 6u : 4u) + w->half);
+    Sink *sink = &w->sink;
+    sink_u32(sink, (w->leaf_count ? 6u : 4u) + w->half);
     if (w->half) {
-        put_string(w, "is_saved_as_half_float");
-        put_string(w, "bool");
-        put_u32(w, 1);
-        put_bytes(w, "\1", 1);
+        put_metadata(sink, "is_saved_as_half_float", "bool", 1);
+        sink_bytes(sink, "\1", 1);
     }
 
-    put_text(w, "name", name);
-    if (vector) put_text(w, "vector_type", "contravariant relative");
-    else put_text(w, "class", "fog volume");
-    put_text(w, "file_compression", "active values");
-    put_string(w, "file_voxel_count");
-    put_string(w, "int64");
-    put_u32(w, 8);
-    put_u64(w, cells);
+    put_text(sink, "name", name);
+    if (vector) put_text(sink, "vector_type", "contravariant relative");
+    else put_text(sink, "class", "fog volume");
+    put_text(sink, "file_compression", "active values");
+    put_metadata(sink, "file_voxel_count", "int64", 8);
+    sink_u64(sink, cells);
     if (w->leaf_count) {
-        put_triple(w, "file_bbox_min", low);
-        put_triple(w, "file_bbox_max", high);
+        put_triple(sink, "file_bbox_min", low);
+        put_triple(sink, "file_bbox_max", high);
     }
 }
 
 /// A grid with its tree, or, if `parent` is given, one that shares the parent's.
 static void put_grid(Writer *w, const char *name, VdbField field, const char *parent) {
-    put_string(w, name);
+    Sink *sink = &w->sink;
     char type[64];
     snprintf(type, sizeof type, "%s%s", vdb_fields[field].type, w->half ? "_HalfFloat" : "");
-    put_string(w, type);
-    put_string(w, parent);
+    put_string(sink, name);
+    put_string(sink, type);
+    put_string(sink, parent);
 
-    uint8_t *locations = w->at;
-    w->at += 24;
-    uint64_t body = (uint64_t)(w->at - w->begin);
-    put_u32(w, VDB_ACTIVE_VALUES);
+    const size_t locations = sink->size;
+    sink_zeros(sink, 24);
+    const size_t body = sink->size;
+    sink_u32(sink, VDB_ACTIVE_VALUES);
     put_grid_metadata(w, name, vdb_fields[field].width == 3);
 
     // index to position: cell (0, 0, 0) has its centre half a cell from the origin
     const SingeGas *gas = &w->gas->view;
     double cell = (double)gas->cell;
-    put_string(w, VDB_MAP);
-    for (int c = 0; c < 3; c++) put_double(w, (double)gas->origin[c] + 0.5 * cell);
+    put_string(sink, VDB_MAP);
+    for (int c = 0; c < 3; c++) sink_double(sink, (double)gas->origin[c] + 0.5 * cell);
     const double powers[5] = {cell, cell, 1 / cell, 1 / (cell * cell), 0.5 / cell};
     for (int k = 0; k < 5; k++)
-        for (int c = 0; c < 3; c++) put_double(w, powers[k]);
+        for (int c = 0; c < 3; c++) sink_double(sink, powers[k]);
 
     if (!*parent) put_topology(w, &vdb_fields[field]);
-    uint64_t buffers = (uint64_t)(w->at - w->begin);
-
-    if (!*parent) {
-        const float *values = vdb_field(w->gas, field);
-        uint32_t width = vdb_fields[field].width;
-        for (size_t i = 0; i < w->leaf_count; i++) {
-            uint8_t mask[VDB_LEAF_MASK];
-            leaf_mask(w, &w->leaves[i], mask);
-            put_bytes(w, mask, sizeof mask);
-            put_zeros(w, 1);
-            const uint16_t *b = w->leaves[i].block;
-            for (uint32_t n = 0; n < GAS_BLOCK * GAS_BLOCK * GAS_BLOCK; n++) {
-                if (!vdb_bit(mask, n)) continue;
-                size_t at = gas_index(gas, b[0] * GAS_BLOCK + (n >> 6), b[1] * GAS_BLOCK + (n >> 3 & 7),
-                                      b[2] * GAS_BLOCK + (n & 7));
-                for (uint32_t k = 0; k < width; k++) {
-                    const float value = values[at * width + k];
-                    if (!w->half) {
-                        put_float(w, value);
-                        continue;
-                    }
-
-                    const uint16_t half = to_half(value);
-                    const uint8_t bytes[2] = {(uint8_t)half, (uint8_t)(half >> 8)};
-                    put_bytes(w, bytes, 2);
-                }
-            }
+    const size_t buffers = sink->size;
+    const uint32_t width = vdb_fields[field].width;
+    for (size_t i = 0; i < w->leaf_count && !*parent; i++) {
+        uint8_t mask[VDB_LEAF_MASK];
+        leaf_mask(w, &w->leaves[i], mask);
+        sink_bytes(sink, mask, sizeof mask);
+        sink_zeros(sink, 1);
+        const uint16_t *b = w->leaves[i].block;
+        for (uint32_t n = 0; n < GAS_BLOCK * GAS_BLOCK * GAS_BLOCK; n++) {
+            if (!vdb_bit(mask, n)) continue;
+            const size_t at = gas_index(gas, b[0] * GAS_BLOCK + (n >> 6), b[1] * GAS_BLOCK + (n >> 3 & 7),
+                                        b[2] * GAS_BLOCK + (n & 7));
+            const float *values = vdb_field(w->gas, field) + at * width;
+            if (!w->half) sink_words(sink, values, width);
+            for (uint32_t k = 0; w->half && k < width; k++) sink_u16(sink, to_half(values[k]));
         }
     }
 
-    uint8_t *end = w->at;
-    w->at = locations;
-    put_u64(w, body);
-    put_u64(w, buffers);
-    put_u64(w, (uint64_t)(end - w->begin));
-    w->at = end;
+    // where they are; the sink may have failed
+    const size_t end = sink->size;
+    if (sink->failed) return;
+    sink->size = locations;
+    sink_u64(sink, body);
+    sink_u64(sink, buffers);
+    sink_u64(sink, end);
+    sink->size = end;
 }
 
 // ---- the file
 
 static SingeResult write_file(Writer *w, const char *path, double time, SingeError *error) {
-    // max bytes of the whole file
-    size_t leaf = 2 * VDB_LEAF_MASK + 1, cells = GAS_BLOCK * GAS_BLOCK * GAS_BLOCK, max = HEADER_MAX + GRID_MAX;
-    for (int f = 0; f < VDB_FIELDS; f++)
-        max += GRID_MAX + 2 * VDB_UPPER_MASK + w->node_count * (2 * VDB_LOWER_MASK + 1) +
-               w->leaf_count * (leaf + cells * vdb_fields[f].width * 4);
-
-    w->begin = w->at = store_new(w->gas->allocator, max, 1);
-    if (!w->begin) return refuse_memory(error, "gas", path);
-
-    put_u64(w, VDB_MAGIC);
-    put_u32(w, VDB_VERSION);
-    put_u32(w, VDB_LIBRARY_MAJOR);
-    put_u32(w, VDB_LIBRARY_MINOR);
-    put_bytes(w, "\1", 1);
-    put_bytes(w, "00000000-0000-0000-0000-000000000000", VDB_ID); // the same gas gives the same bytes
-    put_u32(w, w->half ? 4 : 5);
-    put_text(w, "creator", "Singe " SINGE_VERSION);
-    put_triple(w, "size", w->gas->view.size);
-    put_number(w, "time", time);
-    put_number(w, VDB_EXTINCTION, (double)GAS_EXTINCTION);
-    if (!w->half) put_number(w, VDB_FLAME_UNIT, (double)GAS_FLAME_UNIT);
-    put_u32(w, VDB_FIELDS + 1);
+    Sink *sink = &w->sink;
+    sink->allocator = w->gas->allocator;
+    sink_u64(sink, VDB_MAGIC);
+    sink_u32(sink, VDB_VERSION);
+    sink_u32(sink, VDB_LIBRARY_MAJOR);
+    sink_u32(sink, VDB_LIBRARY_MINOR);
+    sink_bytes(sink, "\1", 1);
+    sink_bytes(sink, "00000000-0000-0000-0000-000000000000", VDB_ID); // the same gas gives the same bytes
+    sink_u32(sink, w->half ? 4 : 5);
+    put_text(sink, "creator", "Singe " SINGE_VERSION);
+    put_triple(sink, "size", w->gas->view.size);
+    put_number(sink, "time", time);
+    put_number(sink, VDB_EXTINCTION, (double)GAS_EXTINCTION);
+    if (!w->half) put_number(sink, VDB_FLAME_UNIT, (double)GAS_FLAME_UNIT);
+    sink_u32(sink, VDB_FIELDS + 1);
 
     for (int f = 0; f < VDB_FIELDS; f++) put_grid(w, vdb_fields[f].name, (VdbField)f, "");
     put_grid(w, "vel", VDB_VELOCITY, vdb_fields[VDB_VELOCITY].name);
-    SingeResult result = file_write(path, w->begin, (size_t)(w->at - w->begin), error);
-    store_free(w->gas->allocator, w->begin, max, 1);
-    return result;
+    return sink_write(sink, path, error);
 }
 
 static SingeResult write_gas(const char *path, const Gas *gas, double time, bool half, SingeError *error) {
@@ -371,7 +316,6 @@ static SingeResult write_gas(const char *path, const Gas *gas, double time, bool
                     if (!gas_block_holds(&writer.gas->view, at, writer.coolest)) continue;
                     writer.leaves[writer.leaf_count++] =
                         (Leaf){{(uint16_t)at[0], (uint16_t)at[1], (uint16_t)at[2]}, .opens = opens};
-                    writer.node_count += opens;
                     opens = false;
                 }
             }

@@ -159,7 +159,7 @@ TEST(no_memory_is_reported) {
         test_allocator_check(&counter);
         if (!result) break;
         assert_int_equal(result, SINGE_ERROR_MEMORY);
-        assert_in_range(fail_at, 1, 20);
+        assert_in_range(fail_at, 1, 40);
     }
 
     unlink(path);
