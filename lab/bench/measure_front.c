@@ -1,4 +1,5 @@
-// The burning front of materials: speed, max temperature and residue on strips, compared with sources.
+// The burning front on strips: speed, max temperature and residue, of materials compared with sources; and the direction
+// in which fire spreads faster.
 #include "bench/bench.h"
 #include "analysis/strip.h"
 
@@ -24,16 +25,42 @@ typedef enum FrontDirection {
 static const char *const direction_names[] = {
     [FRONT_STILL] = "still", [FRONT_LEVEL] = "level", [FRONT_DOWN] = "down", [FRONT_UP] = "up"};
 
-/// The strips of a material: first in still air, with changed resolution and time step; then with gas, on strips wide
-/// enough to produce it.
+/// A strip. With gas it is wide enough to produce it.
 typedef struct FrontCase {
     FrontDirection direction;
-    float cell, step; ///< m; in default steps
+    float cell, step, gas_cell; ///< m; in default steps; m
+    bool wide;
 } FrontCase;
 
-static const FrontCase cases[] = {{FRONT_STILL, 1e-3f, 1},   {FRONT_STILL, 0.5e-3f, 1}, {FRONT_STILL, 1e-3f, 0.5f},
-                                  {FRONT_LEVEL, 2.5e-3f, 1}, {FRONT_DOWN, 2.5e-3f, 1},  {FRONT_UP, 2.5e-3f, 1}};
-enum { CASES = sizeof cases / sizeof *cases, CASES_STILL = 3 };
+/// Strips of one material, the first of which is the usual one; the quick ones come first.
+typedef struct FrontCases {
+    int count, quick;
+    float pace;
+    const FrontCase *items;
+} FrontCases;
+
+/// Of materials: first in still air, with changed resolution and time step; then with gas.
+static const FrontCases material_cases = {6, 3, 1,
+                                          (const FrontCase[]){{FRONT_STILL, 1e-3f, 1, 0, false},
+                                                              {FRONT_STILL, 0.5e-3f, 1, 0, false},
+                                                              {FRONT_STILL, 1e-3f, 0.5f, 0, false},
+                                                              {FRONT_LEVEL, 2.5e-3f, 1, 6e-3f, true},
+                                                              {FRONT_DOWN, 2.5e-3f, 1, 6e-3f, true},
+                                                              {FRONT_UP, 2.5e-3f, 1, 6e-3f, true}}};
+
+/// By direction: with changed cells of the sheet and of the gas.
+static const FrontCases spread_cases = {11, 7, 4,
+                                        (const FrontCase[]){{FRONT_STILL, 2e-3f, 1, 0, true},
+                                                            {FRONT_LEVEL, 2e-3f, 1, 6e-3f, true},
+                                                            {FRONT_DOWN, 2e-3f, 1, 6e-3f, true},
+                                                            {FRONT_UP, 2e-3f, 1, 6e-3f, true},
+                                                            {FRONT_UP, 1e-3f, 1, 6e-3f, true},
+                                                            {FRONT_UP, 2e-3f, 1, 4e-3f, true},
+                                                            {FRONT_UP, 2e-3f, 1, 9e-3f, true},
+                                                            {FRONT_LEVEL, 1e-3f, 1, 6e-3f, true},
+                                                            {FRONT_LEVEL, 2e-3f, 1, 9e-3f, true},
+                                                            {FRONT_DOWN, 1e-3f, 1, 6e-3f, true},
+                                                            {FRONT_DOWN, 2e-3f, 1, 9e-3f, true}}};
 
 /// Values shared by the strips of a material.
 typedef struct FrontKnown {
@@ -53,24 +80,23 @@ static const char *finding(const BenchMaterial *material, FrontDirection directi
     return material->speed[1] > 0 ? "as sources say" : "no source";
 }
 
-static SingeResult front_material(const BenchOptions *options, const BenchMaterial *material, BenchTable *table,
-                                  SingeError *error) {
+static SingeResult front_material(const BenchOptions *options, const BenchMaterial *material, const FrontCases *cases,
+                                  BenchTable *table, SingeError *error) {
     FrontKnown known = {0};
-    const int count = options->quick ? CASES_STILL : CASES;
+    const int count = options->quick ? cases->quick : cases->count;
     for (int i = 0; i < count; i++) {
-        const FrontDirection direction = cases[i].direction;
+        const FrontCase *it = &cases->items[i];
+        const FrontDirection direction = it->direction;
         StripSetup setup = strip_setup(&material->def);
-        setup.cell = cases[i].cell;
-        setup.time_step *= cases[i].step;
+        setup.cell = it->cell;
+        setup.time_step *= it->step;
         setup.threads = options->threads;
-        if (direction != FRONT_STILL) {
-            setup.gas = true;
-            setup.gas_cell = 6e-3f;
-            setup.length = 0.15f;
-            setup.width = 0.05f;
-            if (direction == FRONT_UP) setup.gravity[0] = setup.gravity[2], setup.gravity[2] = 0;
-            if (direction == FRONT_DOWN) setup.gravity[0] = -setup.gravity[2], setup.gravity[2] = 0;
-        }
+        setup.pace = cases->pace;
+        setup.gas = direction != FRONT_STILL;
+        setup.gas_cell = it->gas_cell;
+        if (it->wide) setup.length = 0.15f, setup.width = 0.05f;
+        if (direction == FRONT_UP) setup.gravity[0] = setup.gravity[2], setup.gravity[2] = 0;
+        if (direction == FRONT_DOWN) setup.gravity[0] = -setup.gravity[2], setup.gravity[2] = 0;
 
         StripResult result = {0};
         SingeResult code = strip_burn(&setup, &result, error);
@@ -82,6 +108,7 @@ static SingeResult front_material(const BenchOptions *options, const BenchMateri
         table_number(table, "g_m2", "%.0f", 4, 1e3 * (double)material->def.grammage.value);
         table_text(table, "direction", 9, direction_names[direction]);
         table_number(table, "cell_mm", "%.2g", 7, 1e3 * (double)setup.cell);
+        table_number(table, "gas_mm", "%.2g", 6, setup.gas ? 1e3 * (double)setup.gas_cell : NAN);
         table_number(table, "step_ms", "%.2f", 7, 1e3 * (double)setup.time_step);
         table_number(table, "F", "%.2f", 5, result.thickening);
         table_parts(table, "speed_mm_s", "%.3g", 15, "is/from/to",
@@ -109,6 +136,11 @@ static SingeResult front_material(const BenchOptions *options, const BenchMateri
 SingeResult bench_front(const BenchOptions *options, BenchTable *table, SingeError *error) {
     SingeResult result = SINGE_OK;
     for (int m = 0; m < options->material_count && !result; m++)
-        result = front_material(options, &options->materials[m], table, error);
+        result = front_material(options, &options->materials[m], &material_cases, table, error);
     return result;
+}
+
+SingeResult bench_spread(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    const BenchMaterial paper = {.name = "default", .def = singe_default_material()};
+    return front_material(options, &paper, &spread_cases, table, error);
 }
