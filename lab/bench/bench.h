@@ -11,6 +11,6 @@ typedef SingeResult BenchFn(const BenchOptions *options, BenchTable *table, Sing
 // What each measures: the table in bench_command.c.
 BenchFn bench_swing, bench_hang_and_shrink, bench_tear, bench_dynamics, bench_step, bench_surface, bench_heap,
     bench_collapse, bench_stack, bench_wind, bench_memory, bench_front, bench_spread, bench_output, bench_preview,
-    bench_picture, bench_compare, bench_stability, bench_look, bench_fold, bench_isotropy, bench_plate, bench_spectrum;
+    bench_compare, bench_stability, bench_look, bench_fold, bench_isotropy, bench_plate, bench_spectrum;
 
 #endif

@@ -1,5 +1,5 @@
-// singe bench preview and picture: the cost of pictures of a synthetic burning sheet of about 100,000 triangles, and how far
-// they are from pictures with 256 samples.
+// singe bench preview: the cost of pictures of a synthetic burning sheet of about 100,000 triangles, and how far they are
+// from pictures with 256 samples.
 #include "bench/bench.h"
 
 #include <math.h>
@@ -148,6 +148,8 @@ static const Shot shots[] = {
     {"lens", {0.05f, -0.40f, 0.36f}, {0, -0.012f, 0}, 0.58f, 0.008f, 0.02f, false},
     {"fire", {0.05f, -0.40f, 0.36f}, {0, -0.012f, 0}, 0.58f, 0, 0, true},
     {"firenear", {0.03f, -0.24f, 0.15f}, {0.01f, -0.005f, 0.03f}, 0.5f, 0, 0, true},
+    {"lensnear", {0.08f, -0.28f, 0.09f}, {0, 0.02f, 0.005f}, 0.52f, 0.003f, 0.02f, false},
+    {"flames", {0.08f, -0.28f, 0.09f}, {0, 0.02f, 0.005f}, 0.52f, 0.003f, 0.02f, true},
 };
 
 /// Pictures of a shot in one size. `def` must outlive `preview`.
@@ -207,26 +209,9 @@ static SingeResult easel_time(Easel *easel, const SingeSurface *surface, double 
     return SINGE_OK;
 }
 
-static SingeResult preview_bench_measure(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
-                                         BenchTable *table, SingeError *error) {
-    Easel easel;
-    double cpu, min, wall;
-    SingeResult result = easel_begin(options, shot, 1280, 16, &easel, error);
-    if (!result) result = easel_time(&easel, surface, &cpu, &min, &wall, error);
-    easel_end(&easel);
-    if (result) return result;
-    table_text(table, "picture", 8, shot->name);
-    table_number(table, "triangles", "%.0f", 10, surface->triangle_count);
-    table_number(table, "samples", "%.0f", 8, 16);
-    table_number(table, "cpu_s", "%.3f", 8, cpu);
-    table_number(table, "min_cpu_s", "%.3f", 12, min);
-    table_number(table, "wall_s", "%.3f", 8, wall);
-    return table_end_row(table);
-}
-
 // ---- the error
 
-enum { PICTURE_WIDTH = 960, REFERENCE_SAMPLES = 256, PAN_FRAMES = 2 };
+enum { SAMPLES = 16, REFERENCE_SAMPLES = 256, PAN_FRAMES = 2 };
 
 /// Draws the shot in the reference's size, the second frame with the camera turned by a third of a pixel. Returns the
 /// pictures, one after the other; NULL after an error.
@@ -251,11 +236,11 @@ static uint8_t *draw_pan(const BenchOptions *options, const Shot *shot, const Si
     return NULL;
 }
 
-static SingeResult picture_measure(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
-                                   BenchTable *table, SingeError *error) {
+static SingeResult shot_measure(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
+                                BenchTable *table, SingeError *error) {
     Easel easel;
     double cpu, min, wall;
-    SingeResult result = easel_begin(options, shot, PICTURE_WIDTH, 16, &easel, error);
+    SingeResult result = easel_begin(options, shot, options->quick ? 320 : 1280, SAMPLES, &easel, error);
     if (!result) result = easel_time(&easel, surface, &cpu, &min, &wall, error);
     easel_end(&easel);
     if (result) return result;
@@ -263,7 +248,7 @@ static SingeResult picture_measure(const BenchOptions *options, const Shot *shot
     // e of both frames, and how much it changes between them
     const int width = options->quick ? 160 : 320;
     size_t bytes;
-    uint8_t *drawn = draw_pan(options, shot, surface, width, 16, &bytes, error);
+    uint8_t *drawn = draw_pan(options, shot, surface, width, SAMPLES, &bytes, error);
     uint8_t *whole = drawn ? draw_pan(options, shot, surface, width, REFERENCE_SAMPLES, &bytes, error) : NULL;
     double squares = 0, changes = 0;
     for (size_t i = 0; whole && i < bytes; i++) {
@@ -278,37 +263,22 @@ static SingeResult picture_measure(const BenchOptions *options, const Shot *shot
     if (!good) return error->code ? error->code : SINGE_ERROR_MEMORY;
 
     table_text(table, "picture", 8, shot->name);
-    table_number(table, "pixels", "%.0f", 8, PICTURE_WIDTH * (PICTURE_WIDTH * 9 / 16));
-    table_number(table, "samples", "%.0f", 8, 16);
+    table_number(table, "triangles", "%.0f", 10, surface->triangle_count);
+    table_number(table, "samples", "%.0f", 8, SAMPLES);
     table_number(table, "cpu_s", "%.3f", 8, cpu);
+    table_number(table, "min_cpu_s", "%.3f", 12, min);
     table_number(table, "wall_s", "%.3f", 8, wall);
     table_number(table, "rms_error", "%.2f", 10, sqrt(squares / (double)bytes));
     table_number(table, "rms_boil", "%.2f", 10, sqrt(changes / (double)bytes));
     return table_end_row(table);
 }
 
-typedef SingeResult ShotFn(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
-                           BenchTable *table, SingeError *error);
-
-static SingeResult measure_shots(const BenchOptions *options, ShotFn *measure, const Shot *first, size_t count,
-                                 BenchTable *table, SingeError *error) {
+SingeResult bench_preview(const BenchOptions *options, BenchTable *table, SingeError *error) {
     SingeSurface surface;
     void *block = make_surface(&surface);
     SingeResult result = block ? SINGE_OK : SINGE_ERROR_MEMORY;
-    for (size_t i = 0; i < count && !result; i++) result = measure(options, &first[i], &surface, table, error);
+    for (size_t i = 0; i < sizeof shots / sizeof *shots && !result; i++)
+        result = shot_measure(options, &shots[i], &surface, table, error);
     free(block);
     return result;
-}
-
-SingeResult bench_preview(const BenchOptions *options, BenchTable *table, SingeError *error) {
-    return measure_shots(options, preview_bench_measure, shots, sizeof shots / sizeof *shots, table, error);
-}
-
-SingeResult bench_picture(const BenchOptions *options, BenchTable *table, SingeError *error) {
-    static const Shot near[] = {
-        {"table", {0.05f, -0.40f, 0.36f}, {0, -0.012f, 0}, 0.58f, 0, 0, false},
-        {"lens", {0.08f, -0.28f, 0.09f}, {0, 0.02f, 0.005f}, 0.52f, 0.003f, 0.02f, false},
-        {"flames", {0.08f, -0.28f, 0.09f}, {0, 0.02f, 0.005f}, 0.52f, 0.003f, 0.02f, true},
-    };
-    return measure_shots(options, picture_measure, near, sizeof near / sizeof *near, table, error);
 }
