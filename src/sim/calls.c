@@ -48,40 +48,16 @@ static const float *velocities_read(const SingeSim *sim, SingeSheetId id, uint32
 #define ARGUMENTS_NOTHING
 #define WRITE_NOTHING
 
+#define ARGUMENTS_DEF(Type, name) , def
 #define WRITE_DEF(Type, name) \
-    Type whole;               \
+    Singe##Type##Def whole;   \
     tape_##name##_def(tape, def, &whole);
-#define ARGUMENTS_SHEET_DEF , def
-#define WRITE_SHEET_DEF WRITE_DEF(SingeSheetDef, sheet)
-#define ARGUMENTS_SOURCE_DEF , def
-#define WRITE_SOURCE_DEF WRITE_DEF(SingeSourceDef, source)
-#define ARGUMENTS_COLLIDER_DEF , def
-#define WRITE_COLLIDER_DEF WRITE_DEF(SingeColliderDef, collider)
-#define ARGUMENTS_PIN_DEF , def
-#define WRITE_PIN_DEF WRITE_DEF(SingePinDef, pin)
-#define ARGUMENTS_WIND_DEF , def
-#define WRITE_WIND_DEF WRITE_DEF(SingeWindDef, wind)
-#define ARGUMENTS_MATERIAL_DEF , def
-#define WRITE_MATERIAL_DEF WRITE_DEF(SingeMaterialDef, material)
-
-#define ARGUMENTS_NEW_SHEET , made
-#define WRITE_NEW_SHEET tape_asked(tape, made);
-#define ARGUMENTS_NEW_SOURCE , made
-#define WRITE_NEW_SOURCE tape_asked(tape, made);
-#define ARGUMENTS_NEW_COLLIDER , made
-#define WRITE_NEW_COLLIDER tape_asked(tape, made);
-#define ARGUMENTS_NEW_PIN , made
-#define WRITE_NEW_PIN tape_asked(tape, made);
-
-#define ARGUMENTS_SHEET , id
-#define WRITE_SHEET tape_handle(tape, id.index, id.generation);
-#define ARGUMENTS_SOURCE , id
-#define WRITE_SOURCE tape_handle(tape, id.index, id.generation);
-#define ARGUMENTS_COLLIDER , id
-#define WRITE_COLLIDER tape_handle(tape, id.index, id.generation);
-#define ARGUMENTS_PIN , id
-#define WRITE_PIN tape_handle(tape, id.index, id.generation);
-
+#define ARGUMENTS_PIN_DEF ARGUMENTS_DEF(Pin, pin)
+#define WRITE_PIN_DEF WRITE_DEF(Pin, pin)
+#define ARGUMENTS_NEW(Type) , made
+#define WRITE_NEW(Type) tape_asked(tape, made);
+#define ARGUMENTS_HANDLE(Type, name) , id
+#define WRITE_HANDLE(Type, name) tape_handle(tape, id.index, id.generation);
 #define ARGUMENTS_CALLBACK , callback, context
 #define WRITE_CALLBACK              \
     bool called = callback != NULL; \
@@ -136,14 +112,8 @@ static const float *velocities_read(const SingeSim *sim, SingeSheetId id, uint32
 #define SECOND_SNAPSHOT 0
 #define FIRST_COPY 0
 #define SECOND_COPY 0
-#define FIRST_NEW_SHEET made ? made->index : 0
-#define SECOND_NEW_SHEET made ? made->generation : 0
-#define FIRST_NEW_SOURCE FIRST_NEW_SHEET
-#define SECOND_NEW_SOURCE SECOND_NEW_SHEET
-#define FIRST_NEW_COLLIDER FIRST_NEW_SHEET
-#define SECOND_NEW_COLLIDER SECOND_NEW_SHEET
-#define FIRST_NEW_PIN FIRST_NEW_SHEET
-#define SECOND_NEW_PIN SECOND_NEW_SHEET
+#define FIRST_NEW(Type) made ? made->index : 0
+#define SECOND_NEW(Type) made ? made->generation : 0
 #define FIRST_STEPS steps ? *steps : 0
 #define SECOND_STEPS 0
 

@@ -7,28 +7,18 @@
 
 // The parameters of each kind of arguments, and their names.
 #define PARAMETERS_NOTHING
-#define PARAMETERS_SHEET_DEF , const SingeSheetDef *def
-#define PARAMETERS_NEW_SHEET , SingeSheetId *made
-#define PARAMETERS_SHEET , SingeSheetId id
-#define PARAMETERS_SOURCE_DEF , const SingeSourceDef *def
-#define PARAMETERS_NEW_SOURCE , SingeSourceId *made
-#define PARAMETERS_SOURCE , SingeSourceId id
+#define PARAMETERS_DEF(Type, name) , const Singe##Type##Def *def
+#define PARAMETERS_PIN_DEF PARAMETERS_DEF(Pin, pin)
+#define PARAMETERS_NEW(Type) , Singe##Type##Id *made
+#define PARAMETERS_HANDLE(Type, name) , Singe##Type##Id id
 #define PARAMETERS_CALLBACK , SingeFluxFn *callback, void *context
-#define PARAMETERS_COLLIDER_DEF , const SingeColliderDef *def
-#define PARAMETERS_NEW_COLLIDER , SingeColliderId *made
-#define PARAMETERS_COLLIDER , SingeColliderId id
 #define PARAMETERS_COLLIDER_VERTICES , const float *points
-#define PARAMETERS_PIN_DEF , const SingePinDef *def
-#define PARAMETERS_NEW_PIN , SingePinId *made
-#define PARAMETERS_PIN , SingePinId id
 #define PARAMETERS_PIN_POSITIONS , const float *points
 #define PARAMETERS_PATH , uint32_t path_count, const SingePoseKey *path
-#define PARAMETERS_WIND_DEF , const SingeWindDef *def
 #define PARAMETERS_GRAVITY , const float gravity[3]
 #define PARAMETERS_NUMBER , float number
 #define PARAMETERS_SECONDS , double seconds
 #define PARAMETERS_VELOCITIES , uint32_t first, uint32_t count, const float *velocities
-#define PARAMETERS_MATERIAL_DEF , const SingeMaterialDef *def
 #define PARAMETERS_SHARE , const float *share
 #define PARAMETERS_STEPS , uint32_t steps_max, uint32_t *steps
 #define PARAMETERS_SURFACE , SingeSurface *surface, size_t struct_size

@@ -293,60 +293,29 @@ static void note_handle(Player *player, int maker, uint32_t index, uint32_t gene
 #define PASS_NOTHING
 #define AFTER_NOTHING (void)result;
 
-#define READ_DEF(Type, name) \
-    Type def;                \
-    tape_##name##_def(tape, NULL, &def);
-#define READ_SHEET_DEF READ_DEF(SingeSheetDef, sheet)
-#define PASS_SHEET_DEF , &def
-#define READ_SOURCE_DEF READ_DEF(SingeSourceDef, source)
-#define PASS_SOURCE_DEF , &def
-#define READ_COLLIDER_DEF READ_DEF(SingeColliderDef, collider)
-#define PASS_COLLIDER_DEF , &def
-#define READ_PIN_DEF           \
-    READ_DEF(SingePinDef, pin) \
-    change_handle(player, CALL_add_sheet, &def.sheet.index, &def.sheet.generation);
-#define PASS_PIN_DEF , &def
-#define READ_WIND_DEF READ_DEF(SingeWindDef, wind)
-#define PASS_WIND_DEF , &def
-#define READ_MATERIAL_DEF READ_DEF(SingeMaterialDef, material)
-#define PASS_MATERIAL_DEF , &def
-
 enum {
 #define SINGE_CALL(number, name, A, B, C) CALL_##name = number,
 #include "sim/calls.def"
 };
-#define READ_HANDLE(Id, maker) \
-    Id id;                     \
-    TAPE(tape, id.index);      \
-    TAPE(tape, id.generation); \
-    change_handle(player, maker, &id.index, &id.generation);
-#define READ_SHEET READ_HANDLE(SingeSheetId, CALL_add_sheet)
-#define PASS_SHEET , id
-#define READ_SOURCE READ_HANDLE(SingeSourceId, CALL_add_source)
-#define PASS_SOURCE , id
-#define READ_COLLIDER READ_HANDLE(SingeColliderId, CALL_add_collider)
-#define PASS_COLLIDER , id
-#define READ_PIN READ_HANDLE(SingePinId, CALL_add_pin)
-#define PASS_PIN , id
-
-#define READ_NEW(Id) \
-    Id id = {0, 0};  \
+#define READ_DEF(Type, name) \
+    Singe##Type##Def def;    \
+    tape_##name##_def(tape, NULL, &def);
+#define PASS_DEF(Type, name) , &def
+#define READ_PIN_DEF   \
+    READ_DEF(Pin, pin) \
+    change_handle(player, CALL_add_sheet, &def.sheet.index, &def.sheet.generation);
+#define PASS_PIN_DEF , &def
+#define READ_HANDLE(Type, name) \
+    Singe##Type##Id id;         \
+    TAPE(tape, id.index);       \
+    TAPE(tape, id.generation);  \
+    change_handle(player, CALL_add_##name, &id.index, &id.generation);
+#define PASS_HANDLE(Type, name) , id
+#define READ_NEW(Type)           \
+    Singe##Type##Id id = {0, 0}; \
     const bool asked = read_asked(tape);
-#define PASS_NEW , asked ? &id : NULL
-#define AFTER_NEW note_handle(player, kind, id.index, id.generation);
-#define READ_NEW_SHEET READ_NEW(SingeSheetId)
-#define PASS_NEW_SHEET PASS_NEW
-#define AFTER_NEW_SHEET AFTER_NEW
-#define READ_NEW_SOURCE READ_NEW(SingeSourceId)
-#define PASS_NEW_SOURCE PASS_NEW
-#define AFTER_NEW_SOURCE AFTER_NEW
-#define READ_NEW_COLLIDER READ_NEW(SingeColliderId)
-#define PASS_NEW_COLLIDER PASS_NEW
-#define AFTER_NEW_COLLIDER AFTER_NEW
-#define READ_NEW_PIN READ_NEW(SingePinId)
-#define PASS_NEW_PIN PASS_NEW
-#define AFTER_NEW_PIN AFTER_NEW
-
+#define PASS_NEW(Type) , asked ? &id : NULL
+#define AFTER_NEW(Type) note_handle(player, kind, id.index, id.generation);
 #define READ_CALLBACK const bool called = read_asked(tape);
 #define PASS_CALLBACK , called ? player_heat : NULL, player
 #define READ_COLLIDER_VERTICES const float *points = read_points(tape, call_collider_points(player->sim, id));
