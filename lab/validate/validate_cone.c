@@ -8,7 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "bench/bench_materials.h"
 #include "validate/validate.h"
 
 enum { FLUXES = 3, SECONDS = 17 };
@@ -121,13 +120,8 @@ static SingeResult cone_burn(Lab *lab, const SingeMaterialDef *cotton, const Boa
 }
 
 SingeResult validate_cone(Lab *lab, SingeError *error) {
-    BenchMaterials materials;
-    const SingeMaterialDef *cotton = NULL;
-    if (bench_materials_open("cotton", &materials)) {
-        bench_materials_close(&materials);
-        return SINGE_ERROR_FORMAT;
-    }
-    cotton = &materials.items[0].def;
+    SingeMaterialDef cotton = singe_default_material();
+    if (singe_material_preset("cotton", &cotton, error)) return error->code;
 
     ConeRun all[BOARDS][FLUXES], *runs = all[INSULATING];
     double measured[FLUXES], seconds[SECONDS], total = 0;
@@ -137,14 +131,13 @@ SingeResult validate_cone(Lab *lab, SingeError *error) {
     for (int b = 0; b < BOARDS; b++)
         for (int i = 0; i < FLUXES && !result; i++) {
             ConeRun *run = &all[b][i];
-            result = cone_burn(lab, cotton, &boards[b], cone_flux[i], run, error);
+            result = cone_burn(lab, &cotton, &boards[b], cone_flux[i], run, error);
             measured[i] = (cone_ignition[i][0] + cone_ignition[i][1] + cone_ignition[i][2]) / 3;
             if (!result)
                 report_row(lab->report, "%s|%.0f|%.2f|%.2f|%.2f|%.0f|%.0f|%.2f", boards[b].name, cone_flux[i],
                            run->ignition, measured[i], run->ignition / measured[i], run->peak, cone_peak[i],
                            run->peak / cone_peak[i]);
         }
-    bench_materials_close(&materials);
     if (result) return result;
 
     for (int i = 0; i < SECONDS; i++) {

@@ -80,6 +80,16 @@ SingeResult validate_front(Lab *lab, SingeError *error) {
     return result;
 }
 
+/// A strip that is three cells wide.
+static StripSetup narrow_strip(const Lab *lab, const SingeMaterialDef *material, float length) {
+    StripSetup setup = strip_setup(material);
+    setup.cell = 2e-3f;
+    setup.width = 6e-3f;
+    setup.length = length;
+    setup.threads = lab->threads;
+    return setup;
+}
+
 // ---- PMMA
 
 enum { SHEETS = 6 };
@@ -113,13 +123,8 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
         material.mass_loss = singe_param(0.1f);
         material.char_yield = singe_param(0);
         material.heat_share = singe_param(0.2f); // no char: one reaction
-        StripSetup setup = strip_setup(&material);
-
-        // steps in proportion to the grammage, as the fire is
-        setup.time_step *= (float)(bass_um[i] / 100);
-        setup.cell = 2e-3f;
-        setup.width = 6e-3f;
-        setup.threads = lab->threads;
+        StripSetup setup = narrow_strip(lab, &material, 0.12f);
+        setup.time_step *= (float)(bass_um[i] / 100); // in proportion to the grammage, as the fire is
         result = strip_burn(&setup, &strip, error);
         if (result) return result;
 
@@ -181,11 +186,7 @@ static SingeResult oxygen_least(Lab *lab, const SingeMaterialDef *usual, bool co
         if (cooler) material.heat_share.value *= (float)fmax(flame, 0);
         material.rate_ceiling.value *= (float)share;
         material.char_rate = singe_param((float)(1.6 * share)); // the middle of its patches
-        StripSetup setup = strip_setup(&material);
-        setup.cell = 2e-3f;
-        setup.width = 6e-3f;
-        setup.length = 0.08f;
-        setup.threads = lab->threads;
+        const StripSetup setup = narrow_strip(lab, &material, 0.08f);
         result = strip_burn(&setup, &strip, error);
         const bool burns = strip.end == STRIP_THROUGH;
         *(burns ? least : &low) = oxygen;
@@ -197,18 +198,12 @@ static SingeResult oxygen_least(Lab *lab, const SingeMaterialDef *usual, bool co
 }
 
 SingeResult validate_oxygen(Lab *lab, SingeError *error) {
-    BenchMaterials materials;
-    if (bench_materials_open("cotton", &materials)) {
-        bench_materials_close(&materials);
-        return SINGE_ERROR_FORMAT;
-    }
-
-    const SingeMaterialDef *cotton = &materials.items[0].def;
+    SingeMaterialDef cotton = singe_default_material();
+    if (singe_material_preset("cotton", &cotton, error)) return error->code;
     double least, as_hot;
     report_heads(lab->report, "flame|oxygen %|its heat, of that in air|mm/s|hottest C|");
-    SingeResult result = oxygen_least(lab, cotton, true, &least, error);
-    if (!result) result = oxygen_least(lab, cotton, false, &as_hot, error);
-    bench_materials_close(&materials);
+    SingeResult result = oxygen_least(lab, &cotton, true, &least, error);
+    if (!result) result = oxygen_least(lab, &cotton, false, &as_hot, error);
     if (result) return result;
     report_text(
         lab->report,
@@ -225,25 +220,16 @@ SingeResult validate_oxygen(Lab *lab, SingeError *error) {
 SingeResult validate_damp(Lab *lab, SingeError *error) {
     static const float shares[] = {0, 0.02f, 0.07f, 0.15f, 0.25f, 0.34f}; // of the mass
     enum { COUNT = sizeof shares / sizeof *shares };
-    BenchMaterials materials;
-    if (bench_materials_open("cotton", &materials)) {
-        bench_materials_close(&materials);
-        return SINGE_ERROR_FORMAT;
-    }
-
+    SingeMaterialDef material = singe_default_material();
+    if (singe_material_preset("cotton", &material, error)) return error->code;
     double speed[COUNT], fastest = 0, top = 0;
     bool burns = false;
     SingeResult result = SINGE_OK;
     report_heads(lab->report, "water, % of the mass|mm/s|over the dry one's|hottest C|");
     for (int k = 0; k < COUNT && !result; k++) {
-        SingeMaterialDef material = materials.items[0].def;
         material.moisture = singe_param(shares[k]);
         StripResult strip;
-        StripSetup setup = strip_setup(&material);
-        setup.cell = 2e-3f;
-        setup.width = 6e-3f;
-        setup.length = 0.08f;
-        setup.threads = lab->threads;
+        const StripSetup setup = narrow_strip(lab, &material, 0.08f);
         result = strip_burn(&setup, &strip, error);
         burns = strip.end == STRIP_THROUGH;
         speed[k] = strip.speed;
@@ -254,7 +240,6 @@ SingeResult validate_damp(Lab *lab, SingeError *error) {
                        speed[k] / speed[0], strip.hottest - 273.15, burns ? "burns" : "goes out");
     }
 
-    bench_materials_close(&materials);
     if (result) return result;
     report_text(
         lab->report,
