@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-from check_openjd import meshes
+from check_openjd import begin, end
 from check_slurm import PLAN, SCENE
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -31,11 +31,7 @@ print(cue.serialize(launcher))
 
 
 def main():
-    program, tools = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    if not (tools / "bin/pycuerun").exists():
-        subprocess.run([sys.executable, "-m", "venv", tools], check=True)
-        subprocess.run([tools / "bin/pip", "install", "--quiet", "--disable-pip-version-check", "--require-hashes", "-r",
-                        ROOT / "tests/locks/opencue.txt"], check=True)
+    program, tools = begin("pycuerun", "opencue.txt")
     script = re.search(r"```python\n(# sweep\.outline\n.*?)```", (ROOT / "docs/sweep.md").read_text(), re.S).group(1)
     with tempfile.TemporaryDirectory() as temporary:
         at = pathlib.Path(temporary) / "the farm's #1"
@@ -59,11 +55,7 @@ def main():
         for frame in [f"{row}-rows" for row in range(first, last + 1)] + ["1-report"]:
             ask("pycuerun", session, "-e", frame)
         ask(program, "sweep", "plan.yaml", "--no-preview", "-o", "plain")
-        by_job, plain = meshes(at / "cue"), meshes(at / "plain")
-        report = (at / "cue/report.csv").exists()
-        print(f"{len(by_job)} meshes of {len(plain)}, {'the same' if by_job == plain else 'OTHER'} bytes; the report is "
-              f"{'there' if report else 'MISSING'}, and {'waits' if waits else 'DOES NOT WAIT'} for the rows")
-        return 0 if plain and by_job == plain and report and waits else 1
+        return end(at / "cue", at / "plain", waits, f"it {'waits' if waits else 'DOES NOT WAIT'} for the rows")
 
 
 if __name__ == "__main__":

@@ -14,19 +14,31 @@ import tempfile
 
 from check_slurm import PLAN, SCENE
 
-LOCK = pathlib.Path(__file__).resolve().parents[1] / "locks/openjd.txt"
+LOCKS = pathlib.Path(__file__).resolve().parents[1] / "locks"
 
 
-def meshes(folder):
-    return {file.relative_to(folder): file.read_bytes() for file in folder.glob("rows/*/ply/*")}
+def begin(tool, lock):
+    """The program and the folder of the arguments; what the lock has is installed there unless the tool is."""
+    program, tools = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    if not (tools / "bin" / tool).exists():
+        subprocess.run([sys.executable, "-m", "venv", tools], check=True)
+        subprocess.run([tools / "bin/pip", "install", "--quiet", "--disable-pip-version-check", "--require-hashes", "-r",
+                        LOCKS / lock], check=True)
+    return program, tools
+
+
+def end(farm, plain, good, said):
+    """The exit status: whether a farm's folder has the meshes of a sweep without it, and a report, and the rest is good."""
+    by_job, by_sweep = ({file.relative_to(folder): file.read_bytes() for file in folder.glob("rows/*/ply/*")}
+                        for folder in (farm, plain))
+    report = (farm / "report.csv").exists()
+    print(f"{len(by_job)} meshes of {len(by_sweep)}, {'the same' if by_job == by_sweep else 'OTHER'} bytes; the report is "
+          f"{'there' if report else 'MISSING'}; {said}")
+    return 0 if by_sweep and by_job == by_sweep and report and good else 1
 
 
 def main():
-    program, tools = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
-    if not (tools / "bin/openjd").exists():
-        subprocess.run([sys.executable, "-m", "venv", tools], check=True)
-        subprocess.run([tools / "bin/pip", "install", "--quiet", "--disable-pip-version-check", "--require-hashes", "-r",
-                        LOCK], check=True)
+    program, tools = begin("openjd", "openjd.txt")
     with tempfile.TemporaryDirectory() as temporary:
         at = pathlib.Path(temporary)
         (at / "scene.yaml").write_text(SCENE.replace("frames: 40", "frames: 8"))
@@ -41,11 +53,7 @@ def main():
         subprocess.run([openjd, "run", "job.json", "--step", "Report", "--run-dependencies"], cwd=at, check=True,
                        capture_output=True)
         subprocess.run([*sweep, "plain"], cwd=at, check=True, capture_output=True)
-        by_job, plain = meshes(at / "jobs"), meshes(at / "plain")
-        report = (at / "jobs/report.csv").exists()
-        print(f"{len(by_job)} meshes of {len(plain)}, {'the same' if by_job == plain else 'OTHER'} bytes; the report is "
-              f"{'there' if report else 'MISSING'}; a broken job is {'refused' if refused else 'TAKEN'}")
-        return 0 if plain and by_job == plain and report and refused else 1
+        return end(at / "jobs", at / "plain", refused, f"a broken job is {'refused' if refused else 'TAKEN'}")
 
 
 if __name__ == "__main__":

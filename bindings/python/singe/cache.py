@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from . import errors
 from .picture import draw_png, html_picture
-from .views import Floats, Integers
+from .views import Drawn
 
 _TYPES = {"float": "<f4", "int": "<i4", "uchar": "u1"}
 _VECTORS = {"position": "x y z", "normal": "nx ny nz", "uv": "s t", "velocity": "vx vy vz",
@@ -22,34 +22,13 @@ _VECTORS = {"position": "x y z", "normal": "nx ny nz", "uv": "s t", "velocity": 
 _RENAMED = {"piece_id": "piece", "vertex_id": "source_vertex", "burnt": "burn", "char": "burn"}
 
 
-class Frame:
-    """A frame of a cache. Its arrays are read-only views of the file's bytes.
+class Frame(Drawn):
+    """A frame of a cache. Its arrays are views of the file's bytes.
 
-    position, rest_position: [vertices, 3] m. normal: [vertices, 3] unit. uv: [vertices, 2]. velocity: [vertices, 3]
-    m/s. temperature, temperature_peak: [vertices] K. mass, char_fraction, ash_fraction: [vertices] fractions of the
-    initial mass. burn_rate: [vertices] 1/s. burn: [vertices] 0 fresh to 1 ash. time_ignited: [vertices] s, -1 not yet.
-    piece, sheet, source_vertex: [vertices]. triangles: [triangles, 3]. time: s. number: of the frame, from 1. gas: the
-    path of its OpenVDB file, or None.
+    triangles: [triangles, 3]. number: of the frame, from 1. gas: the path of its OpenVDB file, or None.
     """
 
-    position: Floats
-    normal: Floats
-    uv: Floats
-    velocity: Floats
-    rest_position: Floats
-    temperature: Floats
-    temperature_peak: Floats
-    mass: Floats
-    burn_rate: Floats
-    char_fraction: Floats
-    ash_fraction: Floats
-    burn: Floats
-    time_ignited: Floats
-    piece: Integers
-    source_vertex: Integers
-    sheet: Integers
     triangles: npt.NDArray[np.int32]
-    time: float
 
     def __init__(self, path: pathlib.Path, number: int):
         self.path, self.number = path, number

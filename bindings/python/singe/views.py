@@ -181,14 +181,13 @@ def add_fluxes(returned: Any, sums: Any, count: int) -> None:
         array += value
 
 
-class Surface:
-    """The drawn surface of a simulation at one time, as in the cache. Its arrays do not change.
+class Drawn:
+    """A drawn surface at one time, of a simulation or a cache. Its arrays are read-only.
 
-    position, normal, velocity, rest_position: [vertices, 3] m, unit, m/s, m. uv: [vertices, 2]. temperature,
-    temperature_peak: [vertices] K. mass, char_fraction, ash_fraction: [vertices] fractions of the initial mass.
-    burn_rate: [vertices] 1/s. burn: [vertices] 0 fresh to 1 ash. time_ignited: [vertices] s, -1 never. piece, sheet:
-    [vertices]. source_vertex: [vertices] of the input, -1 for a new one. triangles: [triangles, 3],
-    counter-clockwise seen from the front.
+    position, rest_position: [vertices, 3] m. normal: [vertices, 3] unit. uv: [vertices, 2]. velocity: [vertices, 3]
+    m/s. temperature, temperature_peak: [vertices] K. mass, char_fraction, ash_fraction: [vertices] fractions of the
+    initial mass. burn_rate: [vertices] 1/s. burn: [vertices] 0 fresh to 1 ash. time_ignited: [vertices] s, -1 not yet.
+    piece, sheet: [vertices]. source_vertex: [vertices] of the input, -1 for a new one. time: s.
     """
 
     position: Floats
@@ -207,6 +206,15 @@ class Surface:
     piece: Integers
     source_vertex: Integers
     sheet: Integers
+    time: float
+
+
+class Surface(Drawn):
+    """The drawn surface of a simulation, as in the cache. Its arrays do not change.
+
+    triangles: [triangles, 3], counter-clockwise seen from the front.
+    """
+
     triangles: npt.NDArray[np.uint32]
 
     def __init__(self, owner: "OwnedSurface", time: float):
