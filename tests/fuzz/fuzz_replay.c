@@ -26,6 +26,7 @@ static Tape make_recording(int which) {
     Tape tape = {0};
     SingeSimDef def = recorded(scene_def(), &tape);
     def.gas.enabled = which == 1, def.gas.cell_size = 0.05f, def.gas.height = 0.1f;
+    def.solver.substeps = 2;
     def.contact.enabled = def.solver.tearing = def.solver.creases = which == 2;
     Scene scene;
     if (scene_build(&def, 3, &scene)) abort();

@@ -1,9 +1,11 @@
 #!/bin/sh
 # Runs every fuzz target for some seconds, or all of them for some hours, two at a time: run.sh BUILD_DIR [SECONDS |
-# HOURSh]. Fails when one of them finds something; what it found is left in BUILD_DIR/fuzz/TARGET/.
+# HOURSh]. Fails when one of them finds something; what it found is left in BUILD_DIR/fuzz/TARGET/. Fails too when one
+# makes less than SLOWEST runs in a second of processor time: so few find nothing.
 set -u
 build=${1:?usage: run.sh BUILD_DIR [SECONDS | HOURSh]}
 seconds=${2:-30}
+SLOWEST=8
 seeds=$(cd "$(dirname "$0")" && pwd)/seeds
 build=$(cd "$build" && pwd) || exit 2
 case $seconds in *h)
@@ -25,7 +27,12 @@ fuzz() {
     if "$1" -max_total_time="$seconds" -timeout="$limit" -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
         -artifact_prefix="$work/findings/" $start >"$work/log" 2>&1; then
         runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$work/log")
-        echo "  fuzz_$name: ok, ${runs:-?} runs" >"$work/summary"
+        times >"$work/times" # the second line is the children's, such as 1m2.34s 0m0.50s
+        sed 1d "$work/times" | tr 'ms' '  ' | awk -v name="$name" -v runs="${runs:-0}" -v slowest=$SLOWEST '{
+            cpu = 60 * $1 + $2 + 60 * $3 + $4
+            printf "  fuzz_%s: %s, %d runs, %.0f in a second of processor time\n", name,
+                   runs < slowest * cpu ? "TOO SLOW" : "ok", runs, runs / cpu
+        }' >"$work/summary"
     else
         tail -n 40 "$work/log"
         if [ "$name" = calls ]; then # what it found as recordings, which `singe replay` repeats (docs/replay.md)

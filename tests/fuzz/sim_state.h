@@ -27,7 +27,14 @@ static inline void demand_surface(SingeSim *sim) {
 }
 
 static inline void digest_add(uint64_t *digest, const void *data, size_t bytes) {
-    for (size_t i = 0; i < bytes; i++) *digest = (*digest ^ ((const uint8_t *)data)[i]) * 1099511628211u;
+    const uint8_t *at = data;
+    for (size_t size; bytes > 0; at += size, bytes -= size) {
+        uint64_t word = 0;
+        size = bytes < sizeof word ? bytes : sizeof word;
+        memcpy(&word, at, size);
+        *digest = (*digest ^ word) * 1099511628211u;
+        *digest ^= *digest >> 32;
+    }
 }
 
 /// Of what a caller sees; what contact remembers of its last search may be of a step that failed.
