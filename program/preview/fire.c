@@ -1,17 +1,25 @@
 // Prepares the gas for drawing: flame and smoke, cell by cell, and the empty regions.
 //
-// Burning is q / (q + q0) of the heat released, q (W/m3). The height of a flame's gas above the paper is that above the
-// paper that burns in its cell, and elsewhere found by following the velocity back, layer by layer from below: r(x) =
-// (r(x - v dt) + dz) times the share that was burning there; it distinguishes the clear base, the bright centre and the
-// torn tip. Smoke is its extinction, 8.7 m2/g times its density (Mulholland & Croarkin 2000, for the soot of flames).
+// With q the heat released (W/m3), the flame is f = ln(q/q0) / ln(q1/q0), from 0 to 1. The logarithm falls evenly from a
+// flame's middle to its outside and its tip, so that noise moves its edge alike everywhere; q itself is a peak with steep
+// sides, whose contours are round.
+//
+// The gas burns its fuel within a cell or two, and a flame of that size burns as it mixes with air, which takes longer the
+// larger it is. So light lasts for a while in what rises out of burning cells, and falls by e in tau = sqrt(dx/2g):
+// f(x) is at least f(x - v dt) - dz/(vz tau ln(q1/q0)).
+//
+// The height of a flame's gas above the paper is that above the paper that burns in its cell, and elsewhere found by
+// following the velocity back, layer by layer from below: r(x) = (r(x - v dt) + dz) times the share that was burning
+// there; it distinguishes the clear base, the bright centre and the torn tip. Smoke is its extinction, 8.7 m2/g times its
+// density (Mulholland & Croarkin 2000, for the soot of flames).
 
 #include "preview/internal.h"
 
 #include <string.h>
 
-#define BURNING 2e6f       ///< W/m3, q0
+#define FLAME_LOW 5e4f     ///< W/m3, the heat released where the flame is 0
+#define FLAME_HIGH 5e6f    ///< where it is 1
 #define FIRE_PASSING 0.75f ///< share of the gas over burning paper that came from flames below
-#define FLAME_SEEN 0.085f  ///< a smaller value is outside the flame, whatever the noise
 #define SMOKE_SEEN 0.08f   ///< 1/m
 
 static size_t fire_at(const Fire *fire, int x, int y, int z) {
@@ -47,14 +55,15 @@ static void raise_cells(Preview *preview) {
                 FireCell *cell = &fire->cells[here];
                 const float *drift = fire->source[here];
                 cell->rise = 0;
-                cell->flame = drift[2];
-                if (cell->flame <= 0) continue;
 
                 // the layer below, where the gas came from: at (x - vx/vz, y - vy/vz)
                 float fx, fy;
                 int ix = noise_floor((float)x - drift[0], &fx), iy = noise_floor((float)y - drift[1], &fy);
                 const FireCell *a = &fire->cells[fire_at(fire, ix, iy, z - 1)], *b = a + fire->size[0];
                 float flame = mixf(mixf(a[0].flame, a[1].flame, fx), mixf(b[0].flame, b[1].flame, fx), fy);
+                cell->flame = maxf(drift[2], flame - fire->fading / drift[3]);
+                if (cell->flame <= 0) continue;
+
                 float rise = mixf(mixf(a[0].rise, a[1].rise, fx), mixf(b[0].rise, b[1].rise, fx), fy);
                 if (flame > 0)
                     cell->rise = cell->flame * minf(2 * flame / cell->flame, 1) * (rise / flame + fire->cell);
@@ -256,8 +265,11 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
     fire->cell = gas->cell;
     fire->scale = clampf(gas->cell / FIRE_SCALE_CELL, 1, 3);
     fire->origin = float3_add(float3_load(gas->origin), float3(shift, shift, shift));
+    const float range = logf(FLAME_HIGH / FLAME_LOW);
+    fire->fading = gas->cell / (range * sqrtf(gas->cell / (2 * 9.81f)));
     memset(fire->cells, 0, fire->cell_capacity * sizeof *fire->cells);
     memset(fire->source, 0, fire->cell_capacity * sizeof *fire->source);
+    for (size_t i = 0; i < fire->cell_capacity; i++) fire->source[i][3] = 1;
     size_t from = 0;
 
     for (uint32_t z = 0; z < gas->size[2]; z++)
@@ -265,7 +277,8 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
             for (uint32_t x = 0; x < gas->size[0]; x++, from++) {
                 size_t to = fire_at(fire, (int)x + FIRE_BORDER, (int)y + FIRE_BORDER, (int)z + FIRE_BORDER);
                 float flame = gas->flame[from], smoke = gas->smoke[from], up = maxf(gas->velocity[from][2], 0.1f);
-                fire->source[to][2] = flame > 0 ? flame / (flame + BURNING) : 0;
+                fire->source[to][2] = flame > FLAME_LOW ? minf(logf(flame / FLAME_LOW) / range, 1) : 0;
+                fire->source[to][3] = up;
                 fire->cells[to].smoke = smoke > 0 ? GAS_EXTINCTION * smoke : 0;
                 for (int c = 0; c < 2; c++) fire->source[to][c] = clampf(gas->velocity[from][c] / up, -1, 1);
             }

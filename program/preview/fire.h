@@ -18,7 +18,7 @@ enum {
 
 /// The values of a cell. Four floats, interpolated together.
 typedef struct FireCell {
-    float flame; ///< 0 none to 1 burning fully
+    float flame; ///< 0 none to 1 burning fully, logarithmic (fire.c)
     float rise;  ///< m times flame: height of the flame above the paper
     float smoke; ///< 1/m, extinction
     float glow;  ///< light of the flames that reaches the smoke, per unit of albedo
@@ -51,10 +51,11 @@ typedef struct Fire {
     size_t cell_capacity;
     int bricks[3];
     uint8_t *seen;      ///< [bricks] FIRE_FLAME and FIRE_SMOKE that eddies may bring there
-    float (*source)[3]; ///< [cells] displacement of the gas along x and y as it rises by one; its flame
+    float (*source)[4]; ///< [cells] displacement of the gas along x and y as it rises by one; its flame; its rise, m/s
     float (*roots)[2];  ///< [cells] rate at which paper burns there, and its height times that
     uint8_t *burns;     ///< [cells] whether flame may be within reach of the small eddies
     size_t brick_capacity;
+    float fading;      ///< m/s: what flames lose as they rise by a cell, times their speed
     float scale;       ///< of flames, 1 where cells are small: what burns over a wide cell has larger tongues
     float moment;      ///< s, time for which the eddies have risen
     Float3 daylight;   ///< of sun and sky, per unit of the smoke's albedo
@@ -65,8 +66,9 @@ typedef struct Fire {
 } Fire;
 
 #define FIRE_SCALE_CELL 0.017f ///< m, cells above which flames are larger, in proportion
-#define FLAME_HEIGHT 0.058f    ///< m, typical height of tongues
-#define FLAME_END 0.17f        ///< m, max height of a flame
+#define FLAME_SEEN 0.15f       ///< a smaller value is outside of all flames
+#define FLAME_HEIGHT 0.08f     ///< m, typical height of tongues
+#define FLAME_END 0.30f        ///< m, max height of a flame
 
 // m, max displacement by eddies
 #define FIRE_WARP_WIDE 0.0055f
@@ -114,9 +116,9 @@ typedef struct Matter {
 // fire_shade.c
 void fire_fill_colours(Preview *preview);
 
-/// Light of a full flame, radiance per metre, for its lamps, and the share of it that a cell emits.
+/// Light of a full flame, radiance per metre, for its lamps, and the share of it that cell `at` emits.
 Float3 fire_emission(const Preview *preview);
-float fire_share(const FireCell *cell);
+float fire_share(const Fire *fire, size_t at);
 
 /// How bright a flame around p is now, 1 in the mean: tongues come and go.
 float fire_flicker(const Fire *fire, Float3 p);

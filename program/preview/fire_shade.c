@@ -4,13 +4,15 @@
 // visible. Finer detail is added: the lookup position is shifted by noise (domain warping), which rises with the gas and
 // grows longer as the gas accelerates, so flames have tongues and streaks and flicker.
 //
-// A flame over paper is a thin shell of glowing soot around clear, hot vapour. With f the share that burns, r the height
-// above the paper and N noise of the width of a tongue, its edge lies where
+// A flame over paper is a thin shell of glowing soot around clear, hot vapour. With f the flame (fire.c), r the height
+// above the paper and N, n noises of the width of a tongue and of a streak, its edge lies where
 //
-//     e = f + a(r) N - EDGE - TAPER r / H = 0,   H = (1 + h N) FLAME_HEIGHT,
+//     e = f + a(r) (0.6 - 2.4 |N|) + b(r) (0.4 - 2 |n|) - EDGE - TAPER (1 - exp(-r/H)) = 0
 //
-// so that a tongue narrows to a tip, and is as tall as its fire is strong. The depth inside of the edge is d = e/|grad
-// e|, in metres, whatever the size of the cells. Light comes from the shell's profile
+// |N| has creases, where it is 0: they are the middles of thin sheets and sharp tongues. A smooth noise has round hills
+// instead, and its flames are domes. The taper is steep at first, and so tongues narrow below and end in long tips. They
+// are as tall as their fire is strong. The depth inside of the edge is d = e/|grad e|, in metres, whatever the size of
+// the cells. Light comes from the shell's profile
 //
 //     P(d) = 0 outside, d/w in the first w = SHELL_RISE, then fill + (1 - fill) exp(-(d - w)/SHELL)
 //
@@ -41,8 +43,8 @@
 #define BLUE_ENDS 0.005f    ///< m
 #define SHELL_RISE 0.0005f  ///< m, w
 #define SHELL 0.0018f       ///< m
-#define EDGE 0.17f          ///< burning share at a flame's edge
-#define TAPER 0.40f         ///< what is added to it over a flame's height
+#define EDGE 0.42f          ///< f at a flame's edge
+#define TAPER 0.55f         ///< what is added to it above a flame's height
 #define STAND_OFF 0.0006f   ///< m above the paper, below which nothing is visible
 #define SOOT_BEGINS 0.0038f ///< m
 #define SOOT_FULL 0.0105f
@@ -112,12 +114,13 @@ static Float3 flame_colour(const Fire *fire, float hot) {
     return float3_mix(fire->colours[i], fire->colours[i + 1], x - (float)i);
 }
 
-Float3 fire_emission(const Preview *preview) { return float3_scale(flame_colour(&preview->fire, 1), 56.5f); }
+Float3 fire_emission(const Preview *preview) { return float3_scale(flame_colour(&preview->fire, 1), 44.5f); }
 
-float fire_share(const FireCell *cell) {
-    if (cell->flame <= 0.05f) return 0;
-    float rise = cell->rise / cell->flame;
-    return stepf(0.1f, 0.6f, cell->flame) * stepf(SOOT_BEGINS, SOOT_FULL, rise);
+float fire_share(const Fire *fire, size_t at) {
+    const FireCell *cell = &fire->cells[at];
+    if (cell->flame <= FLAME_SEEN) return 0;
+    float burns = fire->source[at][2]; // without what only glows on
+    return stepf(0.32f, 0.89f, burns) * stepf(SOOT_BEGINS, SOOT_FULL, cell->rise / cell->flame);
 }
 
 float fire_flicker(const Fire *fire, Float3 p) {
@@ -129,11 +132,12 @@ float fire_flicker(const Fire *fire, Float3 p) {
 /// The flame at a position, from its cell, the gradient of its share in 1/m, and the noises.
 static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noise wide, Noise fine, FirePoint *point) {
     float rise = maxf(cell->rise / cell->flame, 0), torn = stepf(0, 0.02f, rise);
-    float tall = rise / (fire->scale * FLAME_HEIGHT * (1 + 0.45f * wide.c + 0.2f * fine.d));
-    float coarse = 0.08f + 0.55f * torn + 0.15f * minf(tall, 1), small = 0.03f + 0.26f * torn;
-    float edge = cell->flame * (1 + coarse * wide.c + small * (0.6f - 2.2f * fabsf(fine.c))) - EDGE - TAPER * tall -
-                 0.2f * (1 - torn);
-    float noisy = cell->flame * (coarse / EDDY_WIDE + small / EDDY_FINE) / fire->scale;
+    float tall = rise / (fire->scale * FLAME_HEIGHT);
+    float coarse = 0.075f + 0.425f * torn, small = 0.025f + 0.225f * torn;
+    float edge = cell->flame + coarse * (0.6f - 2.4f * fabsf(wide.c)) + small * (0.4f - 2 * fabsf(fine.c)) - EDGE -
+                 TAPER * (1 - expf(-tall)) - 0.1f * (1 - torn);
+    edge = minf(edge, 2 * (cell->flame - FLAME_SEEN));
+    float noisy = 2 * (coarse / EDDY_WIDE + small / EDDY_FINE) / fire->scale;
     point->depth = maxf(edge / sqrtf(slope * slope + 0.4f * noisy * noisy + 1), FIRE_OUTSIDE);
 
     // the shell's profile, and its integral from the edge
@@ -144,7 +148,7 @@ static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noi
     point->shell = 0.5f * outer * outer / SHELL_RISE + fill * inner + SHELL * (1 - fill - fading);
 
     float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001f * fine.d);
-    float strong = stepf(0, 0.25f, edge), hot = 0.35f + 0.42f * strong - 0.3f * tip + 0.25f * wide.d + 0.15f * fine.a;
+    float strong = stepf(0, 0.7f, edge), hot = 0.39f + 0.42f * strong - 0.2f * tip + 0.25f * wide.d + 0.15f * fine.a;
     soot *= soot;
     float root = stepf(STAND_OFF, 3 * STAND_OFF, rise) * (1 - soot) * (1 - stepf(BLUE_ENDS / 3, BLUE_ENDS, rise));
     soot *= 0.3f + 1.2f * stepf(-0.5f, 0.5f, 0.7f * wide.d + 0.6f * fine.a);

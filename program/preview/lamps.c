@@ -141,11 +141,11 @@ void light_gather(Preview *preview) {
         Cluster flames[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
         float volume = fire->cell * fire->cell * fire->cell;
         Float3 strength = float3_scale(fire_emission(preview), flame_cast(preview) * 0.14f * volume / PI_F);
-        const FireCell *cell = fire->cells;
+        size_t at = 0;
         for (int z = 0; z < fire->size[2]; z++)
             for (int y = 0; y < fire->size[1]; y++)
-                for (int x = 0; x < fire->size[0]; x++, cell++) {
-                    float share = fire_share(cell);
+                for (int x = 0; x < fire->size[0]; x++, at++) {
+                    float share = fire_share(fire, at);
                     if (share <= 0) continue;
                     Float3 position = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);
                     Float3 light = float3_scale(strength, share * fire_flicker(fire, position));

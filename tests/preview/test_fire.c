@@ -115,7 +115,8 @@ TEST(a_bright_flame_is_pale_in_its_centre) {
 enum { LONG = 40, WIDE = 16, DEEP = 4, COLUMN = WIDE * DEEP * LONG };
 
 /// A line of fire on a strip of paper at z = 0, 13 cm along x: the whole of a box of cells of 8 mm burns. The paper is
-/// `above` m higher than the box's lowest middles.
+/// `above` m higher than the box's lowest middles. Over the paper the heat falls by e in 2.2 cm, as it does over
+/// examples/letter.
 typedef struct Line {
     float temperature[COLUMN], smoke[COLUMN], flame[COLUMN], velocity[COLUMN][3];
     SingeGas gas;
@@ -134,7 +135,7 @@ static void line_make(Line *l, float above) {
     for (int i = 0; i < COLUMN; i++) {
         int z = i / (WIDE * DEEP), y = i / WIDE % DEEP, x = i % WIDE;
         bool in = (y == 1 || y == 2) && x > 0 && x < WIDE - 1;
-        l->temperature[i] = in ? 1400 : 293, l->flame[i] = in ? 2e6f * expf(-0.1f * (float)z) : 0;
+        l->temperature[i] = in ? 1400 : 293, l->flame[i] = in ? 5e6f * expf(-0.36f * (float)z) : 0;
         l->velocity[i][2] = 1;
     }
 }
@@ -262,8 +263,8 @@ TEST(tongues_narrow_and_rise) {
     for (int up = 0; up < H / 2; up++) best = overlap[up] > overlap[best] ? up : best;
     print_message("lit %.0f low, %.0f high; overlap %.2f at 0, %.2f at %d mm\n", (double)wide[0], (double)wide[1],
                   (double)overlap[0], (double)overlap[best], best);
-    assert_true(wide[1] < 0.4f * wide[0]);                      // .52 without a taper
-    assert_true(best > 3 && overlap[best] > 1.3f * overlap[0]); // 1.12 with eddies that did not form tongues
+    assert_true(wide[1] < 0.4f * wide[0]);                      // .75 without a taper
+    assert_true(best > 3 && overlap[best] > 1.3f * overlap[0]); // 1.0 with eddies without creases: domes
 }
 
 /// The burning rim is visible through the base of its flames. The bar, a tenth of white paper's light and a twentieth

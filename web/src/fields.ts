@@ -88,10 +88,11 @@ export function meshOf(surface: Surface, time: number, pace: number): Mesh {
 
 // ---- the fire
 
-const BURNING = 0.8e6; // W/m3 at which half of the gas counts as burning: less than in fire.c, as cells are larger
+const FLAME_LOW = 2e4, FLAME_RANGE = Math.log(100); // W/m3: less than in fire.c, as cells are larger
 const EXTINCTION = 8700; // m2/kg of soot
 const PASSING = 0.75; // share of the gas over burning paper that came from flames below
-const FLAME_END = 0.17; // m
+const FLAME_END = 0.3; // m
+const FLAME_SEEN = 0.15; // a smaller value is outside of all flames
 const LIGHTS = 6;
 
 export interface Fire {
@@ -121,6 +122,7 @@ export function fireOf(gas: Gas, surface: Surface): Fire {
 
     // height times flame, layer by layer: where the gas came from, at (x - vx/vz, y - vy/vz) below; over paper mostly its
     // own height. Up a hanging sheet gas that has burnt for a while passes what begins to.
+    const fading = gas.cell / (FLAME_RANGE * Math.sqrt(gas.cell / (2 * 9.81))); // m/s: what flames lose as they rise by a cell
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     const below = (of: Float32Array, x: number, y: number, z: number) => {
         const ix = Math.floor(x), iy = Math.floor(y), fx = x - ix, fy = y - iy;
@@ -130,12 +132,12 @@ export function fireOf(gas: Gas, surface: Surface): Fire {
     for (let z = 0, i = 0; z < nz; z++)
         for (let y = 0; y < ny; y++)
             for (let x = 0; x < nx; x++, i++) {
-                const power = gas.flame[i]!, smoke = Math.max(gas.smoke[i]!, 0) * EXTINCTION;
-                let f = power > 0 ? power / (power + BURNING) : 0, r = 0;
+                const power = gas.flame[i]!, smoke = Math.max(gas.smoke[i]!, 0) * EXTINCTION, up = Math.max(gas.velocity[3 * i + 2]!, 0.1);
+                const from = [x - clamp(gas.velocity[3 * i]! / up, -1, 1), y - clamp(gas.velocity[3 * i + 1]! / up, -1, 1), z - 1] as const;
+                const fed = z > 0 ? below(flame, ...from) : 0;
+                let f = Math.max(power > FLAME_LOW ? Math.min(Math.log(power / FLAME_LOW) / FLAME_RANGE, 1) : 0, fed - fading / up), r = 0;
                 if (f > 0) {
-                    const up = Math.max(gas.velocity[3 * i + 2]!, 0.1);
-                    const from = [x - clamp(gas.velocity[3 * i]! / up, -1, 1), y - clamp(gas.velocity[3 * i + 1]! / up, -1, 1), z - 1] as const;
-                    const fed = z > 0 ? below(flame, ...from) : 0, above = z + 1 < nz ? i + nx * ny : i, root = rootRate[i]! > 0 ? i : above;
+                    const above = z + 1 < nz ? i + nx * ny : i, root = rootRate[i]! > 0 ? i : above;
                     if (fed > 0) r = Math.min((2 * fed) / f, 1) * (below(rise, ...from) / fed + gas.cell);
                     if (rootRate[root]! > 0) {
                         const height = Math.max(gas.origin[2] + (z + 0.5) * gas.cell - rootHeight[root]! / rootRate[root]!, -gas.cell);
@@ -148,7 +150,7 @@ export function fireOf(gas: Gas, surface: Surface): Fire {
                 cells[4 * i] = 255 * f;
                 cells[4 * i + 1] = 255 * clamp((f * r) / FLAME_END, 0, 1);
                 cells[4 * i + 2] = clamp((255 * smoke) / 20, 0, 255);
-                if (f > 0.03 || smoke > 0.15) {
+                if (f > FLAME_SEEN || smoke > 0.15) {
                     const at = [x, y, z];
                     for (let c = 0; c < 3; c++) {
                         low[c] = Math.min(low[c]!, at[c]!);
@@ -184,8 +186,9 @@ export function lightsOf(fire: Fire | null, mesh: Mesh): Lights {
             for (let y = 0; y < ny; y++)
                 for (let x = 0; x < nx; x++, i++) {
                     const f = fire.cells[4 * i]! / 255;
-                    if (f < 0.08) continue;
-                    add(fire.origin[0] + (x + 0.5) * fire.cell, fire.origin[1] + (y + 0.5) * fire.cell, fire.origin[2] + (z + 0.5) * fire.cell, f * volume);
+                    if (f < FLAME_SEEN) continue;
+                    const burns = 1 / (1 + 40 * Math.exp(-FLAME_RANGE * f)); // q / (q + 40 FLAME_LOW)
+                    add(fire.origin[0] + (x + 0.5) * fire.cell, fire.origin[1] + (y + 0.5) * fire.cell, fire.origin[2] + (z + 0.5) * fire.cell, burns * volume);
                 }
     } else {
         for (let i = 0; i < mesh.vertices.length; i += FLOATS) {

@@ -294,8 +294,8 @@ uniform vec4 fireLights[6];
 uniform vec3 fireColour;
 out vec4 colour;
 
-const float BASE_SPEED = 0.14, BUOYANCY = 3.0, EDDY_RATE = 8.0, EDDY_WIDE = 0.014, EDDY_FINE = 0.006, FLAME_HEIGHT = 0.058, FLAME_END = 0.17;
-const float SOOT_DENSE = 42.0, SOOT_OPAQUE = 14.0, BLUE_DENSE = 0.9, BLUE_ENDS = 0.005, SHELL_RISE = 0.0005, SHELL = 0.0018, EDGE = 0.17, TAPER = 0.40;
+const float BASE_SPEED = 0.14, BUOYANCY = 3.0, EDDY_RATE = 8.0, EDDY_WIDE = 0.014, EDDY_FINE = 0.006, FLAME_HEIGHT = 0.08, FLAME_END = 0.3, FLAME_SEEN = 0.15;
+const float SOOT_DENSE = 42.0, SOOT_OPAQUE = 14.0, BLUE_DENSE = 0.9, BLUE_ENDS = 0.005, SHELL_RISE = 0.0005, SHELL = 0.0018, EDGE = 0.42, TAPER = 0.55;
 const float STAND_OFF = 0.0006, SOOT_BEGINS = 0.0038, SOOT_FULL = 0.0105, OUTSIDE = -0.006;
 
 float passed(float height) {
@@ -315,10 +315,11 @@ struct Point { vec3 soot, root; float depth, profile, shell, opaque; };
 Point flame(vec4 c, vec4 wide, vec4 fine) {
     Point point = Point(vec3(0.0), vec3(0.0), OUTSIDE, 0.0, 0.0, 0.0);
     if (c.r <= 0.02) return point;
-    float rise = max(c.g / c.r, 0.0), torn = stepf(0.0, 0.02, rise), tall = rise / (FLAME_HEIGHT * (1.0 + 0.45 * wide.b + 0.2 * fine.a));
-    float coarse = 0.08 + 0.55 * torn + 0.15 * min(tall, 1.0), small = 0.03 + 0.26 * torn;
-    float edge = c.r * (1.0 + coarse * wide.b + small * (0.6 - 2.2 * abs(fine.b))) - EDGE - TAPER * tall - 0.2 * (1.0 - torn);
-    float noisy = c.r * (coarse / EDDY_WIDE + small / EDDY_FINE);
+    float rise = max(c.g / c.r, 0.0), torn = stepf(0.0, 0.02, rise), tall = rise / FLAME_HEIGHT;
+    float coarse = 0.075 + 0.425 * torn, small = 0.025 + 0.225 * torn;
+    float edge = c.r + coarse * (0.6 - 2.4 * abs(wide.b)) + small * (0.4 - 2.0 * abs(fine.b)) - EDGE - TAPER * (1.0 - exp(-tall)) - 0.1 * (1.0 - torn);
+    edge = min(edge, 2.0 * (c.r - FLAME_SEEN));
+    float noisy = 2.0 * (coarse / EDDY_WIDE + small / EDDY_FINE);
     point.depth = max(edge * inversesqrt(c.a * c.a + 0.4 * noisy * noisy + 1.0), OUTSIDE);
 
     float tip = stepf(0.35, 1.4, tall), fill = mix(0.02, 0.12, tip), outer = clamp(point.depth, 0.0, SHELL_RISE), inner = max(point.depth - SHELL_RISE, 0.0);
@@ -327,7 +328,7 @@ Point flame(vec4 c, vec4 wide, vec4 fine) {
     point.shell = 0.5 * outer * outer / SHELL_RISE + fill * inner + SHELL * (1.0 - fill - fading);
 
     float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001 * fine.a);
-    float hot = 0.35 + 0.42 * stepf(0.0, 0.25, edge) - 0.3 * tip + 0.25 * wide.a + 0.15 * fine.r;
+    float hot = 0.39 + 0.42 * stepf(0.0, 0.7, edge) - 0.2 * tip + 0.25 * wide.a + 0.15 * fine.r;
     soot *= soot;
     float root = stepf(STAND_OFF, 3.0 * STAND_OFF, rise) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 3.0, BLUE_ENDS, rise));
     root *= stepf(0.0, 2.0 * SHELL, point.depth); // its outline is no ring

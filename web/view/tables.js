@@ -37,7 +37,7 @@ export function glowBytes() {
     const width = 128, values = new Float32Array(8 * width);
     for (let i = 0; i < width; i++) {
         const u = i / (width - 1), ember = blackbody(800 + 1300 * u), flame = blackbody(1400 + 650 * u);
-        const bright = (0.3 + 4.9 * u * u) / (0.2126 * flame[0] + 0.7152 * flame[1] + 0.0722 * flame[2]);
+        const bright = (0.3 + 9.2 * u ** 3) / (0.2126 * flame[0] + 0.7152 * flame[1] + 0.0722 * flame[2]);
         [ember, flame.map((c) => c * bright)].forEach((colour, row) => values.set(colour, 4 * (row * width + i)));
     }
     return { width, values };
