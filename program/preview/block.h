@@ -30,7 +30,8 @@ typedef struct Block {
     float low[LANES], high[LANES];
     float shown[LANES], squares[LANES]; ///< sums of the samples' luminance, as l / (1 + l), and of its square
     float clear[LANES];                 ///< of a shadow ray
-    bool hidden;                        ///< whether a ray to sun or sky was blocked
+    bool hidden;                        ///< whether a part of the rays to sun or sky was blocked
+    bool settled[LIT_KINDS];            ///< whether all or none of a kind's rays were: no more are needed
     float spread;                 ///< pixels over which lens and shutter spread what is seen, the largest of the points
     Float3 lit[LIT_KINDS][LANES]; ///< light before occlusion, summed over samples
     float lit_seen[LIT_KINDS][LANES], lit_asked[LIT_KINDS][LANES];      ///< luminance found visible, and tested
@@ -45,6 +46,8 @@ enum {
     SAMPLES_FIRST = 4,  ///< that every pixel gets
     SAMPLES_STILL = 64, ///< of a still: every pixel gets all of them, and nothing is smoothed
 };
+
+static inline bool is_still(const Preview *preview) { return preview->def.samples >= SAMPLES_STILL; }
 
 // points.c
 /// A sample's position in the pixel: a tent of radius 0.9 pixel, softer than a box and without ringing.
@@ -65,8 +68,8 @@ void block_find_points(const Preview *preview, Block *block, const int *active);
 size_t block_pixel(const Preview *preview, const Block *block, int lane);
 
 // samples.c
-/// Adds the colour of block->point in one sample and its layers. `ask`: whether rays test what lights it.
-void block_add_light(const Preview *preview, Block *block, const int *active, int sample, bool ask);
+/// Adds the colour of block->point in one sample and its layers. In lanes of `ask` rays test what lights it.
+void block_add_light(const Preview *preview, Block *block, const int *active, int sample, const int *ask);
 
 /// Takes as many samples of the pixels as they need, and writes the picture and its layers.
 void block_draw(Preview *preview, Block *block);
@@ -81,12 +84,15 @@ float light_mirrored(const Point *point);
 /// Whether the point that the lane sees is lit.
 bool light_reaches(const Block *block, const int *active, int lane);
 
-/// Adds the light of sun and sky that reaches the eye from block->point, times `through`, before occlusion, and if
-/// `ask` tests its visibility by a ray per lane.
+/// Adds the light of sun and sky that reaches the eye from block->point, times `through`, before occlusion, and tests its
+/// visibility by a ray per lane of `ask`.
 void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
-                   bool ask);
+                   const int *ask);
 void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
-                   bool ask);
+                   const int *ask);
+
+/// Counts what the rays of a kind have met: the luminance that each lane asked for, and the open share of it.
+void light_count(const Preview *preview, Block *block, int kind, const float asked[LANES], const float open[LANES]);
 
 /// Whether anything could occlude sun or sky at any of the points.
 bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active);
@@ -94,7 +100,7 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
 // lamps.c
 /// The same for the light of flames and embers.
 void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
-               bool ask);
+               const int *ask);
 
 // seen.c
 /// Writes the light of a pixel with that many samples. `mixed`: it shows several faces.

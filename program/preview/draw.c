@@ -44,6 +44,7 @@ static void draw_mirrored(Preview *preview, Block *block) {
         active[i] = -1;
     }
 
+    const int unasked[LANES] = {0};
     float reached[LANES], share = 1.0f / RAYS;
     for (int s = 0; s < RAYS; s++) {
         int hit[LANES];
@@ -63,7 +64,7 @@ static void draw_mirrored(Preview *preview, Block *block) {
             hit[i] = active[i] && block->point[i].hit ? -1 : 0;
             if (active[i] && !s) reached[i] = block->point[i].distance;
         }
-        block_add_light(preview, block, hit, SAMPLE_CENTRE, false);
+        block_add_light(preview, block, hit, SAMPLE_CENTRE, unasked);
         for (int i = 0; i < LANES; i++) {
             if (!hit[i]) continue;
             Mirrored *mirrored =

@@ -50,8 +50,24 @@ static bool is_outshone(const Block *block, int lane, float luminance) {
     return luminance < 0.02f * lamps;
 }
 
+void light_count(const Preview *preview, Block *block, int kind, const float asked[LANES], const float open[LANES]) {
+    int count = 0, clear = 0, blocked = 0;
+    for (int i = 0; i < LANES; i++) {
+        if (!(asked[i] > 0)) continue;
+        block->lit_asked[kind][i] += asked[i];
+        block->lit_seen[kind][i] += asked[i] * open[i];
+        count++;
+        clear += block->clear[i] > 0.99f;
+        blocked += block->clear[i] < 0.01f;
+    }
+
+    const bool even = clear == count || blocked == count;
+    block->settled[kind] = block->settled[kind] || (even && count >= LANES / 2 && !is_still(preview));
+    block->hidden = block->hidden || (!even && kind != LIT_LAMPS);
+}
+
 void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
-                   bool ask) {
+                   const int *ask) {
     float asked[LANES];
     bool any = false;
     for (int i = 0; i < LANES; i++) {
@@ -68,7 +84,7 @@ void light_add_sun(const Preview *preview, Block *block, const int *active, int 
         Float3 light = float3_scale(float3_mul(light_reflect(point, l), preview->sun_light), through[i]);
         block->lit[LIT_SUN][i] = float3_add(block->lit[LIT_SUN][i], light);
         asked[i] = float3_luminance(light);
-        if (!ask || asked[i] < 1e-4f || is_outshone(block, i, asked[i])) continue;
+        if (!ask[i] || block->settled[LIT_SUN] || asked[i] < 1e-4f || is_outshone(block, i, asked[i])) continue;
         float side = float3_dot(point->geometric, l) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
         aim_ray(&block->shadow, i, float3_mad(point->position, point->geometric, side), l, 0, INFINITY, block->time[i]);
         block->valid[i] = -1;
@@ -78,11 +94,7 @@ void light_add_sun(const Preview *preview, Block *block, const int *active, int 
     if (!any) return;
     for (int i = 0; i < LANES; i++) asked[i] = block->valid[i] ? asked[i] : 0;
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
-    for (int i = 0; i < LANES; i++) {
-        block->lit_asked[LIT_SUN][i] += asked[i];
-        block->lit_seen[LIT_SUN][i] += asked[i] * block->clear[i];
-        block->hidden = block->hidden || (asked[i] > 0 && block->clear[i] < 0.99f);
-    }
+    light_count(preview, block, LIT_SUN, asked, block->clear);
 }
 
 /// Length of ambient-occlusion rays.
@@ -142,12 +154,13 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
 }
 
 /// Finds the open share of each point's sky by one ray.
-static void ask_sky(const Preview *preview, Block *block, const int *active, int sample, float open[LANES]) {
+static void ask_sky(const Preview *preview, Block *block, const float asked[LANES], int sample) {
+    float open[LANES];
     float reach = sky_reach(&preview->scene);
     for (int i = 0; i < LANES; i++) {
         block->valid[i] = 0;
         rest_ray(&block->shadow, i);
-        if (!light_reaches(block, active, i)) continue;
+        if (!(asked[i] > 0)) continue;
         const Point *point = &block->point[i];
         if (sample == SAMPLE_CENTRE || !sky_may_be_hidden(preview, point->position, reach)) continue;
         float square[2];
@@ -160,16 +173,14 @@ static void ask_sky(const Preview *preview, Block *block, const int *active, int
     }
 
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
-    for (int i = 0; i < LANES; i++) {
-        open[i] = mixf(occluded_sky, 1, block->clear[i]);
-        block->hidden = block->hidden || block->clear[i] < 1;
-    }
+    for (int i = 0; i < LANES; i++) open[i] = mixf(occluded_sky, 1, block->clear[i]);
+    light_count(preview, block, LIT_SKY, asked, open);
 }
 
 void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
-                   bool ask) {
-    float open[LANES], luminance[LANES];
-    int asked[LANES];
+                   const int *ask) {
+    float asked[LANES];
+    bool any = false;
     for (int i = 0; i < LANES; i++) {
         asked[i] = 0;
         if (!light_reaches(block, active, i)) continue;
@@ -192,15 +203,11 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
 
         light = float3_scale(light, through[i]);
         block->lit[LIT_SKY][i] = float3_add(block->lit[LIT_SKY][i], light);
-        luminance[i] = float3_luminance(light);
-        asked[i] = ask && luminance[i] > 1e-6f && !is_outshone(block, i, luminance[i]) ? -1 : 0;
+        const float luminance = float3_luminance(light);
+        if (!ask[i] || block->settled[LIT_SKY] || luminance < 1e-6f || is_outshone(block, i, luminance)) continue;
+        asked[i] = luminance;
+        any = true;
     }
 
-    if (!ask) return;
-    ask_sky(preview, block, asked, sample, open);
-    for (int i = 0; i < LANES; i++) {
-        if (!asked[i]) continue;
-        block->lit_asked[LIT_SKY][i] += luminance[i];
-        block->lit_seen[LIT_SKY][i] += luminance[i] * open[i];
-    }
+    if (any) ask_sky(preview, block, asked, sample);
 }

@@ -41,9 +41,7 @@ static void layers_write(const Preview *preview, size_t pixel, const LayerSum *s
     }
 }
 
-static bool is_still(const Preview *preview) { return preview->def.samples >= SAMPLES_STILL; }
-
-void block_add_light(const Preview *preview, Block *block, const int *active, int sample, bool ask) {
+void block_add_light(const Preview *preview, Block *block, const int *active, int sample, const int *ask) {
     float through[LANES], known[LANES];
     for (int i = 0; i < LANES; i++) {
         through[i] = known[i] = 0;
@@ -101,11 +99,14 @@ void block_add_light(const Preview *preview, Block *block, const int *active, in
         sum->burn += point->burn;
     }
 
-    // sky and lamps change slowly enough for every second sample, but not where faces meet
+    // sky and lamps change slowly enough for every second sample, but not where faces meet; so does the sun where it is
+    // blurred
+    const int unasked[LANES] = {0};
     const bool all = sample < 0 || sample >= SAMPLES_FIRST || preview->def.samples == 1 || is_still(preview);
-    lamps_add(preview, block, active, sample, through, ask && (all || sample % 2 != 0));
-    light_add_sun(preview, block, active, sample, through, ask);
-    light_add_sky(preview, block, active, sample, through, ask && (all || sample % 2 == 0));
+    const bool odd = sample % 2 != 0;
+    lamps_add(preview, block, active, sample, through, all || odd ? ask : unasked);
+    light_add_sun(preview, block, active, sample, through, all || odd || block->spread <= 1 ? ask : unasked);
+    light_add_sky(preview, block, active, sample, through, all || !odd ? ask : unasked);
 
     // how much the samples differ, but for what hides the light
     for (int i = 0; i < LANES; i++) {
@@ -121,7 +122,8 @@ void block_add_light(const Preview *preview, Block *block, const int *active, in
 }
 
 /// In a bare block the rays stay the same, unless the lens spreads them.
-static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, bool ask) {
+static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample,
+                       const int *ask) {
     if (!bare || preview->camera.lens > 0) {
         float at[2];
         sample_offset(sample, at);
@@ -175,17 +177,13 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
     int more[LANES], samples = preview->def.samples, first = SAMPLES_FIRST;
     if (samples < first || is_still(preview)) first = samples;
     for (int s = 0; s < first; s++) {
-        add_sample(preview, block, active, bare, s, true);
+        add_sample(preview, block, active, bare, s, active);
         if (s != 1 || block->hidden || is_still(preview)) continue;
         if (bare || (block->spread <= 1 && !find_restless(block, active, 0.5f * CALM, more))) first = s + 1;
     }
 
     bool on = first < samples && !bare && first > 2 && find_restless(block, active, CALM, more);
-    bool ask = block->spread > 1; // only pixels that show several faces need more rays
-    for (int i = 0; i < LANES; i++) {
-        ask = ask || (active[i] && is_edge(&block->layer[i]));
-        taken[i] = on && more[i] ? samples : first;
-    }
+    for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
 
     for (int s = first; s < samples && on; s++) {
         // after half of the samples: only lanes whose samples still differ visibly; soften.c smooths what lenses blur
@@ -201,6 +199,9 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
             }
         }
 
+        // only pixels that show several faces need more rays
+        int ask[LANES];
+        for (int i = 0; i < LANES; i++) ask[i] = more[i] && is_edge(&block->layer[i]);
         if (on) add_sample(preview, block, more, bare, s, ask);
     }
 }
@@ -209,6 +210,7 @@ void block_draw(Preview *preview, Block *block) {
     const PreviewDef *def = &preview->def;
     int active[LANES], taken[LANES];
     block->hidden = false;
+    memset(block->settled, 0, sizeof block->settled);
     block->spread = 0;
     memset(block->lit, 0, sizeof block->lit);
     memset(block->lit_seen, 0, sizeof block->lit_seen);
@@ -234,7 +236,7 @@ void block_draw(Preview *preview, Block *block) {
     }
 
     if (bare && !light_may_be_hidden(preview, block, active)) {
-        block_add_light(preview, block, active, SAMPLE_CENTRE, true);
+        block_add_light(preview, block, active, SAMPLE_CENTRE, active);
         for (int i = 0; i < LANES; i++) taken[i] = 1;
     } else {
         add_samples(preview, block, active, bare, taken);
