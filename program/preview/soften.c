@@ -9,29 +9,36 @@
 
 #include "preview/block.h"
 
-enum { SOFT_REACH = 3, SOFT_PATCH = 1, SOFT_SIDE = BLOCK + 2 * (SOFT_REACH + SOFT_PATCH) };
+#include <string.h>
+
+enum { SOFT_REACH = 3, SOFT_PATCH = 1, SOFT_MARGIN = SOFT_REACH + SOFT_PATCH, SOFT_SIDE = BLOCK + 2 * SOFT_MARGIN };
+enum { SOFT_ROW = SOFT_SIDE + 4 };     ///< of a window, padded so that lines can be computed in eights
 static const float SOFT_LEAST = 2e-6f; ///< e
+static const float SOFT_STRONG = 1.2f; ///< allowed difference, in standard deviations
 
 typedef struct Window {
-    Four shown[SOFT_SIDE][SOFT_SIDE]; ///< the variance last
-    float raw[SOFT_SIDE][SOFT_SIDE];
-    size_t pixel[SOFT_SIDE][SOFT_SIDE];
+    float colour[3][SOFT_SIDE][SOFT_ROW], shown[3][SOFT_SIDE][SOFT_ROW];
+    float noise[SOFT_SIDE][SOFT_ROW], raw[SOFT_SIDE][SOFT_ROW];
 } Window;
 
 /// The pixels around a block; beyond the picture's edges those at the edge.
 static void window_fill(const Preview *preview, const Block *block, Window *window) {
-    const int w = preview->def.width, h = preview->def.height, margin = SOFT_REACH + SOFT_PATCH;
+    const int w = preview->def.width, h = preview->def.height;
+    memset(window, 0, sizeof *window);
     for (int j = 0; j < SOFT_SIDE; j++)
         for (int i = 0; i < SOFT_SIDE; i++) {
-            int x = block->x[0] + i - margin, y = block->y[0] + j - margin;
+            int x = block->x[0] + i - SOFT_MARGIN, y = block->y[0] + j - SOFT_MARGIN;
             x = x < 0 ? 0 : x < w ? x : w - 1;
             y = y < 0 ? 0 : y < h ? y : h - 1;
-            const size_t pixel = (size_t)y * (size_t)w + (size_t)x;
-            const Lit *lit = &preview->lit[pixel];
-            const Float3 c = lit->light[SOFT_SHOWN];
-            window->pixel[j][i] = pixel;
+            const Lit *lit = &preview->lit[(size_t)y * (size_t)w + (size_t)x];
+            float colour[3], shown[3];
+            float3_store(colour, lit->light[SOFT_COLOUR]);
+            float3_store(shown, lit->light[SOFT_SHOWN]);
+            for (int c = 0; c < 3; c++) {
+                window->colour[c][j][i] = colour[c];
+                window->shown[c][j][i] = shown[c];
+            }
             window->raw[j][i] = lit->noise;
-            window->shown[j][i] = (Four){c.x, c.y, c.z, lit->noise};
         }
 
     // variances of few samples are uncertain: the mean of 3 x 3
@@ -39,44 +46,64 @@ static void window_fill(const Preview *preview, const Block *block, Window *wind
         for (int i = 1; i < SOFT_SIDE - 1; i++) {
             float sum = 0;
             for (int k = 0; k < 9; k++) sum += window->raw[j + k / 3 - 1][i + k % 3 - 1];
-            window->shown[j][i][3] = sum / 9;
+            window->noise[j][i] = sum / 9;
         }
 }
 
-/// D of two pixels of the window.
-static float difference(const Window *window, float strong, int px, int py, int qx, int qy) {
-    float sum = 0;
-    for (int j = -SOFT_PATCH; j <= SOFT_PATCH; j++)
-        for (int i = -SOFT_PATCH; i <= SOFT_PATCH; i++) {
-            const Four p = window->shown[py + j][px + i], q = window->shown[qy + j][qx + i], d = p - q;
-            const float square = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * (1.f / 3);
-            sum += (square - (p[3] + minf(p[3], q[3]))) / (SOFT_LEAST + strong * strong * (p[3] + q[3]));
+/// w(p, q) of all pixels p of the block and those q that lie (i, j) from them.
+static void window_compare(const Window *window, int i, int j, float weight[BLOCK][BLOCK]) {
+    enum { PATCHES = BLOCK + 2 * SOFT_PATCH, FIRST = SOFT_MARGIN - SOFT_PATCH, WIDE = 8 };
+    float term[PATCHES][WIDE], beside[PATCHES][BLOCK];
+    for (int y = 0; y < PATCHES; y++) {
+        const int p = FIRST + y, q = p + j;
+        for (int x = 0; x < WIDE; x++) {
+            float square = 0;
+            for (int c = 0; c < 3; c++) {
+                const float d = window->shown[c][p][FIRST + x] - window->shown[c][q][FIRST + x + i];
+                square += d * d;
+            }
+            const float vp = window->noise[p][FIRST + x], vq = window->noise[q][FIRST + x + i];
+            term[y][x] = (square * (1.f / 3) - (vp + minf(vp, vq))) / (SOFT_LEAST + SOFT_STRONG * SOFT_STRONG * (vp + vq));
         }
+        for (int x = 0; x < BLOCK; x++) beside[y][x] = term[y][x] + term[y][x + 1] + term[y][x + 2];
+    }
 
-    return sum * (1.f / 9);
+    for (int y = 0; y < BLOCK; y++)
+        for (int x = 0; x < BLOCK; x++) {
+            // (1 - D / 16)^16, near enough to exp(-D)
+            const float far = (beside[y][x] + beside[y + 1][x] + beside[y + 2][x]) * (1.f / 9);
+            float near = clampf(1 - far * (1.f / 16), 0, 1);
+            for (int square = 0; square < 4; square++) near *= near;
+            weight[y][x] = near;
+        }
 }
 
 void soften(Preview *preview, Block *block) {
-    const int w = preview->def.width, h = preview->def.height, margin = SOFT_REACH + SOFT_PATCH;
+    const int w = preview->def.width, h = preview->def.height;
     const Lit *first = &preview->lit[(size_t)block->y[0] * (size_t)w + (size_t)block->x[0]];
-    if (!(first->blur > 1) || preview->def.samples >= SAMPLES_STILL) return;
+    if (!(first->blur > 1) || is_still(preview)) return;
 
     Window window;
     window_fill(preview, block, &window);
     const int reach = (int)minf(first->blur + 0.5f, SOFT_REACH);
-    const float strong = 1.2f; // allowed difference, in standard deviations
-    for (int lane = 0; lane < LANES; lane++) {
-        if (block->x[lane] >= w || block->y[lane] >= h) continue;
-        const int px = margin + lane % BLOCK, py = margin + lane / BLOCK;
-        Float3 sum = {0, 0, 0};
-        float total = 0;
-        for (int j = -reach; j <= reach; j++)
-            for (int i = -reach; i <= reach; i++) {
-                const float far = difference(&window, strong, px, py, px + i, py + j), weight = expf(-maxf(far, 0));
-                sum = float3_mad(sum, preview->lit[window.pixel[py + j][px + i]].light[SOFT_COLOUR], weight);
-                total += weight;
-            }
+    float sum[4][BLOCK][BLOCK] = {{{0}}}; // the last is of the weights
 
-        preview->picture[window.pixel[py][px]] = float3_scale(sum, 1 / total);
+    for (int j = -reach; j <= reach; j++)
+        for (int i = -reach; i <= reach; i++) {
+            float weight[BLOCK][BLOCK];
+            window_compare(&window, i, j, weight);
+            for (int y = 0; y < BLOCK; y++)
+                for (int x = 0; x < BLOCK; x++) {
+                    const int row = SOFT_MARGIN + y + j, column = SOFT_MARGIN + x + i;
+                    for (int c = 0; c < 3; c++) sum[c][y][x] += weight[y][x] * window.colour[c][row][column];
+                    sum[3][y][x] += weight[y][x];
+                }
+        }
+
+    for (int k = 0; k < LANES; k++) {
+        if (block->x[k] >= w || block->y[k] >= h) continue;
+        const int x = k % BLOCK, y = k / BLOCK;
+        const Float3 colour = float3(sum[0][y][x], sum[1][y][x], sum[2][y][x]);
+        preview->picture[block_pixel(preview, block, k)] = float3_scale(colour, 1 / sum[3][y][x]);
     }
 }
