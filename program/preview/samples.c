@@ -122,8 +122,7 @@ void block_add_light(const Preview *preview, Block *block, const int *active, in
 }
 
 /// In a bare block the rays stay the same, unless the lens spreads them.
-static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample,
-                       const int *ask) {
+static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, const int *ask) {
     if (!bare || preview->camera.lens > 0) {
         float at[2];
         sample_offset(sample, at);

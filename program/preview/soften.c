@@ -63,7 +63,8 @@ static void window_compare(const Window *window, int i, int j, float weight[BLOC
                 square += d * d;
             }
             const float vp = window->noise[p][FIRST + x], vq = window->noise[q][FIRST + x + i];
-            term[y][x] = (square * (1.f / 3) - (vp + minf(vp, vq))) / (SOFT_LEAST + SOFT_STRONG * SOFT_STRONG * (vp + vq));
+            term[y][x] =
+                (square * (1.f / 3) - (vp + minf(vp, vq))) / (SOFT_LEAST + SOFT_STRONG * SOFT_STRONG * (vp + vq));
         }
         for (int x = 0; x < BLOCK; x++) beside[y][x] = term[y][x] + term[y][x + 1] + term[y][x + 2];
     }
