@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -152,6 +153,22 @@ int console_open(void) {
     static const int modes[] = {[STDIN_FILENO] = O_RDONLY, [STDOUT_FILENO] = O_RDONLY, [STDERR_FILENO] = O_WRONLY};
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
         if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", modes[fd]) != fd) return -1;
+
+    // with less than these a command fails midway, in a reader's words or in none
+    static const struct {
+        int resource;
+        rlim_t unit, least;
+        const char *what;
+    } needs[] = {{RLIMIT_NOFILE, 1, 16, "open files (ulimit -n)"},
+                 {RLIMIT_STACK, 1024, 256, "KiB of stack (ulimit -s)"}};
+    for (size_t i = 0; i < sizeof needs / sizeof *needs; i++) {
+        struct rlimit limit;
+        if (getrlimit(needs[i].resource, &limit) || limit.rlim_cur >= needs[i].unit * needs[i].least) continue;
+        fprintf(stderr, "singe: error: this process may have %" PRIu64 " %s, but singe needs %" PRIu64 "\n",
+                (uint64_t)(limit.rlim_cur / needs[i].unit), needs[i].what, (uint64_t)needs[i].least);
+        return -1;
+    }
+
     return 0;
 }
 

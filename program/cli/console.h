@@ -63,7 +63,7 @@ double console_clock(void);
 
 /// Call this before anything else is opened. It fills closed descriptors 0 to 2, so that none of our files becomes one
 /// of them and receives messages. Printing to a closed standard output fails; messages to a closed standard error are
-/// lost. Returns 0, or -1 on failure.
+/// lost. Returns 0, or -1 on failure: the process has too few open files or too small a stack, which is printed.
 int console_open(void);
 
 /// Checks that printed output has arrived: a full disk, a closed pipe or a closed output is a failure. Returns the

@@ -144,7 +144,7 @@ struct Walk {
     int depth;
     IsolateAnswer *answer;
     size_t held; ///< bytes of `buffer` in use
-    uint8_t buffer[1 << 16];
+    uint8_t buffer[1 << 12];
 };
 
 static SingeResult walk_node(Walk *walk, const struct aiNode *node, struct aiMatrix4x4 parent) {

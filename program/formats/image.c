@@ -361,12 +361,7 @@ SingeResult image_read(const char *name, const uint8_t *bytes, size_t size, Sing
 
 static int be16(const uint8_t *p) { return p[0] << 8 | p[1]; }
 
-bool image_size(const char *path, int *width, int *height) {
-    enum { HEAD = 65536 };
-    uint8_t head[HEAD];
-    const size_t size = file_read_head(path, head, sizeof head);
-    *width = *height = 0;
-
+static bool head_size(const uint8_t *head, size_t size, int *width, int *height) {
     if (size >= 24 && memcmp(head, "\x89PNG\r\n\x1a\n", 8) == 0) {
         if (head[16] || head[17] || head[20] || head[21]) return false; // larger than the reader accepts
         *width = be16(head + 18);
@@ -389,6 +384,15 @@ bool image_size(const char *path, int *width, int *height) {
     }
 
     return false;
+}
+
+bool image_size(const char *path, int *width, int *height) {
+    enum { HEAD = 65536 };
+    uint8_t *head = malloc(HEAD);
+    *width = *height = 0;
+    const bool known = head && head_size(head, file_read_head(path, head, HEAD), width, height);
+    free(head);
+    return known;
 }
 
 void image_free(Image *image) {

@@ -38,14 +38,18 @@ class Failure(Case):
 
     @unittest.skipIf(SANITIZED, "a sanitizer needs files and memory of its own")
     def test_limits_of_a_process_are_named(self):
-        """Few open files are not a lack of memory, and little memory is not none."""
+        """Few open files and a small stack are no faults of the scene, and little memory is not none."""
         def limited(kind, most, expect, *args):
             return self.singe("check", self.scene, *args, expect=expect,
                               preexec_fn=lambda: resource.setrlimit(kind, (most, most)))[1]
 
-        err = limited(resource.RLIMIT_NOFILE, 4, 2)
-        self.assertIn("tiny.yaml: cannot start a process to read it: Too many open files", err)
-        self.assertNotIn("memory", err)
+        for most in 4, 15:
+            err = limited(resource.RLIMIT_NOFILE, most, 1)
+            self.assertEqual(err, "singe: error: this process may have %d open files (ulimit -n), but singe needs 16\n" % most)
+        limited(resource.RLIMIT_NOFILE, 16, 0)
+        err = limited(resource.RLIMIT_STACK, 64 << 10, 1)
+        self.assertEqual(err, "singe: error: this process may have 64 KiB of stack (ulimit -s), but singe needs 256\n")
+        limited(resource.RLIMIT_STACK, 256 << 10, 0)
         err = limited(resource.RLIMIT_DATA, 40 << 20, 2)
         self.assertRegex(err, r"tiny.yaml:6:5: error: the scene needs about \d\d+ MB of memory, but only 42 MB are available")
 
