@@ -5,7 +5,7 @@
 
 #include "preview/internal.h"
 
-#define FIRE_SHORT 0.4f  ///< the shortest step relative to the usual one
+#define FIRE_SHORT 0.35f ///< step near an edge, relative to the usual one: longer ones miss thin sheets
 #define FIRE_EVEN 0.020f ///< difference of light, as l / (1 + l), that may be interpolated
 
 static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view) {
@@ -58,7 +58,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
         if (!known) here = fire_at_point(preview, float3_mad(eye, d, t), what);
         known = true;
         bool seek = dark && (what & FIRE_FLAME);
-        float length = dark ? 2 * fine : fabsf(here.depth) < 1.5f * fine ? 0.5f * fine : fine;
+        float length = dark ? 2 * fine : fabsf(here.depth) < 2 * fine ? FIRE_SHORT * fine : fine;
         float step = maxf(what & FIRE_FLAME ? length : fire->cell, min);
         float next = maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step);
         step = next - t;
