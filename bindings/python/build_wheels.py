@@ -102,8 +102,8 @@ def build(system, out, work):
     environment.pop("CMAKE_C_COMPILER_LAUNCHER", None)
     command = system.startswith("linux") and shutil.which("apt-get") and shutil.which("dpkg")
     static = static_libraries(system, work) if command else None
-    defines = {"CMAKE_TOOLCHAIN_FILE": ROOT / "packaging/cmake/toolchains/zig.cmake", "SINGE_EXR": "OFF", "SINGE_ASSIMP": "OFF", "SINGE_NLOPT": "OFF",
-               "SINGE_PROGRAM": "ON" if static else "OFF"}
+    defines = {"CMAKE_TOOLCHAIN_FILE": ROOT / "packaging/cmake/toolchains/zig.cmake", "SINGE_EXR": "OFF",
+               "SINGE_ASSIMP": "OFF", "SINGE_NLOPT": "OFF", "SINGE_PROGRAM": "ON" if static else "OFF"}
     if static:
         environment["PKG_CONFIG_LIBDIR"] = str(static)
         defines["SINGE_LICENCES"] = static / "licences"

@@ -180,8 +180,14 @@ static SingeResult write_layers(const Pictures *pictures, const char *path, cons
                      (int)(sizeof channels / sizeof *channels), texts, error);
 }
 
-/// The names of the sheets; one without a name is "sheet N". NULL if there is no memory.
-static const char **sheet_names(const Scene *scene) {
+SingeResult pictures_write_layers(const Pictures *pictures, const char *path, SingeError *error) {
+    const PreviewLayers *l = &pictures->layers;
+    const size_t pixels = (size_t)pictures->def.width * (size_t)pictures->def.height;
+    const PreviewMatte(*shares)[PREVIEW_MATTES] = (const PreviewMatte(*)[PREVIEW_MATTES])l->mattes;
+    uint32_t *sheet = count_ids(l->sheet, pixels), *piece = count_ids(l->piece, pixels);
+    const Scene *scene = pictures->scene;
+
+    // the sheets' own names, or their numbers
     enum { LONG = 24 };
     const char **names = calloc(scene->sheet_count + 1, sizeof *names + LONG);
     for (uint32_t i = 0; names && i < scene->sheet_count; i++) {
@@ -189,15 +195,7 @@ static const char **sheet_names(const Scene *scene) {
         snprintf(own, LONG, "sheet %u", i);
         names[i] = scene->sheets[i].name ? scene->sheets[i].name : own;
     }
-    return names;
-}
 
-SingeResult pictures_write_layers(const Pictures *pictures, const char *path, SingeError *error) {
-    const PreviewLayers *l = &pictures->layers;
-    const size_t pixels = (size_t)pictures->def.width * (size_t)pictures->def.height;
-    const PreviewMatte(*shares)[PREVIEW_MATTES] = (const PreviewMatte(*)[PREVIEW_MATTES])l->mattes;
-    uint32_t *sheet = count_ids(l->sheet, pixels), *piece = count_ids(l->piece, pixels);
-    const char **names = sheet_names(pictures->scene);
     Cryptomatte mattes[MATTE_LAYERS] = {{.values = NULL}, {.values = NULL}};
     bool room = sheet && piece && names;
     room = room && cryptomatte_make(&mattes[0], "CryptoSheet", false, names, shares, pixels);

@@ -112,21 +112,6 @@ static BvhPlane find_plane(const BvhBuild *build, const BvhRange *range, const B
     return plane;
 }
 
-/// Brings the triangles before the plane to the front; their end.
-static uint32_t part(BvhBuild *build, const BvhRange *range, const BvhPlane *plane) {
-    uint32_t first = range->first, end = range->end;
-    while (first < end) {
-        const uint32_t triangle = build->order[first];
-        if (plane_bin(plane, &build->boxes[triangle]) <= plane->bin) {
-            first++;
-        } else {
-            build->order[first] = build->order[--end];
-            build->order[end] = triangle;
-        }
-    }
-    return first;
-}
-
 static void build_nodes(BvhBuild *build) {
     BvhRange waiting[BVH_DEPTH];
     int count = 0;
@@ -150,8 +135,17 @@ static void build_nodes(BvhBuild *build) {
             continue;
         }
 
-        // middles that agree are halved by number
-        const uint32_t middle = plane.axis < 0 ? range.first + all / 2 : part(build, &range, &plane);
+        // what lies before the plane comes to the front; middles that agree are halved by number
+        uint32_t middle = plane.axis < 0 ? range.first + all / 2 : range.first;
+        for (uint32_t end = range.end; plane.axis >= 0 && middle < end;) {
+            const uint32_t triangle = build->order[middle];
+            if (plane_bin(&plane, &build->boxes[triangle]) <= plane.bin) {
+                middle++;
+            } else {
+                build->order[middle] = build->order[--end];
+                build->order[end] = triangle;
+            }
+        }
         node->first = build->nodes;
         node->axis = (uint16_t)(plane.axis < 0 ? 0 : plane.axis);
         waiting[count++] = (BvhRange){build->nodes, range.first, middle, range.depth + 1};
@@ -167,19 +161,6 @@ static void corners_of(const BvhMesh *mesh, int end, uint32_t triangle, float co
     }
 }
 
-/// Room for the mesh; false: there is none.
-static bool bvh_grow(Bvh *bvh, SingeAllocator allocator, uint32_t count, bool moves) {
-    if (bvh->capacity < count || (moves && bvh->end_capacity < count)) {
-        bvh_free(bvh, allocator);
-        bvh->nodes = allocator_resize(allocator, NULL, 0, 2 * (size_t)count * sizeof *bvh->nodes);
-        bvh->triangles = allocator_resize(allocator, NULL, 0, count * sizeof *bvh->triangles);
-        bvh->capacity = count;
-        if (moves) bvh->ends = allocator_resize(allocator, NULL, 0, count * sizeof *bvh->ends);
-        if (moves) bvh->end_capacity = count;
-    }
-    return bvh->nodes && bvh->triangles && (!moves || bvh->ends);
-}
-
 bool bvh_build(Bvh *bvh, SingeAllocator allocator, const BvhMesh *mesh) {
     const uint32_t count = mesh->triangle_count;
     const bool moves = mesh->positions[0] != mesh->positions[1];
@@ -189,7 +170,15 @@ bool bvh_build(Bvh *bvh, SingeAllocator allocator, const BvhMesh *mesh) {
     BvhBuild build = {.bvh = bvh};
     build.boxes = allocator_resize(allocator, NULL, 0, count * sizeof *build.boxes);
     build.order = allocator_resize(allocator, NULL, 0, count * sizeof *build.order);
-    const bool room = bvh_grow(bvh, allocator, count, moves) && build.boxes && build.order;
+    if (bvh->capacity < count || (moves && bvh->end_capacity < count)) {
+        bvh_free(bvh, allocator);
+        bvh->nodes = allocator_resize(allocator, NULL, 0, 2 * (size_t)count * sizeof *bvh->nodes);
+        bvh->triangles = allocator_resize(allocator, NULL, 0, count * sizeof *bvh->triangles);
+        bvh->capacity = count;
+        if (moves) bvh->ends = allocator_resize(allocator, NULL, 0, count * sizeof *bvh->ends);
+        if (moves) bvh->end_capacity = count;
+    }
+    const bool room = bvh->nodes && bvh->triangles && (!moves || bvh->ends) && build.boxes && build.order;
     if (!room) bvh_free(bvh, allocator);
 
     for (uint32_t t = 0; room && t < count; t++) {
@@ -216,7 +205,7 @@ bool bvh_build(Bvh *bvh, SingeAllocator allocator, const BvhMesh *mesh) {
             if (moves) corners_of(mesh, 1, build.order[i], bvh->ends[i]);
         }
         bvh->moves = moves;
-        bvh->packets = bvh_packets(SINGE_INSTRUCTIONS_BEST);
+        bvh->walk = bvh_walk(SINGE_INSTRUCTIONS_BEST);
     }
 
     allocator_resize(allocator, build.boxes, count * sizeof *build.boxes, 0);
@@ -233,9 +222,9 @@ void bvh_free(Bvh *bvh, SingeAllocator allocator) {
 
 void bvh_nearest(const Bvh *bvh, Rays *rays, Hits *hits) {
     for (int i = 0; i < LANES; i++) hits->triangle[i] = BVH_NONE;
-    if (bvh->triangle_count) bvh->packets->nearest(bvh, rays, hits);
+    if (bvh->triangle_count) bvh->walk(bvh, &(BvhQuery){.rays = rays, .hits = hits});
 }
 
 void bvh_pass(const Bvh *bvh, Rays *rays, BvhStops *stops, void *context) {
-    if (bvh->triangle_count) bvh->packets->pass(bvh, rays, stops, context);
+    if (bvh->triangle_count) bvh->walk(bvh, &(BvhQuery){.rays = rays, .stops = stops, .context = context});
 }

@@ -50,17 +50,29 @@ typedef struct BvhTriangle {
     uint32_t triangle; ///< of the mesh
 } BvhTriangle;
 
-typedef struct Bvh {
+typedef struct Bvh Bvh;
+
+/// Decides on a ray that meets a triangle: true stops it.
+typedef bool BvhStops(void *context, int lane, uint32_t triangle, float u, float v);
+
+/// Rays and what they meet: the nearest triangles, in `hits`, or all, by `stops`, where that is NULL.
+typedef struct BvhQuery {
+    Rays *rays;
+    Hits *hits;
+    BvhStops *stops;
+    void *context;
+} BvhQuery;
+
+typedef void BvhWalk(const Bvh *bvh, const BvhQuery *query);
+
+struct Bvh {
     BvhNode *nodes;
     BvhTriangle *triangles; ///< in the order of the leaves
     float (*ends)[3][3];    ///< the corners when the exposure ends, if anything moves
     uint32_t triangle_count, capacity, end_capacity;
     bool moves;
-    const struct BvhPackets *packets; ///< for this machine's instruction set
-} Bvh;
-
-/// Decides on a ray that meets a triangle: true stops it.
-typedef bool BvhStops(void *context, int lane, uint32_t triangle, float u, float v);
+    BvhWalk *walk; ///< for this machine's instruction set
+};
 
 /// Positions must be finite. Returns false, and leaves the BVH empty, when memory runs out. The mesh is not kept.
 bool bvh_build(Bvh *bvh, SingeAllocator allocator, const BvhMesh *mesh);

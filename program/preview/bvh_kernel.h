@@ -1,5 +1,5 @@
 // Packets of rays against a BVH, for one instruction set. The file that includes it has defined Wide, a vector of
-// WIDTH floats, WideMask, and wide_min, wide_max and wide_bits; BVH_PACKETS names what comes out.
+// WIDTH floats, WideMask, and wide_min, wide_max and wide_bits; BVH_WALK names what comes out.
 //
 // A node's box is tested when the node's turn has come, against what the rays have met until then. Edges are tested by
 // their Plücker coordinates with a ray, which are exactly opposite in two triangles that share an edge, so that no ray
@@ -29,10 +29,7 @@ typedef struct Part {
 typedef struct Packet {
     Part parts[PARTS];
     const Bvh *bvh;
-    Rays *rays;
-    Hits *hits; ///< NULL: rays pass
-    BvhStops *stops;
-    void *context;
+    const BvhQuery *query;
 } Packet;
 
 static inline Wide wide_all(float a) { return a - (Wide){0}; }
@@ -115,8 +112,9 @@ static inline void part_triangle(Packet *packet, int index, uint32_t i) {
 
     const Wide share = 1 / sum, us = wide_min(u * share, wide_all(1)), vs = wide_min(v * share, wide_all(1));
     const int lane = WIDTH * index;
-    if (packet->hits) {
-        Hits *hits = packet->hits;
+    const BvhQuery *query = packet->query;
+    if (query->hits) {
+        Hits *hits = query->hits;
         const Wide number = (Wide)((WideMask){0} + (int32_t)triangle->triangle);
         part->far = wide_select(met, distance, part->far);
         float *const out[6] = {(float *)(void *)&hits->triangle[lane],
@@ -136,23 +134,25 @@ static inline void part_triangle(Packet *packet, int index, uint32_t i) {
     wide_store(far, part->far);
     for (; bits; bits &= bits - 1) {
         const int k = __builtin_ctz(bits);
-        if (packet->stops(packet->context, lane + k, triangle->triangle, at[0][k], at[1][k])) far[k] = -1;
+        if (query->stops(query->context, lane + k, triangle->triangle, at[0][k], at[1][k])) far[k] = -1;
     }
     part->far = wide_load(far);
 }
 
-static void packet_walk(Packet *packet) {
-    const Bvh *bvh = packet->bvh;
+void BVH_WALK(const Bvh *bvh, const BvhQuery *query) {
+    Packet packet;
+    packet.bvh = bvh;
+    packet.query = query;
+    Rays *rays = query->rays;
     uint32_t stack[STACK];
     unsigned live[STACK], wanted = 0;
     int depth = 0;
 
     for (int k = 0; k < PARTS; k++) {
-        Part *part = &packet->parts[k];
-        const Rays *rays = packet->rays;
+        Part *part = &packet.parts[k];
         const int lane = WIDTH * k;
-        part->origin = wide3_load(packet->rays->origin, lane);
-        part->direction = wide3_load(packet->rays->direction, lane);
+        part->origin = wide3_load(rays->origin, lane);
+        part->direction = wide3_load(rays->direction, lane);
         part->inverse =
             (Wide3){wide_inverse(part->direction.x), wide_inverse(part->direction.y), wide_inverse(part->direction.z)};
         part->near = wide_load(&rays->near[lane]);
@@ -165,7 +165,7 @@ static void packet_walk(Packet *packet) {
     // the children nearer to the first ray come first
     const int leader = __builtin_ctz(wanted);
     bool back[3];
-    for (int k = 0; k < 3; k++) back[k] = packet->rays->direction[k][leader] < 0;
+    for (int k = 0; k < 3; k++) back[k] = rays->direction[k][leader] < 0;
 
     stack[0] = 0;
     live[0] = wanted;
@@ -174,7 +174,7 @@ static void packet_walk(Packet *packet) {
         const BvhNode *node = &bvh->nodes[stack[--depth]];
         unsigned bits = 0;
         for (int k = 0; k < PARTS; k++)
-            if (live[depth] >> (WIDTH * k) & PART) bits |= part_box(&packet->parts[k], node) << (WIDTH * k);
+            if (live[depth] >> (WIDTH * k) & PART) bits |= part_box(&packet.parts[k], node) << (WIDTH * k);
         if (!bits) continue;
 
         if (!node->count) {
@@ -187,18 +187,8 @@ static void packet_walk(Packet *packet) {
         }
         for (uint32_t i = node->first; i < node->first + node->count; i++)
             for (int k = 0; k < PARTS; k++)
-                if (bits >> (WIDTH * k) & PART) part_triangle(packet, k, i);
+                if (bits >> (WIDTH * k) & PART) part_triangle(&packet, k, i);
     }
 
-    for (int k = 0; k < PARTS; k++) wide_store(&packet->rays->far[WIDTH * k], packet->parts[k].far);
+    for (int k = 0; k < PARTS; k++) wide_store(&rays->far[WIDTH * k], packet.parts[k].far);
 }
-
-static void packet_nearest(const Bvh *bvh, Rays *rays, Hits *hits) {
-    packet_walk(&(Packet){.bvh = bvh, .rays = rays, .hits = hits});
-}
-
-static void packet_pass(const Bvh *bvh, Rays *rays, BvhStops *stops, void *context) {
-    packet_walk(&(Packet){.bvh = bvh, .rays = rays, .stops = stops, .context = context});
-}
-
-const BvhPackets BVH_PACKETS = {packet_nearest, packet_pass};

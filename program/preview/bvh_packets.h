@@ -5,14 +5,9 @@
 #include "preview/bvh.h"
 #include "singe/types.h"
 
-typedef struct BvhPackets {
-    void (*nearest)(const Bvh *bvh, Rays *rays, Hits *hits);
-    void (*pass)(const Bvh *bvh, Rays *rays, BvhStops *stops, void *context);
-} BvhPackets;
+BvhWalk bvh_walk_plain, bvh_walk_v3, bvh_walk_v4;
 
-extern const BvhPackets bvh_packets_plain, bvh_packets_v3, bvh_packets_v4;
-
-/// Those of an instruction set; NULL if they, or the set, are not there. SINGE_INSTRUCTIONS_BEST: of the machine's best.
-const BvhPackets *bvh_packets(SingeInstructions set);
+/// That of an instruction set; NULL if it, or the set, is not there. SINGE_INSTRUCTIONS_BEST: of the machine's best.
+BvhWalk *bvh_walk(SingeInstructions set);
 
 #endif

@@ -11,6 +11,6 @@ static inline Wide wide_min(Wide a, Wide b) { return (Wide)_mm256_min_ps((__m256
 static inline Wide wide_max(Wide a, Wide b) { return (Wide)_mm256_max_ps((__m256)a, (__m256)b); }
 static inline unsigned wide_bits(WideMask mask) { return (unsigned)_mm256_movemask_ps((__m256)mask); }
 
-#define BVH_PACKETS bvh_packets_v3
+#define BVH_WALK bvh_walk_v3
 #include "preview/bvh_kernel.h"
 #endif

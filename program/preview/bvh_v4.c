@@ -11,6 +11,6 @@ static inline Wide wide_min(Wide a, Wide b) { return (Wide)_mm512_min_ps((__m512
 static inline Wide wide_max(Wide a, Wide b) { return (Wide)_mm512_max_ps((__m512)a, (__m512)b); }
 static inline unsigned wide_bits(WideMask mask) { return _mm512_movepi32_mask((__m512i)mask); }
 
-#define BVH_PACKETS bvh_packets_v4
+#define BVH_WALK bvh_walk_v4
 #include "preview/bvh_kernel.h"
 #endif

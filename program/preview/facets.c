@@ -63,19 +63,6 @@ static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *
     return ok ? SINGE_OK : preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
 }
 
-static SingeResult facets_build(Preview *preview, Facets *facets, SingeError *error) {
-    const PreviewSolid *solid = facets->solid;
-    SingeResult result = facets_normals(preview, facets, error);
-    if (result) return result;
-
-    BvhMesh mesh = {.positions = {solid->vertices, solid->vertices},
-                    .stride = 3,
-                    .triangles = (const uint32_t(*)[3])solid->triangles,
-                    .triangle_count = solid->triangle_count};
-    if (bvh_build(&facets->bvh, preview->allocator, &mesh)) return SINGE_OK;
-    return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
-}
-
 SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets **found, SingeError *error) {
     Facets *facets = preview->facets;
     while (facets && facets->solid != solid) facets = facets->next;
@@ -93,7 +80,13 @@ SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets
     *facets = (Facets){
         .solid = solid, .triangle_count = solid->triangle_count, .passing = solid->passing, .next = preview->facets};
     preview->facets = facets;
-    SingeResult result = facets_build(preview, facets, error);
+    SingeResult result = facets_normals(preview, facets, error);
+    const BvhMesh mesh = {.positions = {solid->vertices, solid->vertices},
+                          .stride = 3,
+                          .triangles = (const uint32_t(*)[3])solid->triangles,
+                          .triangle_count = solid->triangle_count};
+    if (!result && !bvh_build(&facets->bvh, preview->allocator, &mesh))
+        result = preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
     if (result) facets->solid = NULL; // stays in the list until it is freed, but is not found
     else *found = facets;
 

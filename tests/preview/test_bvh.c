@@ -211,10 +211,10 @@ TEST(instruction_sets_find_the_same_bytes) {
         best = asked;
         bvh_nearest(&bvh, &best, &hits[0]);
         for (int set = 0; set < 2; set++) {
-            if (!bvh_packets(sets[set])) continue;
+            if (!bvh_walk(sets[set])) continue;
             Rays rays = asked;
             for (int i = 0; i < LANES; i++) hits[1].triangle[i] = BVH_NONE;
-            bvh_packets(sets[set])->nearest(&bvh, &rays, &hits[1]);
+            bvh_walk(sets[set])(&bvh, &(BvhQuery){.rays = &rays, .hits = &hits[1]});
             assert_memory_equal(&rays, &best, sizeof best);
             assert_memory_equal(&hits[1], &hits[0], sizeof *hits);
         }
