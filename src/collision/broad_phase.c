@@ -102,7 +102,7 @@ static void sweep_boxes(void *task, int begin, int end) {
 
 SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell, Pool *pool) {
     Find find = {plan, shell};
-    plan->listed_count = plan->pair_count = plan->repulsion_count = 0; // repulsions name pairs
+    plan->between_count = plan->listed_count = plan->pair_count = plan->repulsion_count = 0; // repulsions name pairs
     plan->restless = 0;
     plan->kept.current = false;
 
@@ -151,6 +151,7 @@ SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell
     plan->counters.dropped += count - plan->pair_count;
 
     // a cell may fold onto itself
+    plan->between_count = plan->pair_count;
     for (uint32_t c = 0; c < plan->cell_count; c++)
         if (plan->alive[c]) plan->pairs[plan->pair_count++] = (CollisionPair){.a = c, .b = c, .hit = 2, .bridge = c};
     plan->listed_count = plan->pair_count;

@@ -57,9 +57,9 @@ static void measure_range(void *task, int begin, int end) {
 
 /// Two cells whose features are measured.
 typedef struct Look {
+    uint32_t first; ///< a's number; the pairs of a cell follow each other
     NarrowCell a, b;
     Float4 speed_a[5], speed_b[5]; ///< m/s, of nodes
-    float due;                     ///< m, distance beyond which there is no contact in this step
 } Look;
 
 static inline float open_min(float a, float b) { return a < b ? a : b; }
@@ -147,42 +147,45 @@ static void node_velocities(const Opening *job, uint32_t cell, Float4 speed[5]) 
     speed[4] = 0.25f * ((speed[0] + speed[1]) + (speed[2] + speed[3]));
 }
 
-/// Measures a pair that may be in contact, and lists its points that are.
-static void measure_pair(const Opening *job, uint32_t k, float due_distance, BlockWriter *writer) {
+/// Measures a pair that may be in contact, and lists its points that are. `due_distance`: beyond it there is no contact in
+/// this step.
+static void measure_pair(const Opening *job, CollisionPair *pair, float due_distance, Look *look, BlockWriter *writer) {
     CollisionPlan *plan = job->plan;
-    CollisionPair *pair = &plan->pairs[k];
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     Float4 origin = float4_load(x[job->shell->cells[pair->a][0]]);
-    Look look;
-    look.due = due_distance;
-    narrow_cell_set(plan, job->shell, pair->a, x, origin, &look.a);
-    narrow_cell_set(plan, job->shell, pair->b, x, origin, &look.b);
-    float separation = narrow_boxes_distance(&look.a, &look.b) - plan->noise;
+    if (look->first != pair->a) {
+        look->first = pair->a;
+        narrow_cell_set(plan, job->shell, pair->a, x, origin, &look->a);
+        node_velocities(job, pair->a, look->speed_a);
+    }
+    narrow_cell_set(plan, job->shell, pair->b, x, origin, &look->b);
+    float separation = narrow_boxes_distance(&look->a, &look->b) - plan->noise;
     pair->distance = separation > pair->distance ? separation : pair->distance;
-    if (pair->distance > look.due) return;
+    if (pair->distance > due_distance) return;
 
-    separation = narrow_slabs_distance(&look.a, &look.b) - plan->noise;
+    separation = narrow_slabs_distance(&look->a, &look->b) - plan->noise;
     pair->distance = separation > pair->distance ? separation : pair->distance;
-    if (pair->distance > look.due) return;
+    if (pair->distance > due_distance) return;
 
     // a node beside a triangle may be over the next one: a fixed normal would make a ridge of the edge between
-    FeatureRange far = {look.due, look.due, open_min(plan->thin[pair->a], plan->thin[pair->b]),
+    FeatureRange far = {due_distance, due_distance, open_min(plan->thin[pair->a], plan->thin[pair->b]),
                         separation < FEATURE_SEPARATED * plan->thickness};
 
     // measures a little farther, so that not every step must measure again
     if (far.edges) far.measured += 0.25f * plan->thickness;
     NearFeatures near[NARROW_MAX];
     float nearest;
-    int count = narrow_features(job->shell, pair, &look.a, &look.b, &far, near, &nearest);
-    float doubt = narrow_error_bound(&look.a) + narrow_error_bound(&look.b);
-    if (doubt > 0.5f * plan->gap) nearest -= doubt; // CCD keeps a gap, which covers less doubt
-    if (far.edges && nearest > pair->distance) pair->distance = nearest;
+    int count = narrow_features(job->shell, pair, &look->a, &look->b, &far, near, &nearest);
+    if (far.edges) {
+        const float doubt = narrow_error_bound(&look->a) + narrow_error_bound(&look->b);
+        if (doubt > 0.5f * plan->gap) nearest -= doubt; // CCD keeps a gap, which covers less doubt
+        if (nearest > pair->distance) pair->distance = nearest;
+    }
     if (count == 0) return;
 
-    node_velocities(job, pair->a, look.speed_a);
-    node_velocities(job, pair->b, look.speed_b);
+    node_velocities(job, pair->b, look->speed_b);
     for (int i = 0; i < count; i++) {
-        float keep = target(job, pair, &look, &near[i]);
+        float keep = target(job, pair, look, &near[i]);
         Repulsion *found = keep > 0 ? block_list_add(writer) : NULL;
         if (!found) continue;
 
@@ -194,8 +197,9 @@ static void look_block(void *context, BlockList *list, int block) {
     const Opening *job = context;
     CollisionPlan *plan = job->plan;
     BlockWriter writer = block_list_begin(list, block);
+    Look look = {.first = SHELL_NONE};
     uint32_t begin = (uint32_t)block * COLLISION_BLOCK, end = begin + COLLISION_BLOCK;
-    if (end > plan->listed_count) end = plan->listed_count;
+    if (end > plan->between_count) end = plan->between_count;
     for (uint32_t first = begin; first < end; first += 4) {
         const uint32_t count = end - first < 4 ? end - first : 4;
         uint32_t number[4];
@@ -217,10 +221,9 @@ static void look_block(void *context, BlockList *list, int block) {
         // measure the pairs that may be in contact
         for (near &= (1u << count) - 1; near; near &= near - 1) {
             int i = __builtin_ctz(near);
-            const CollisionPair *pair = &plan->pairs[first + (uint32_t)i];
+            CollisionPair *pair = &plan->pairs[first + (uint32_t)i];
             bool alive = job->cell_flags[pair->a] & job->cell_flags[pair->b] & SINGE_ALIVE;
-            if (alive && pair->a != pair->b && !initial_is_crossing(plan, pair))
-                measure_pair(job, first + (uint32_t)i, due[i], &writer);
+            if (alive && !initial_is_crossing(plan, pair)) measure_pair(job, pair, due[i], &look, &writer);
         }
     }
 
@@ -305,7 +308,7 @@ static SingeResult open_step(Memory *memory, CollisionPlan *plan, const Shell *s
 
     // points that are near, and their repulsions
     BlockList *list = &plan->found;
-    const int blocks = (int)collision_look_blocks(plan->listed_count);
+    const int blocks = (int)collision_look_blocks(plan->between_count);
     uint64_t count = block_list_write(list, pool, blocks, plan->sizes.repulsion_max, look_block, &job);
     if (!collision_grow_repulsions(memory, plan, count)) return SINGE_ERROR_MEMORY;
 

@@ -174,8 +174,9 @@ struct CollisionPlan {
     float edge;          ///< m, the longest of the grid's cubes; 0: there is no grid
     Float4 inverse_edge; ///< 1/m, one over their edges along each axis
     uint32_t entry_count, bucket_count, repulsion_count;
-    uint32_t listed_count; ///< pairs of the search
-    uint32_t pair_count;   ///< and those of cells that have left their boxes, in this step
+    uint32_t between_count; ///< pairs of two cells that the search has listed
+    uint32_t listed_count;  ///< and those of a cell with itself
+    uint32_t pair_count;    ///< and those of cells that have left their boxes, in this step
     uint32_t pair_capacity, repulsion_capacity, entry_capacity, outside_capacity;
     CollisionBox *boxes;     ///< [cells]
     CollisionSlab *slabs;    ///< [cells]

@@ -84,9 +84,12 @@ void narrow_cell_set(const CollisionPlan *plan, const Shell *shell, uint32_t cel
     out->turned = four_turned(out->corner);
     uint32_t owned = plan->owned[cell];
     out->owned = (owned & 15) | 16 | (owned >> 4) << 8 | 15u << 12;
+    out->boxed = false;
 }
 
 static void cell_boxes(NarrowCell *cell) {
+    if (cell->boxed) return;
+    cell->boxed = true;
     narrow_boxes(cell->corner, cell->corner, cell->node[4], cell->node[4], &cell->boxes);
 }
 

@@ -10,6 +10,7 @@ typedef struct NarrowCell {
     FourVectors corner; ///< 0 to 3
     FourVectors turned; ///< 1, 2, 3, 0
     uint32_t owned;     ///< bit i: the cell owns node i, the centroid included; bit 8 + i: edge i
+    bool boxed;         ///< narrow_features has set `boxes`
     NarrowBoxes boxes;
 } NarrowCell;
 
