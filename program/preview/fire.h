@@ -94,20 +94,19 @@ void fire_raise(Preview *preview);
 /// Computes the light on smoke, from daylight and flames. The lights have been gathered.
 void fire_light_smoke(Preview *preview);
 
-/// What is known of a position. A flame's light comes from a shell inside its edge, thinner than steps are long, so
+/// The flame at a position. Its light comes from a shell inside its edge, thinner than steps are long, so
 /// that a step needs both of its ends.
 typedef struct FirePoint {
     Float3 soot, root;   ///< radiance per metre of the shell where it is brightest: yellow soot, blue root
-    Float3 lit;          ///< radiance per metre of the smoke
     float depth;         ///< m inside the flame's edge, negative outside
     float profile;       ///< light there relative to the shell's brightest
     float shell;         ///< m, integral of that from the edge to the depth
-    float opaque, smoke; ///< 1/m, extinction of the shell and of the smoke
+    float opaque;        ///< 1/m, extinction of the shell
 } FirePoint;
 
 #define FIRE_OUTSIDE (-0.006f) ///< m, depth of what is far outside of flames
 
-/// The means over a step, per metre.
+/// The light of what is at a position, or the mean over a step, per metre.
 typedef struct Matter {
     Float3 light;
     float dense; ///< 1/m, extinction
@@ -122,8 +121,11 @@ float fire_share(const Fire *fire, size_t at);
 
 /// How bright a flame around p is now, 1 in the mean: tongues come and go.
 float fire_flicker(const Fire *fire, Float3 p);
-FirePoint fire_at_point(const Preview *preview, Float3 p, int what);
-Matter fire_between(const FirePoint *a, const FirePoint *b, float step);
+FirePoint fire_at_point(const Fire *fire, Float3 p);
+
+/// Adds the mean of the flame over a step between two points.
+void fire_between(const FirePoint *a, const FirePoint *b, float step, Matter *matter);
+Matter fire_smoke_at(const Fire *fire, Float3 p);
 
 // fire_march.c
 /// Fills a tile whose upper left pixel is (x, y).

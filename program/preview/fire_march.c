@@ -5,8 +5,29 @@
 
 #include "preview/internal.h"
 
-#define FIRE_SHORT 0.35f ///< step near an edge, relative to the usual one: longer ones miss thin sheets
-#define FIRE_EVEN 0.020f ///< difference of light, as l / (1 + l), that may be interpolated
+#define FIRE_SHORT 0.35f  ///< step near an edge, relative to the usual one: longer ones miss thin sheets
+#define SMOKE_STEP 0.010f ///< m, distance at most between the places of a ray where its smoke is looked up
+#define FIRE_EVEN 0.020f  ///< difference of light, as l / (1 + l), that may be interpolated
+
+/// Smoke has no detail as fine as a flame's steps: it is looked up at multiples of a length, and linear between them.
+typedef struct SmokeLine {
+    float length, first; ///< m; number of the place of the nearer of `ends`
+    Matter ends[2];
+} SmokeLine;
+
+static Matter smoke_along(const Fire *fire, Float3 eye, Float3 d, float t, SmokeLine *line) {
+    const float first = floorf(t / line->length);
+    if (first != line->first) {
+        line->ends[0] = first == line->first + 1 ? line->ends[1]
+                                                 : fire_smoke_at(fire, float3_mad(eye, d, first * line->length));
+        line->ends[1] = fire_smoke_at(fire, float3_mad(eye, d, (first + 1) * line->length));
+        line->first = first;
+    }
+
+    const Matter *a = &line->ends[0], *b = &line->ends[1];
+    const float part = t / line->length - first;
+    return (Matter){float3_mix(a->light, b->light, part), mixf(a->dense, b->dense, part)};
+}
 
 static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view) {
     const Fire *fire = &preview->fire;
@@ -33,6 +54,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
     bool dark = true;   // long steps until there is flame, and short ones at its edges
     bool known = false; // whether `here` is the point at t
     FirePoint here;
+    SmokeLine line = {.length = maxf(minf(fire->cell, SMOKE_STEP), min), .first = -2};
 
     while (t < far && clear > 0.02f) {
         // what is in the brick here, and the length of the ray in it from here
@@ -55,17 +77,21 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
         }
 
         // steps begin at multiples of their length: neighbouring rays then look at neighbouring positions
-        if (!known) here = fire_at_point(preview, float3_mad(eye, d, t), what);
+        const FirePoint outside = {.depth = FIRE_OUTSIDE};
+        const bool flame = what & FIRE_FLAME;
+        if (!known) here = flame ? fire_at_point(fire, float3_mad(eye, d, t)) : outside;
         known = true;
-        bool seek = dark && (what & FIRE_FLAME);
+        bool seek = dark && flame;
         float length = dark ? 2 * fine : fabsf(here.depth) < 2 * fine ? FIRE_SHORT * fine : fine;
-        float step = maxf(what & FIRE_FLAME ? length : fire->cell, min);
+        float step = maxf(flame ? length : fire->cell, min);
         float next = maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step);
         step = next - t;
-        FirePoint there = fire_at_point(preview, float3_mad(eye, d, next), what);
+        const FirePoint there = flame ? fire_at_point(fire, float3_mad(eye, d, next)) : outside;
         dark = there.depth < -2 * fine;
         if (seek && !dark) continue; // the same distance again in short steps
-        Matter m = fire_between(&here, &there, step);
+        Matter m = {{0, 0, 0}, 0};
+        if (what & FIRE_SMOKE) m = smoke_along(fire, eye, d, t + 0.5f * step, &line);
+        fire_between(&here, &there, step, &m);
         here = there;
 
         // light of the step, absorbed within the step: (1 - exp(-d)) / d

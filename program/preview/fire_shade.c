@@ -139,6 +139,7 @@ static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noi
     edge = minf(edge, 2 * (cell->flame - FLAME_SEEN));
     float noisy = 2 * (coarse / EDDY_WIDE + small / EDDY_FINE) / fire->scale;
     point->depth = maxf(edge / sqrtf(slope * slope + 0.4f * noisy * noisy + 1), FIRE_OUTSIDE);
+    if (!(point->depth > 0)) return;
 
     // the shell's profile, and its integral from the edge
     float tip = stepf(0.35f, 1.4f, tall), fill = mixf(0.02f, 0.12f, tip);
@@ -157,10 +158,8 @@ static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noi
     point->root = float3_scale(float3(0.12f, 0.42f, 1.25f), BLUE_DENSE * root);
 }
 
-Matter fire_between(const FirePoint *a, const FirePoint *b, float step) {
-    float smoke = 0.5f * (a->smoke + b->smoke);
-    Matter m = {float3_scale(float3_add(a->lit, b->lit), 0.5f), smoke};
-    if (!(a->depth > 0 || b->depth > 0)) return m;
+void fire_between(const FirePoint *a, const FirePoint *b, float step, Matter *matter) {
+    if (!(a->depth > 0 || b->depth > 0)) return;
 
     // the mean of the profile between the two depths, which differ by no more than the step
     float apart = b->depth - a->depth, part = 0.5f * (a->profile + b->profile);
@@ -168,9 +167,8 @@ Matter fire_between(const FirePoint *a, const FirePoint *b, float step) {
     float from = a->depth > b->depth ? 0.5f + 0.5f * (b->depth <= 0) : 0.5f * (a->depth > 0); // of the end inside
     from = 1 - from;
     Float3 light = float3_add(float3_mix(a->soot, b->soot, from), float3_mix(a->root, b->root, from));
-    m.light = float3_mad(m.light, light, part);
-    m.dense += part * mixf(a->opaque, b->opaque, from);
-    return m;
+    matter->light = float3_mad(matter->light, light, part);
+    matter->dense += part * mixf(a->opaque, b->opaque, from);
 }
 
 /// p in cells, counted from the centre of the first.
@@ -216,64 +214,57 @@ static FireCell cell_at(const Fire *fire, Float3 p, float *slope) {
     return (FireCell){sum[0], sum[1], sum[2], sum[3]};
 }
 
-FirePoint fire_at_point(const Preview *preview, Float3 p, int what) {
-    const Fire *fire = &preview->fire;
+FirePoint fire_at_point(const Fire *fire, Float3 p) {
     FirePoint point = {.depth = FIRE_OUTSIDE};
-    FireCell cell = {0, 0, 0, 0};
 
     // height above the paper: where there is flame its own, linear between the cells, as it only turns the eddies
-    if (what & FIRE_FLAME) {
-        float height = p.z - fire->low.z, f[3];
-        const Float3 g = in_cells(fire, p);
-        const float at[3] = {g.x, g.y, g.z};
-        size_t base = 0, over[3] = {1, (size_t)fire->size[0], (size_t)fire->size[0] * (size_t)fire->size[1]};
-        for (int c = 0; c < 3; c++)
-            base += over[c] * (size_t)fire_split(clampf(at[c], 0, (float)fire->size[c] - 1.01f), &f[c]);
-        Four sum = {0, 0, 0, 0};
-        for (int k = 0; k < 8; k++) {
-            size_t corner = base + (k & 1 ? over[0] : 0) + (k & 2 ? over[1] : 0) + (k & 4 ? over[2] : 0);
-            float weight = (k & 1 ? f[0] : 1 - f[0]) * (k & 2 ? f[1] : 1 - f[1]) * (k & 4 ? f[2] : 1 - f[2]);
-            sum += four_load(&fire->cells[corner].flame) * weight;
-        }
-        if (sum[0] > 1e-4f) height = sum[1] / sum[0];
-
-        // large eddies move it, then small ones
-        const float scale = fire->scale, passed = eddies_passed(height / scale, fire->moment / sqrtf(scale));
-        Noise wide = eddies(fire, p, passed, scale * EDDY_WIDE, 1);
-        Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), scale * 0.7f * FIRE_WARP_WIDE);
-
-        // whether the small eddies can bring flame there
-        const Float3 h = in_cells(fire, shifted);
-        size_t x = (size_t)clampf(h.x + 0.5f, 0, (float)(fire->size[0] - 1));
-        size_t y = (size_t)clampf(h.y + 0.5f, 0, (float)(fire->size[1] - 1));
-        size_t z = (size_t)clampf(h.z + 0.5f, 0, (float)(fire->size[2] - 1));
-
-        if (fire->burns[x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z)]) {
-            float slope;
-            Noise fine = eddies(fire, shifted, passed, sqrtf(scale) * EDDY_FINE, 1.6f * sqrtf(scale));
-            cell = cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), sqrtf(scale) * 0.7f * FIRE_WARP_FINE),
-                           &slope);
-            if (cell.flame > 0.02f) shade_flame(fire, &cell, slope, wide, fine, &point);
-        }
+    float height = p.z - fire->low.z, f[3];
+    const Float3 g = in_cells(fire, p);
+    const float at[3] = {g.x, g.y, g.z};
+    size_t base = 0, over[3] = {1, (size_t)fire->size[0], (size_t)fire->size[0] * (size_t)fire->size[1]};
+    for (int c = 0; c < 3; c++)
+        base += over[c] * (size_t)fire_split(clampf(at[c], 0, (float)fire->size[c] - 1.01f), &f[c]);
+    Four sum = {0, 0, 0, 0};
+    for (int k = 0; k < 8; k++) {
+        size_t corner = base + (k & 1 ? over[0] : 0) + (k & 2 ? over[1] : 0) + (k & 4 ? over[2] : 0);
+        float weight = (k & 1 ? f[0] : 1 - f[0]) * (k & 2 ? f[1] : 1 - f[1]) * (k & 4 ? f[2] : 1 - f[2]);
+        sum += four_load(&fire->cells[corner].flame) * weight;
     }
+    if (sum[0] > 1e-4f) height = sum[1] / sum[0];
 
-    // smoke rises in streaks: eddies three times as tall as wide move and thin it; what is inside of flames is bare of them
-    if (!(what & FIRE_SMOKE)) return point;
-    point.smoke = cell.smoke;
-    if (point.depth < 0) {
-        const float passed = (SMOKE_SPEED * fire->moment - p.z) / SMOKE_EDDY;
-        Noise wide = eddies(fire, p, passed, SMOKE_EDDY, 0.35f);
-        Noise small = eddies(fire, p, passed, SMOKE_EDDY / 2.6f, 0.9f);
-        Float3 moved = float3_mad(float3_mad(p, float3(wide.a, wide.b, wide.c), SMOKE_WARP),
-                                  float3(small.a, small.b, small.c), 0.5f * SMOKE_WARP);
-        cell = cell_at(fire, moved, NULL);
-        point.smoke = cell.smoke * maxf(1 + 1.2f * wide.d + 0.7f * small.d, 0);
-    }
+    // large eddies move it, then small ones
+    const float scale = fire->scale, passed = eddies_passed(height / scale, fire->moment / sqrtf(scale));
+    Noise wide = eddies(fire, p, passed, scale * EDDY_WIDE, 1);
+    Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), scale * 0.7f * FIRE_WARP_WIDE);
+
+    // whether the small eddies can bring flame there
+    const Float3 h = in_cells(fire, shifted);
+    size_t x = (size_t)clampf(h.x + 0.5f, 0, (float)(fire->size[0] - 1));
+    size_t y = (size_t)clampf(h.y + 0.5f, 0, (float)(fire->size[1] - 1));
+    size_t z = (size_t)clampf(h.z + 0.5f, 0, (float)(fire->size[2] - 1));
+    if (!fire->burns[x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z)]) return point;
+
+    float slope;
+    Noise fine = eddies(fire, shifted, passed, sqrtf(scale) * EDDY_FINE, 1.6f * sqrtf(scale));
+    const FireCell cell = cell_at(
+        fire, float3_mad(shifted, float3(fine.a, fine.b, 0), sqrtf(scale) * 0.7f * FIRE_WARP_FINE), &slope);
+    if (cell.flame > 0.02f) shade_flame(fire, &cell, slope, wide, fine, &point);
+    return point;
+}
+
+/// Smoke rises in streaks: eddies three times as tall as wide move and thin it.
+Matter fire_smoke_at(const Fire *fire, Float3 p) {
+    const float passed = (SMOKE_SPEED * fire->moment - p.z) / SMOKE_EDDY;
+    Noise wide = eddies(fire, p, passed, SMOKE_EDDY, 0.35f);
+    Noise small = eddies(fire, p, passed, SMOKE_EDDY / 2.6f, 0.9f);
+    Float3 moved = float3_mad(float3_mad(p, float3(wide.a, wide.b, wide.c), SMOKE_WARP),
+                              float3(small.a, small.b, small.c), 0.5f * SMOKE_WARP);
+    const FireCell cell = cell_at(fire, moved, NULL);
+    const float dense = cell.smoke * maxf(1 + 1.2f * wide.d + 0.7f * small.d, 0);
 
     // soot and tar scatter about a third, in all directions
     Float3 lit = float3_mad(float3_scale(fire->daylight, 0.35f), float3(1, 0.5f, 0.16f), 0.35f * cell.glow);
-    point.lit = float3_scale(lit, point.smoke);
-    return point;
+    return (Matter){float3_scale(lit, dense), dense};
 }
 
 // ---- for programs that draw the cells themselves
@@ -303,10 +294,11 @@ SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, doub
         for (int y = 0; y < size[1]; y++)
             for (int x = 0; x < size[0]; x++, i++) {
                 const Float3 p = float3_mad(origin, float3((float)x, (float)y, (float)z), side);
-                FirePoint point = fire_at_point(preview, p, FIRE_FLAME | FIRE_SMOKE);
-                smoke[i] = point.smoke;
-                point.lit = float3(0, 0, 0);
-                flame[i] = float3_luminance(fire_between(&point, &point, side).light) / bright;
+                const FirePoint point = fire_at_point(fire, p);
+                Matter burning = {{0, 0, 0}, 0};
+                fire_between(&point, &point, side, &burning);
+                smoke[i] = fire_smoke_at(fire, p).dense;
+                flame[i] = float3_luminance(burning.light) / bright;
             }
 
     return SINGE_OK;
