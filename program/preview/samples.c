@@ -161,7 +161,7 @@ static int find_restless(const Block *block, const int *active, float calm, int 
 
     for (int i = 0; i < LANES; i++) {
         bool rests = !is_edge(&block->layer[i]) && block->high[i] - block->low[i] < calm;
-        if (block->spread > 1) rests = rests && block->high[i] - block->low[i] < 0.4f * calm;
+        if (block->spread > 1) rests = rests && block->high[i] - block->low[i] < 0.7f * calm;
         else rests = rests && !is_beside_edge(block, i) && high - low < 0.15f;
         more[i] = active[i] && !rests ? -1 : 0;
         count += more[i] != 0;

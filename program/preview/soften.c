@@ -14,7 +14,7 @@
 enum { SOFT_REACH = 3, SOFT_PATCH = 1, SOFT_MARGIN = SOFT_REACH + SOFT_PATCH, SOFT_SIDE = BLOCK + 2 * SOFT_MARGIN };
 enum { SOFT_ROW = SOFT_SIDE + 4 };     ///< of a window, padded so that lines can be computed in eights
 static const float SOFT_LEAST = 2e-6f; ///< e
-static const float SOFT_STRONG = 1.2f; ///< allowed difference, in standard deviations
+static const float SOFT_STRONG = 1.6f; ///< allowed difference, in standard deviations
 
 typedef struct Window {
     float colour[3][SOFT_SIDE][SOFT_ROW], shown[3][SOFT_SIDE][SOFT_ROW];
