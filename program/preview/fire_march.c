@@ -51,7 +51,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
 
     // far away a step must still change a float
     float fine = minf(0.17f * fire->cell, 0.0016f), min = maxf((far - t) / (4 * FIRE_STEPS), 1e-5f * far);
-    bool dark = true;   // long steps until there is flame, and short ones at its edges
+    bool dark = true;   // long steps until there is flame, longer far from it, and short ones at its edges
     bool known = false; // whether `here` is the point at t
     FirePoint here;
     SmokeLine line = {.length = maxf(minf(fire->cell, SMOKE_STEP), min), .first = -2};
@@ -82,7 +82,8 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
         if (!known) here = flame ? fire_at_point(fire, float3_mad(eye, d, t)) : outside;
         known = true;
         bool seek = dark && flame;
-        float length = dark ? 2 * fine : fabsf(here.depth) < 2 * fine ? FIRE_SHORT * fine : fine;
+        const float away = here.depth > FIRE_OUTSIDE ? 2 * fine : 3 * fine;
+        float length = dark ? away : fabsf(here.depth) < 2 * fine ? FIRE_SHORT * fine : fine;
         float step = maxf(flame ? length : fire->cell, min);
         float next = maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step);
         step = next - t;
