@@ -49,6 +49,9 @@ bool args_read(const ArgCommand *command, int argc, char **argv, void *options, 
 /// SetList, to which it adds.
 ArgRead args_switch, args_text, args_folder, args_int, args_number, args_span, args_set;
 
+/// The option `--frames`, a row but for its field: what the command does with these frames, and what else it means.
+#define ARGS_FRAMES(does, more) "frames", 0, "A-B", does " only these frames (or A alone)" more, .read = args_span
+
 void args_help(const ArgCommand *command);
 
 /// The part of the help with the examples.

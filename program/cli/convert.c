@@ -16,6 +16,7 @@ typedef struct ConvertOptions {
     OutputSet formats;
     unsigned singles; ///< of output_singles, a bit each
     SetList sets;
+    int frames[2]; ///< the first and the last; 0: all
     bool single, plain, gas, quiet;
 } ConvertOptions;
 
@@ -72,6 +73,7 @@ static const ArgOption convert_options[] = {
      offsetof(ConvertOptions, plain)},
     {"set", 0, "PATH=VALUE", "sets a value of the scene (output.texture_size, gas.detail); may be repeated",
      .read = args_set, offsetof(ConvertOptions, sets)},
+    {ARGS_FRAMES("writes", ", and no root file"), offsetof(ConvertOptions, frames)},
     {"quiet", 'q', NULL, "prints only warnings and errors", .read = args_switch, offsetof(ConvertOptions, quiet)},
 };
 
@@ -79,6 +81,8 @@ static bool convert_check(const ArgCommand *command, void *options) {
     ConvertOptions *o = options;
     for (int i = 0; i < o->name_count; i++)
         if (!add_format(command, o->names[i], o)) return false;
+    if (o->frames[0] && (o->single || o->singles || o->gas))
+        return args_complain(command, "--frames: not with --single, usdz, vat and gas, which need all frames");
     return o->name_count || args_complain(command, "needs --to FORMAT");
 }
 
@@ -91,7 +95,8 @@ const ArgCommand convert_command = {
     "Existing frames are written again. Exit codes: 0 success, 1 failed or interrupted, 2 bad input.",
     "singe convert out --to usd\n"
     "singe convert out --to glb --single\n"
-    "singe convert out --to vtp --to textures --set output.texture_size=512",
+    "singe convert out --to vtp --to textures --set output.texture_size=512\n"
+    "singe convert out --to glb --frames 10-40",
     .operand_field = offsetof(ConvertOptions, folder),
     .check = convert_check};
 
@@ -127,19 +132,19 @@ static bool show_progress(void *context, int frame) {
 }
 
 /// Writes what was asked for. If Ctrl-C ends it, the result is an error.
-static SingeResult convert_all(const Outputs *outputs, const ConvertOptions *o, Console *console, int last,
+static SingeResult convert_all(const Outputs *outputs, const ConvertOptions *o, Console *console, int first, int last,
                                SingeError *error) {
-    ConvertProgress progress = {console, console_clock(), last, o->gas + (o->formats != 0), 0, 0};
+    ConvertProgress progress = {console, console_clock(), last - first + 1, o->gas + (o->formats != 0), 0, 0};
     SingeResult result = SINGE_OK;
     for (int i = 0; i < OUTPUT_SINGLE_COUNT; i++) progress.parts += (int)(o->singles >> i & 1);
     if (o->gas) result = gas_detail_write(outputs->job, outputs->folder, last, show_progress, &progress, error);
 
     progress.part = o->gas;
-    for (int frame = 1; frame <= last && !result && o->formats; frame++) {
+    for (int frame = first; frame <= last && !result && o->formats; frame++) {
         result = outputs_convert(outputs, frame, o->formats, error);
-        if (!show_progress(&progress, frame) && frame < last && !result) result = SINGE_ERROR_STATE;
+        if (!show_progress(&progress, frame - first + 1) && frame < last && !result) result = SINGE_ERROR_STATE;
     }
-    if (!result && o->formats) result = outputs_write_roots(outputs, last, error);
+    if (!result && o->formats && !o->frames[0]) result = outputs_write_roots(outputs, last, error);
 
     progress.part += o->formats != 0;
     for (int i = 0; i < OUTPUT_SINGLE_COUNT && !result; i++) {
@@ -161,16 +166,16 @@ static void print_path(char *path, const char *ending) {
 static ExitCode convert(const ConvertOptions *o, Console *console, const Job *job, const Folder *folder, Lock *lock) {
     SingeError error = {0};
     Outputs outputs = {0};
-    int first = 0, last = 0;
+    int first = o->frames[0], last = o->frames[1];
     ExitCode code = folder_span(folder, console, &first, &last);
     if (code) return code;
-    if (first != 1) {
+    if (!o->frames[0] && first != 1) {
         console_error(console, "the frames in %s begin at %d, but the first frame is needed", folder->path, first);
         return EXIT_INPUT;
     }
 
-    SingeResult result = lock_take(lock, folder->cache_lock, "frames", false, console, &error);
-    char *vdb = folder_vdb(folder, 1), *fine = folder_gas_detail(folder, 1);
+    SingeResult result = lock_take(lock, folder->cache_lock, "frames", o->frames[0] > 0, console, &error);
+    char *vdb = folder_vdb(folder, first), *fine = folder_gas_detail(folder, first);
     if (!result) result = outputs_open(&outputs, job, folder, o->formats, folder_has(vdb), &error);
     outputs.scene.plain = o->plain;
     outputs.scene.gas_detail = job->scene->gas_detail > 1 && (o->gas || folder_has(fine));
@@ -178,7 +183,7 @@ static ExitCode convert(const ConvertOptions *o, Console *console, const Job *jo
     free(fine);
     if (!result) result = folder_create(folder, (FolderParts){.outputs = o->formats, .gas_detail = o->gas}, &error);
     interrupt_watch();
-    if (!result) result = convert_all(&outputs, o, console, last, &error);
+    if (!result) result = convert_all(&outputs, o, console, first, last, &error);
     const bool interrupted = result && interrupt_asked();
     console_clear(console);
     if (result && !interrupted) console_result(console, &error);
@@ -190,7 +195,9 @@ static ExitCode convert(const ConvertOptions *o, Console *console, const Job *jo
             if (o->singles >> i & 1) print_path(folder_single(folder, i), output_singles[i].ending ? "" : ".json");
         for (int i = 0; i < OUTPUT_COUNT; i++)
             if (output_has(o->formats, i))
-                print_path(output_formats[i].write_root ? folder_root(folder, i) : folder_output(folder, i, 1), "");
+                print_path(output_formats[i].write_root && !o->frames[0] ? folder_root(folder, i)
+                                                                         : folder_output(folder, i, first),
+                           "");
     }
 
     outputs_close(&outputs);

@@ -36,8 +36,7 @@ typedef struct MeasureOptions {
 } MeasureOptions;
 
 static const ArgOption measure_options[] = {
-    {"frames", 0, "A-B", "reads only these frames (or A alone) [all]", .read = args_span,
-     offsetof(MeasureOptions, frames)},
+    {ARGS_FRAMES("reads", " [all]"), offsetof(MeasureOptions, frames)},
     {"csv", 0, "FILE", "also writes the numbers of every frame to FILE", .read = args_text,
      offsetof(MeasureOptions, csv)},
     {"no-preview", 0, NULL, "draws no frames, so embers are not measured", .read = args_switch,

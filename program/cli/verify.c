@@ -36,7 +36,7 @@ typedef struct Verify {
 } Verify;
 
 static const ArgOption verify_options[] = {
-    {"frames", 0, "A-B", "reads only these frames (or A alone) [all]", .read = args_span, offsetof(Verify, frames)},
+    {ARGS_FRAMES("reads", " [all]"), offsetof(Verify, frames)},
     {"stretch", 0, "X", "edges longer than X times their length at rest are stretched [2]", .read = args_number,
      offsetof(Verify, stretch), 1, ARG_HIGHEST},
     {"csv", 0, "FILE", "also writes the counts of every frame to FILE", .read = args_text, offsetof(Verify, csv)},

@@ -23,8 +23,9 @@ class Convert(Case):
         for file in sorted(os.listdir(folder)):
             with open(os.path.join(folder, file), "rb") as bytes_:
                 found[file] = bytes_.read()
-        if FORMATS[name]:
-            with open(self.path(out, "tiny" + FORMATS[name]), "rb") as bytes_:
+        root = self.path(out, "tiny%s" % FORMATS[name])
+        if os.path.exists(root):
+            with open(root, "rb") as bytes_:
                 found["root"] = bytes_.read()
         return found
 
@@ -45,6 +46,26 @@ class Convert(Case):
         self.no_temporaries("o")
         self.no_temporaries("c")
         self.assertEqual(self.plys("o"), self.plys("c"))
+
+    def test_some_frames(self):
+        """The bytes of these frames, no other frames, and no root of frames that are not there."""
+        self.run_formats("o", "--frames", "5")
+        self.run_scene("c", "--quiet", "--frames", "5")
+        for name in FORMATS:
+            out, err = self.singe("convert", self.path("c"), "--to", name, "--frames", "2-3",
+                                  "--set", "output.texture_size=64")
+            self.assertTrue(os.path.exists(out.strip()), out)
+            ends = re.findall(r"frame (\d+)/(\d+)", err)
+            self.assertEqual(sum(a == b for a, b in ends), 1, err)
+            whole = self.files("o", name)
+            part = {file: whole[file] for file in whole if ".0002." in file or ".0003." in file}
+            self.assertGreaterEqual(len(part), 2)
+            self.assertEqual(self.files("c", name), part)
+        error = self.singe("convert", self.path("c"), "--to", "vtp", "--frames", "4-6", expect=2)[1]
+        self.assertIn("frames 4-6 are requested, but", error)
+        for args in (["--to", "vat"], ["--to", "gas"], ["--to", "usdz"], ["--to", "usd", "--single"]):
+            error = self.singe("convert", self.path("c"), *args, "--frames", "2", expect=2)[1]
+            self.assertIn("--frames: not with", error)
 
     def test_progress_ends_once(self):
         """Whatever is written, and however often a format reads the frames."""
