@@ -189,26 +189,6 @@ static SingeResult easel_begin(const BenchOptions *options, const Shot *shot, in
     return result;
 }
 
-/// Median and least seconds of processor time, and median seconds, of pictures after the first: that one also prepares the
-/// table's appearance, which a film does once.
-static SingeResult easel_time(Easel *easel, const SingeSurface *surface, double *cpu, double *min, double *wall,
-                              SingeError *error) {
-    double used[REPEATS], passed[REPEATS];
-    SingeResult result = preview_draw(easel->preview, surface, 1, easel->rgb, error);
-    for (int i = 0; i < REPEATS && !result; i++) {
-        const double began = machine_cpu_clock(), clock = machine_clock();
-        result = preview_draw(easel->preview, surface, 1 + i / 24.0, easel->rgb, error);
-        used[i] = machine_cpu_clock() - began;
-        passed[i] = machine_clock() - clock;
-    }
-
-    if (result) return result;
-    *cpu = numbers_median(used, REPEATS);
-    *min = used[0];
-    *wall = numbers_median(passed, REPEATS);
-    return SINGE_OK;
-}
-
 // ---- the error
 
 enum { SAMPLES = 16, REFERENCE_SAMPLES = 256, PAN_FRAMES = 2 };
@@ -238,12 +218,21 @@ static uint8_t *draw_pan(const BenchOptions *options, const Shot *shot, const Si
 
 static SingeResult shot_measure(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
                                 BenchTable *table, SingeError *error) {
+    // seconds of pictures after the first: that one also prepares the table's appearance, which a film does once
     Easel easel;
-    double cpu, min, wall;
+    double used[REPEATS], passed[REPEATS];
     SingeResult result = easel_begin(options, shot, options->quick ? 320 : 1280, SAMPLES, &easel, error);
-    if (!result) result = easel_time(&easel, surface, &cpu, &min, &wall, error);
+    for (int i = -1; i < REPEATS && !result; i++) {
+        const double began = machine_cpu_clock(), clock = machine_clock();
+        result = preview_draw(easel.preview, surface, i < 0 ? 1 : 1 + i / 24.0, easel.rgb, error);
+        if (i < 0) continue;
+        used[i] = machine_cpu_clock() - began;
+        passed[i] = machine_clock() - clock;
+    }
+
     easel_end(&easel);
     if (result) return result;
+    const double cpu = numbers_median(used, REPEATS), min = used[0], wall = numbers_median(passed, REPEATS);
 
     // e of both frames, and how much it changes between them
     const int width = options->quick ? 160 : 320;

@@ -338,6 +338,7 @@ ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan) {
     plan->name = arena_text(plan->arena, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
     if (reader.prefix) read_plan(&reader, plan, fit);
 
+    messages_sort(&messages, 0);
     const bool failed = arena_failed(plan->arena);
     const bool bad = message_total(&messages) > 0;
     scene_messages_print(&messages, stderr);

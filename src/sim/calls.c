@@ -4,11 +4,6 @@
 
 #include "sim/objects.h"
 
-static void tape_handle(Tape *tape, uint32_t index, uint32_t generation) {
-    TAPE(tape, index);
-    TAPE(tape, generation);
-}
-
 static void tape_asked(Tape *tape, const void *result) {
     bool asked = result != NULL;
     tape_bool(tape, &asked);
@@ -57,7 +52,9 @@ static const float *velocities_read(const SingeSim *sim, SingeSheetId id, uint32
 #define ARGUMENTS_NEW(Type) , made
 #define WRITE_NEW(Type) tape_asked(tape, made);
 #define ARGUMENTS_HANDLE(Type, name) , id
-#define WRITE_HANDLE(Type, name) tape_handle(tape, id.index, id.generation);
+#define WRITE_HANDLE(Type, name) \
+    TAPE(tape, id.index);        \
+    TAPE(tape, id.generation);
 #define ARGUMENTS_CALLBACK , callback, context
 #define WRITE_CALLBACK              \
     bool called = callback != NULL; \
