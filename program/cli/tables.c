@@ -13,15 +13,17 @@
 #include "common/store.h"
 #include "formats/formats.h"
 
-static const char stats_header[] =
-    "frame,time,particles,springs,triangles,pieces,mass,burnt_fraction,temperature_max,heat_in,heat_lost,"
-    "heat_of_combustion,heat_stored,ledger_error,strain_mean,strain_p99,strain_max,inverted_cells,ms_heat,ms_burn,"
-    "ms_ablate,ms_dynamics,ms_gas,ms_output,speed_rms_unburnt,mass_ledger_error,ignited,holes_opened,pieces_freed,"
-    "front_speed,triangles_fine,ms_surface,tears,contact_halts,arrival_error,arrival_missed,pace,water,ms_contact,"
-    "energy_kinetic,energy_elastic,energy_gravity,energy_lost\n";
-static const char events_header[] = "frame,time,event,element,x,y,z,u,v\n";
-static const char probes_header[] =
-    "frame,time,probe,sheet,there,x,y,z,temperature,temperature_peak,mass,burn_rate,time_ignited,piece\n";
+static const char *const headers[TABLE_COUNT] = {
+    [TABLE_STATS] =
+        "frame,time,particles,springs,triangles,pieces,mass,burnt_fraction,temperature_max,heat_in,heat_lost,"
+        "heat_of_combustion,heat_stored,ledger_error,strain_mean,strain_p99,strain_max,inverted_cells,ms_heat,ms_burn,"
+        "ms_ablate,ms_dynamics,ms_gas,ms_output,speed_rms_unburnt,mass_ledger_error,ignited,holes_opened,pieces_freed,"
+        "front_speed,triangles_fine,ms_surface,tears,contact_halts,arrival_error,arrival_missed,pace,water,ms_contact,"
+        "energy_kinetic,energy_elastic,energy_gravity,energy_lost\n",
+    [TABLE_PROBES] =
+        "frame,time,probe,sheet,there,x,y,z,temperature,temperature_peak,mass,burn_rate,time_ignited,piece\n",
+    [TABLE_EVENTS] = "frame,time,event,element,x,y,z,u,v\n",
+};
 
 const char *tables_unit(const char *column) {
     static const struct {
@@ -76,26 +78,45 @@ static SingeResult lines_append(LineFile *file, const char *text, size_t size, S
     return SINGE_OK;
 }
 
-static SingeResult lines_begin(LineFile *file, const char *header, SingeError *error) {
-    if (ftruncate(file->fd, 0) != 0) return folder_fail(file->path, "write", errno, error);
-    file->size = 0;
-    return lines_append(file, header, strlen(header), error);
+/// The lines of a table behind its header, at a frame.
+typedef struct Extent {
+    const char *header;
+    uint64_t lines;
+    uint32_t per_frame; ///< if not 0, each line begins with its frame, and a frame has that many
+    char what[80];      ///< for messages: "frames 1 to 12"
+} Extent;
+
+static bool is_asked(int table, const Scene *scene) {
+    return table == TABLE_PROBES ? scene->probe_count > 0 : table == TABLE_EVENTS ? scene->output.events : true;
 }
 
-/// Reads a file's header and the first `count` lines, which must exist. If `per_frame` is not 0, each begins with its
-/// frame, and a frame has that many. `what` is for the message: "frames 1 to 12".
-static SingeResult lines_read(const char *path, const char *header, uint64_t count, uint32_t per_frame,
-                              const char *what, Bytes *bytes, size_t *size, SingeError *error) {
+static Extent extent_at(int table, const Scene *scene, int frames, const Totals *totals) {
+    Extent extent = {.header = headers[table], .per_frame = table == TABLE_PROBES ? scene->probe_count : 1};
+    extent.lines = (uint64_t)frames * extent.per_frame;
+    snprintf(extent.what, sizeof extent.what, "frames 1 to %d", frames);
+    if (table != TABLE_EVENTS) return extent;
+
+    extent.per_frame = 0;
+    extent.lines = totals->ignited + totals->holes_opened + totals->pieces_freed;
+    snprintf(extent.what, sizeof extent.what, "the %" PRIu64 " events up to frame %d", extent.lines, frames);
+    return extent;
+}
+
+static const char *table_path(const Folder *folder, int table) {
+    return table == TABLE_STATS ? folder->stats : table == TABLE_PROBES ? folder->probes : folder->events;
+}
+
+/// Reads a file and checks that it has these lines, which take *size bytes.
+static SingeResult lines_read(const char *path, const Extent *extent, Bytes *bytes, size_t *size, SingeError *error) {
     SingeResult result = file_read(path, (SingeAllocator){0}, bytes, error);
     if (result) return result;
 
-    // the size of what is kept
-    size_t at = strlen(header);
-    bool good = bytes->size >= at && memcmp(bytes->data, header, at) == 0;
-    for (uint64_t i = 0; good && i < count; i++) {
+    size_t at = strlen(extent->header);
+    bool good = bytes->size >= at && memcmp(bytes->data, extent->header, at) == 0;
+    for (uint64_t i = 0; good && i < extent->lines; i++) {
         const char *line = (const char *)bytes->data + at, *end = memchr(line, '\n', bytes->size - at);
         char number[24] = "";
-        if (per_frame) snprintf(number, sizeof number, "%" PRIu64 ",", i / per_frame + 1);
+        if (extent->per_frame) snprintf(number, sizeof number, "%" PRIu64 ",", i / extent->per_frame + 1);
         good = end && (size_t)(end - line) >= strlen(number) && memcmp(line, number, strlen(number)) == 0;
         if (good) at += (size_t)(end - line) + 1;
     }
@@ -105,26 +126,8 @@ static SingeResult lines_read(const char *path, const char *header, uint64_t cou
 
     bytes_free(bytes);
     return refuse(error, SINGE_ERROR_FORMAT, "resume", -1,
-                  "%.200s lacks %s, which the checkpoint needs; run without --resume to start over", path, what);
-}
-
-/// Truncates the file to them.
-static SingeResult lines_cut(LineFile *file, const char *header, uint64_t count, uint32_t per_frame, const char *what,
-                             SingeError *error) {
-    Bytes bytes = {0};
-    size_t size;
-    SingeResult result = lines_read(file->path, header, count, per_frame, what, &bytes, &size, error);
-    if (result) return result;
-    bytes_free(&bytes);
-    file->size = (int64_t)size;
-    if (ftruncate(file->fd, (off_t)file->size) != 0) return folder_fail(file->path, "cut", errno, error);
-    return SINGE_OK;
-}
-
-static SingeResult lines_sync(LineFile *file, SingeError *error) {
-    // EINVAL: the file system cannot flush
-    if (fsync(file->fd) == 0 || errno == EINVAL || errno == ENOTSUP) return SINGE_OK;
-    return folder_fail(file->path, "write", errno, error);
+                  "%.200s lacks %s, which the checkpoint needs; run without --resume to start over", path,
+                  extent->what);
 }
 
 // ---- the three tables
@@ -134,32 +137,38 @@ SingeResult tables_open(Tables *tables, const Folder *folder, const Scene *scene
     *tables = (Tables)TABLES_CLOSED;
     tables->scene = scene;
     tables->assets = assets;
-    SingeResult result = lines_open(&tables->stats, folder->stats, error);
-    if (!result && scene->output.events) result = lines_open(&tables->events, folder->events, error);
-    if (!result && scene->probe_count) result = lines_open(&tables->probes, folder->probes, error);
+    SingeResult result = SINGE_OK;
+    for (int i = 0; i < TABLE_COUNT && !result; i++)
+        if (is_asked(i, scene)) result = lines_open(&tables->files[i], table_path(folder, i), error);
     return result;
 }
 
 SingeResult tables_begin(Tables *tables, SingeError *error) {
-    SingeResult result = lines_begin(&tables->stats, stats_header, error);
-    if (!result && tables->events.fd >= 0) result = lines_begin(&tables->events, events_header, error);
-    if (!result && tables->probes.fd >= 0) result = lines_begin(&tables->probes, probes_header, error);
+    SingeResult result = SINGE_OK;
+    for (int i = 0; i < TABLE_COUNT && !result; i++) {
+        LineFile *file = &tables->files[i];
+        if (file->fd < 0) continue;
+        file->size = 0;
+        result = ftruncate(file->fd, 0) != 0 ? folder_fail(file->path, "write", errno, error)
+                                             : lines_append(file, headers[i], strlen(headers[i]), error);
+    }
+
     return result;
 }
 
 SingeResult tables_cut(Tables *tables, int frames, const Totals *totals, SingeError *error) {
-    char what[80];
-    snprintf(what, sizeof what, "frames 1 to %d", frames);
-    SingeResult result = lines_cut(&tables->stats, stats_header, (uint64_t)frames, 1, what, error);
-    if (!result && tables->probes.fd >= 0) {
-        const uint32_t per_frame = tables->scene->probe_count;
-        result = lines_cut(&tables->probes, probes_header, (uint64_t)frames * per_frame, per_frame, what, error);
-    }
-
-    if (!result && tables->events.fd >= 0) {
-        const uint64_t events = totals->ignited + totals->holes_opened + totals->pieces_freed;
-        snprintf(what, sizeof what, "the %" PRIu64 " events up to frame %d", events, frames);
-        result = lines_cut(&tables->events, events_header, events, 0, what, error);
+    SingeResult result = SINGE_OK;
+    for (int i = 0; i < TABLE_COUNT && !result; i++) {
+        LineFile *file = &tables->files[i];
+        const Extent extent = extent_at(i, tables->scene, frames, totals);
+        Bytes bytes = {0};
+        size_t size = 0;
+        if (file->fd < 0) continue;
+        result = lines_read(file->path, &extent, &bytes, &size, error);
+        if (result) break;
+        bytes_free(&bytes);
+        file->size = (int64_t)size;
+        if (ftruncate(file->fd, (off_t)size) != 0) result = folder_fail(file->path, "cut", errno, error);
     }
 
     return result;
@@ -167,46 +176,34 @@ SingeResult tables_cut(Tables *tables, int frames, const Totals *totals, SingeEr
 
 SingeResult tables_copy(const Folder *from, const Folder *to, const Scene *scene, int frames, const Totals *totals,
                         SingeError *error) {
-    char what[80];
-    snprintf(what, sizeof what, "frames 1 to %d", frames);
-    const uint64_t events = totals->ignited + totals->holes_opened + totals->pieces_freed, all = (uint64_t)frames;
-    const struct {
-        bool asked;
-        const char *from, *to, *header;
-        uint64_t lines;
-        uint32_t per_frame;
-    } parts[] = {
-        {true, from->stats, to ? to->stats : NULL, stats_header, all, 1},
-        {scene->probe_count > 0, from->probes, to ? to->probes : NULL, probes_header, all * scene->probe_count,
-         scene->probe_count},
-        {scene->output.events, from->events, to ? to->events : NULL, events_header, events, 0},
-    };
-
     SingeResult result = SINGE_OK;
-    for (size_t i = 0; i < sizeof parts / sizeof *parts && !result; i++) {
-        if (!parts[i].asked) continue;
+    for (int i = 0; i < TABLE_COUNT && !result; i++) {
+        const Extent extent = extent_at(i, scene, frames, totals);
         Bytes bytes = {0};
         size_t size;
-        result =
-            lines_read(parts[i].from, parts[i].header, parts[i].lines, parts[i].per_frame, what, &bytes, &size, error);
-        if (!result && to) result = file_write(parts[i].to, bytes.data, size, error);
-        if (!result) bytes_free(&bytes);
+        if (!is_asked(i, scene)) continue;
+        result = lines_read(table_path(from, i), &extent, &bytes, &size, error);
+        if (result) break;
+        if (to) result = file_write(table_path(to, i), bytes.data, size, error);
+        bytes_free(&bytes);
     }
 
     return result;
 }
 
 SingeResult tables_sync(Tables *tables, SingeError *error) {
-    SingeResult result = lines_sync(&tables->stats, error);
-    if (!result && tables->events.fd >= 0) result = lines_sync(&tables->events, error);
-    if (!result && tables->probes.fd >= 0) result = lines_sync(&tables->probes, error);
+    SingeResult result = SINGE_OK;
+    for (int i = 0; i < TABLE_COUNT && !result; i++) {
+        const LineFile *file = &tables->files[i];
+        if (file->fd < 0 || fsync(file->fd) == 0 || errno == EINVAL || errno == ENOTSUP) continue;
+        result = folder_fail(file->path, "write", errno, error); // EINVAL: the file system cannot flush
+    }
+
     return result;
 }
 
 void tables_close(Tables *tables) {
-    lines_close(&tables->stats);
-    lines_close(&tables->events);
-    lines_close(&tables->probes);
+    for (int i = 0; i < TABLE_COUNT; i++) lines_close(&tables->files[i]);
     store_free((SingeAllocator){0}, tables->held, tables->held_capacity, sizeof *tables->held);
     free(tables->lines);
     *tables = (Tables)TABLES_CLOSED;
@@ -217,7 +214,7 @@ void tables_close(Tables *tables) {
 SingeResult tables_take_step(Tables *tables, const SingeSim *sim, SingeError *error) {
     size_t count;
     const SingeEvent *events = singe_sim_events(sim, &count);
-    if (tables->events.fd < 0 || !count) return SINGE_OK;
+    if (tables->files[TABLE_EVENTS].fd < 0 || !count) return SINGE_OK;
     if (!store_grow((SingeAllocator){0}, &tables->held, &tables->held_capacity, tables->held_count + count,
                     sizeof *tables->held))
         return tables_no_memory(error);
@@ -250,8 +247,8 @@ static SingeResult write_events(Tables *tables, size_t count, int frame, SingeEr
         else fprintf(file, "%.9g,%.9g\n", (double)uv[0], (double)uv[1]);
     }
 
-    SingeResult result =
-        text_stream_end(file, &text) ? lines_append(&tables->events, text, size, error) : tables_no_memory(error);
+    SingeResult result = text_stream_end(file, &text) ? lines_append(&tables->files[TABLE_EVENTS], text, size, error)
+                                                      : tables_no_memory(error);
     free(text);
 
     tables->held_count -= count;
@@ -300,7 +297,7 @@ SingeResult tables_take_frame(Tables *tables, const SingeSim *sim, int frame, Si
     tables->due = tables->held_count;
     free(tables->lines);
     tables->lines = NULL;
-    if (tables->probes.fd < 0) return SINGE_OK;
+    if (tables->files[TABLE_PROBES].fd < 0) return SINGE_OK;
 
     const SingeView view = singe_sim_view(sim);
     size_t size = 0;
@@ -314,7 +311,8 @@ SingeResult tables_write_frame(Tables *tables, int frame, const SingeStats *s, c
                                const FrameCost *cost, SingeError *error) {
     SingeResult result = write_events(tables, tables->due, frame, error);
     tables->due = 0;
-    if (!result && tables->lines) result = lines_append(&tables->probes, tables->lines, strlen(tables->lines), error);
+    if (!result && tables->lines)
+        result = lines_append(&tables->files[TABLE_PROBES], tables->lines, strlen(tables->lines), error);
     free(tables->lines);
     tables->lines = NULL;
     if (result) return result;
@@ -334,5 +332,5 @@ SingeResult tables_write_frame(Tables *tables, int frame, const SingeStats *s, c
         totals->holes_opened, totals->pieces_freed, s->front_speed, cost->fine_triangles, cost->surface, s->tears,
         totals->contact_halts, s->arrival_error, s->arrival_missed, (double)s->pace, s->water, cost->contact,
         s->energy_kinetic, s->energy_elastic, s->energy_gravity, s->energy_lost);
-    return lines_append(&tables->stats, line, (size_t)length, error);
+    return lines_append(&tables->files[TABLE_STATS], line, (size_t)length, error);
 }

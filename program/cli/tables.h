@@ -32,8 +32,6 @@ typedef struct LineFile {
     const char *path;
     int64_t size; ///< bytes of whole lines
 } LineFile;
-#define LINE_FILE_CLOSED \
-    { .fd = -1 }
 
 /// The times of a frame (ms) and its triangles.
 typedef struct FrameCost {
@@ -47,17 +45,21 @@ typedef struct HeldEvent {
     float uv[2]; ///< of the particle
 } HeldEvent;
 
+enum { TABLE_STATS, TABLE_PROBES, TABLE_EVENTS, TABLE_COUNT };
+
 typedef struct Tables {
     const Scene *scene;
     const SceneAssets *assets;
-    LineFile stats, events, probes; ///< events and probes are closed if the scene asks for none
-    HeldEvent *held;                ///< not written yet
+    LineFile files[TABLE_COUNT]; ///< those that the scene does not ask for are closed
+    HeldEvent *held;             ///< not written yet
     size_t held_count, held_capacity;
     size_t due;  ///< number of them that belong to the frame being written
     char *lines; ///< of that frame's probes, from malloc; NULL: none
 } Tables;
-#define TABLES_CLOSED \
-    { .stats = LINE_FILE_CLOSED, .events = LINE_FILE_CLOSED, .probes = LINE_FILE_CLOSED }
+#define TABLES_CLOSED                                   \
+    {                                                   \
+        .files = { {.fd = -1}, {.fd = -1}, {.fd = -1} } \
+    }
 
 /// Opens the tables that the scene asks for, and changes nothing in them. A link, a pipe or a device in the place of one
 /// is refused. Scene, assets and folder must outlive it.
