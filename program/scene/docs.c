@@ -14,7 +14,7 @@ typedef struct Sections {
 static const char introduction[] =
     "# Scene files\n"
     "\n"
-    "*This page is made from the schema by `program/scene/write_docs.c`; edit `schema*.c` or `docs.c` there.*\n"
+    "*This page is made by `singe scene-doc`; edit `schema*.c` or `docs.c` in `program/scene`.*\n"
     "\n"
     "A scene file says what burns, what heats it, what it rests on and how it is drawn. It is\n"
     "[YAML](https://yaml.org), and JSON reads too. The smallest scene:\n"
