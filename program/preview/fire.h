@@ -97,11 +97,11 @@ void fire_light_smoke(Preview *preview);
 /// The flame at a position. Its light comes from a shell inside its edge, thinner than steps are long, so
 /// that a step needs both of its ends.
 typedef struct FirePoint {
-    Float3 soot, root;   ///< radiance per metre of the shell where it is brightest: yellow soot, blue root
-    float depth;         ///< m inside the flame's edge, negative outside
-    float profile;       ///< light there relative to the shell's brightest
-    float shell;         ///< m, integral of that from the edge to the depth
-    float opaque;        ///< 1/m, extinction of the shell
+    Float3 soot, root; ///< radiance per metre of the shell where it is brightest: yellow soot, blue root
+    float depth;       ///< m inside the flame's edge, negative outside
+    float profile;     ///< light there relative to the shell's brightest
+    float shell;       ///< m, integral of that from the edge to the depth
+    float opaque;      ///< 1/m, extinction of the shell
 } FirePoint;
 
 #define FIRE_OUTSIDE (-0.006f) ///< m, depth of what is far outside of flames

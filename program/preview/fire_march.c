@@ -18,8 +18,8 @@ typedef struct SmokeLine {
 static Matter smoke_along(const Fire *fire, Float3 eye, Float3 d, float t, SmokeLine *line) {
     const float first = floorf(t / line->length);
     if (first != line->first) {
-        line->ends[0] = first == line->first + 1 ? line->ends[1]
-                                                 : fire_smoke_at(fire, float3_mad(eye, d, first * line->length));
+        line->ends[0] =
+            first == line->first + 1 ? line->ends[1] : fire_smoke_at(fire, float3_mad(eye, d, first * line->length));
         line->ends[1] = fire_smoke_at(fire, float3_mad(eye, d, (first + 1) * line->length));
         line->first = first;
     }

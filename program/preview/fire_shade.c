@@ -246,8 +246,8 @@ FirePoint fire_at_point(const Fire *fire, Float3 p) {
 
     float slope;
     Noise fine = eddies(fire, shifted, passed, sqrtf(scale) * EDDY_FINE, 1.6f * sqrtf(scale));
-    const FireCell cell = cell_at(
-        fire, float3_mad(shifted, float3(fine.a, fine.b, 0), sqrtf(scale) * 0.7f * FIRE_WARP_FINE), &slope);
+    const FireCell cell =
+        cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), sqrtf(scale) * 0.7f * FIRE_WARP_FINE), &slope);
     if (cell.flame > 0.02f) shade_flame(fire, &cell, slope, wide, fine, &point);
     return point;
 }
