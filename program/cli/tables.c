@@ -48,18 +48,6 @@ static void lines_close(LineFile *file) {
     file->fd = -1;
 }
 
-static SingeResult lines_open(LineFile *file, const char *path, SingeError *error) {
-    // without O_NONBLOCK a named pipe would wait here for its reader
-    const int flags = O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
-    struct stat info;
-    *file = (LineFile){.path = path, .fd = open(path, flags, 0666)};
-    if (file->fd < 0) return folder_fail(file->path, "write", errno == ENXIO ? 0 : errno, error);
-    if (fstat(file->fd, &info) == 0 && S_ISREG(info.st_mode)) return SINGE_OK;
-
-    lines_close(file);
-    return folder_fail(file->path, "write", 0, error);
-}
-
 /// Appends whole lines; if they do not fit on the disk, none is left.
 static SingeResult lines_append(LineFile *file, const char *text, size_t size, SingeError *error) {
     for (size_t done = 0; done < size;) {
@@ -137,10 +125,23 @@ SingeResult tables_open(Tables *tables, const Folder *folder, const Scene *scene
     *tables = (Tables)TABLES_CLOSED;
     tables->scene = scene;
     tables->assets = assets;
-    SingeResult result = SINGE_OK;
-    for (int i = 0; i < TABLE_COUNT && !result; i++)
-        if (is_asked(i, scene)) result = lines_open(&tables->files[i], table_path(folder, i), error);
-    return result;
+    for (int i = 0; i < TABLE_COUNT; i++) {
+        if (!is_asked(i, scene)) continue;
+
+        // without O_NONBLOCK a named pipe would wait here for its reader
+        const int flags = O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+        LineFile *file = &tables->files[i];
+        struct stat info;
+        file->path = table_path(folder, i);
+        file->fd = open(file->path, flags, 0666);
+        if (file->fd < 0) return folder_fail(file->path, "write", errno == ENXIO ? 0 : errno, error);
+        if (fstat(file->fd, &info) == 0 && S_ISREG(info.st_mode)) continue;
+
+        lines_close(file);
+        return folder_fail(file->path, "write", 0, error);
+    }
+
+    return SINGE_OK;
 }
 
 SingeResult tables_begin(Tables *tables, SingeError *error) {
