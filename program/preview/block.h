@@ -92,7 +92,7 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
                    const int *ask);
 
 /// Counts what the rays of a kind have met: the luminance that each lane asked for, and the open share of it.
-void light_count(const Preview *preview, Block *block, int kind, const float asked[LANES], const float open[LANES]);
+void light_count(Block *block, int kind, const float asked[LANES], const float open[LANES]);
 
 /// Whether anything could occlude sun or sky at any of the points.
 bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active);

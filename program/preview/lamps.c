@@ -233,7 +233,7 @@ static void ask_lamps(const Preview *preview, Block *block, const float wanted[L
     }
 
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
-    light_count(preview, block, LIT_LAMPS, wanted, block->clear);
+    light_count(block, LIT_LAMPS, wanted, block->clear);
 }
 
 void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
@@ -247,13 +247,11 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
         wanted[i] = 0;
         if (!light_reaches(block, active, i)) continue;
 
-        const bool asks = ask[i] && !block->settled[LIT_LAMPS];
-
         // the last result is reused if its point was nearby with the same normal, or if it hardly matters, on char
         const Point *point = &block->point[i];
         Float3 moved = float3_sub(point->position, block->lamp_position[i]);
         bool known =
-            !asks && float3_dot(moved, moved) < 4 * point->footprint * point->footprint &&
+            !ask[i] && float3_dot(moved, moved) < 4 * point->footprint * point->footprint &&
             (float3_dot(point->normal, block->lamp_normal[i]) > 0.99f || float3_luminance(point->albedo) < 0.08f);
         if (!known) {
             block->lamp_position[i] = point->position;
@@ -265,7 +263,7 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
         light = float3_scale(float3(minf(light.x, 40), minf(light.y, 40), minf(light.z, 40)), through[i]);
         block->lit[LIT_LAMPS][i] = float3_add(block->lit[LIT_LAMPS][i], light);
         float luminance = float3_luminance(light);
-        if (asks && luminance > too_faint) {
+        if (ask[i] && luminance > too_faint) {
             wanted[i] = luminance;
             any = true;
         }

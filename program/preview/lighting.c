@@ -50,7 +50,7 @@ static bool is_outshone(const Block *block, int lane, float luminance) {
     return luminance < 0.02f * lamps;
 }
 
-void light_count(const Preview *preview, Block *block, int kind, const float asked[LANES], const float open[LANES]) {
+void light_count(Block *block, int kind, const float asked[LANES], const float open[LANES]) {
     int count = 0, clear = 0, blocked = 0;
     for (int i = 0; i < LANES; i++) {
         if (!(asked[i] > 0)) continue;
@@ -62,7 +62,7 @@ void light_count(const Preview *preview, Block *block, int kind, const float ask
     }
 
     const bool even = clear == count || blocked == count;
-    block->settled[kind] = block->settled[kind] || (even && count >= LANES / 2 && !is_still(preview));
+    block->settled[kind] = block->settled[kind] || (even && count >= LANES / 2);
     block->hidden = block->hidden || (!even && kind != LIT_LAMPS);
 }
 
@@ -84,7 +84,7 @@ void light_add_sun(const Preview *preview, Block *block, const int *active, int 
         Float3 light = float3_scale(float3_mul(light_reflect(point, l), preview->sun_light), through[i]);
         block->lit[LIT_SUN][i] = float3_add(block->lit[LIT_SUN][i], light);
         asked[i] = float3_luminance(light);
-        if (!ask[i] || block->settled[LIT_SUN] || asked[i] < 1e-4f || is_outshone(block, i, asked[i])) continue;
+        if (!ask[i] || asked[i] < 1e-4f || is_outshone(block, i, asked[i])) continue;
         float side = float3_dot(point->geometric, l) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
         aim_ray(&block->shadow, i, float3_mad(point->position, point->geometric, side), l, 0, INFINITY, block->time[i]);
         block->valid[i] = -1;
@@ -94,7 +94,7 @@ void light_add_sun(const Preview *preview, Block *block, const int *active, int 
     if (!any) return;
     for (int i = 0; i < LANES; i++) asked[i] = block->valid[i] ? asked[i] : 0;
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
-    light_count(preview, block, LIT_SUN, asked, block->clear);
+    light_count(block, LIT_SUN, asked, block->clear);
 }
 
 /// Length of ambient-occlusion rays.
@@ -174,7 +174,7 @@ static void ask_sky(const Preview *preview, Block *block, const float asked[LANE
 
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
     for (int i = 0; i < LANES; i++) open[i] = mixf(occluded_sky, 1, block->clear[i]);
-    light_count(preview, block, LIT_SKY, asked, open);
+    light_count(block, LIT_SKY, asked, open);
 }
 
 void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],
@@ -204,7 +204,7 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
         light = float3_scale(light, through[i]);
         block->lit[LIT_SKY][i] = float3_add(block->lit[LIT_SKY][i], light);
         const float luminance = float3_luminance(light);
-        if (!ask[i] || block->settled[LIT_SKY] || luminance < 1e-6f || is_outshone(block, i, luminance)) continue;
+        if (!ask[i] || luminance < 1e-6f || is_outshone(block, i, luminance)) continue;
         asked[i] = luminance;
         any = true;
     }

@@ -100,13 +100,14 @@ void block_add_light(const Preview *preview, Block *block, const int *active, in
     }
 
     // sky and lamps change slowly enough for every second sample, but not where faces meet; so does the sun where it is
-    // blurred
-    const int unasked[LANES] = {0};
+    // blurred. What is settled is asked no more, but for the other faces of a pixel that are met later
+    const int unasked[LANES] = {0}, *asked[LIT_KINDS];
     const bool all = sample < 0 || sample >= SAMPLES_FIRST || preview->def.samples == 1 || is_still(preview);
-    const bool odd = sample % 2 != 0;
-    lamps_add(preview, block, active, sample, through, all || odd ? ask : unasked);
-    light_add_sun(preview, block, active, sample, through, all || odd || block->spread <= 1 ? ask : unasked);
-    light_add_sky(preview, block, active, sample, through, all || !odd ? ask : unasked);
+    const bool odd = sample % 2 != 0, due[LIT_KINDS] = {odd || block->spread <= 1, !odd, odd};
+    for (int k = 0; k < LIT_KINDS; k++) asked[k] = all || (due[k] && !block->settled[k]) ? ask : unasked;
+    lamps_add(preview, block, active, sample, through, asked[LIT_LAMPS]);
+    light_add_sun(preview, block, active, sample, through, asked[LIT_SUN]);
+    light_add_sky(preview, block, active, sample, through, asked[LIT_SKY]);
 
     // how much the samples differ, but for what hides the light
     for (int i = 0; i < LANES; i++) {
