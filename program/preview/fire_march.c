@@ -50,7 +50,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
     float clear = 1;
 
     // far away a step must still change a float
-    float fine = minf(0.17f * fire->cell, 0.0016f), min = maxf((far - t) / (4 * FIRE_STEPS), 1e-5f * far);
+    float fine = minf(0.17f * fire->cell, 0.0016f), min = maxf((far - t) / (16 * FIRE_STEPS), 1e-5f * far);
     bool dark = true;   // long steps until there is flame, longer far from it, and short ones at its edges
     bool known = false; // whether `here` is the point at t
     FirePoint here;
