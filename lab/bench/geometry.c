@@ -3,11 +3,7 @@
 #include <math.h>
 
 #include "analysis/crossings.h"
-
-static double geometry_distance(const float *a, const float *b) {
-    double x = (double)a[0] - (double)b[0], y = (double)a[1] - (double)b[1], z = (double)a[2] - (double)b[2];
-    return sqrt(x * x + y * y + z * z);
-}
+#include "common/float3.h"
 
 static double square(const float *v) {
     return (double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2];
@@ -65,26 +61,25 @@ double geometry_gyration(const SingeView *view) {
     return sqrt(sum / count);
 }
 
-/// Cross product of a cell's diagonals.
-static void cell_normal(const SingeView *view, uint32_t cell, double *normal) {
+void geometry_normal(const SingeView *view, uint32_t cell, double *normal) {
     const uint32_t *corner = view->cells[cell];
     double a[3], b[3];
     for (int axis = 0; axis < 3; axis++) {
         a[axis] = (double)view->position[corner[2]][axis] - (double)view->position[corner[0]][axis];
         b[axis] = (double)view->position[corner[3]][axis] - (double)view->position[corner[1]][axis];
     }
-    for (int k = 0; k < 3; k++) normal[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+    cross3(a, b, normal);
 }
 
 double geometry_folded(const SingeView *view, int cells) {
     uint32_t n = (uint32_t)cells, folded = 0, edges = 0;
     for (uint32_t cell = 0; cell < n * n; cell++) {
         double own[3], other[3];
-        cell_normal(view, cell, own);
+        geometry_normal(view, cell, own);
         for (int side = 0; side < 2; side++) {
             if (side ? cell / n + 1 == n : cell % n + 1 == n) continue;
-            cell_normal(view, side ? cell + n : cell + 1, other);
-            folded += own[0] * other[0] + own[1] * other[1] + own[2] * other[2] < 0;
+            geometry_normal(view, side ? cell + n : cell + 1, other);
+            folded += dot3(own, other) < 0;
             edges++;
         }
     }
@@ -97,7 +92,7 @@ double geometry_inverted(const SingeView *view) {
     for (uint32_t cell = 0; cell < view->cell_count; cell++) {
         double normal[3], above = 0, square = 0;
         if (!(view->cell_flags[cell] & SINGE_ALIVE)) continue;
-        cell_normal(view, cell, normal);
+        geometry_normal(view, cell, normal);
         const float *centre = view->position[view->vertex_count + cell];
         for (int axis = 0; axis < 3; axis++) {
             double mean = 0;
@@ -125,9 +120,9 @@ SingeResult geometry_crossings(SingeSim *sim, uint64_t *count, SingeError *error
 double geometry_reach(const SingeView *view, const float *position) {
     double max = 0;
     for (uint32_t i = 0; i < view->vertex_count; i++) {
-        double rest = geometry_distance(view->rest_position[i], position);
+        double rest = distance_of(view->rest_position[i], position);
         if (rest < 0.2) continue;
-        double ratio = geometry_distance(view->position[i], position) / rest;
+        double ratio = distance_of(view->position[i], position) / rest;
         if (!(ratio <= max)) max = ratio; // keeps NaN
     }
 

@@ -19,6 +19,9 @@ double geometry_speed(const SingeView *view);
 /// m, root mean square distance of the particles from their centre.
 double geometry_gyration(const SingeView *view);
 
+/// The cross product of a cell's diagonals.
+void geometry_normal(const SingeView *view, uint32_t cell, double *normal);
+
 /// Share of the inner edges whose two cells' normals are more than a right angle apart.
 double geometry_folded(const SingeView *view, int cells);
 

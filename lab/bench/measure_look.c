@@ -31,41 +31,13 @@ static const Setting settings[] = {
     {"base", 1, 1, 1}, {"h x 2", 2, 1, 1}, {"h / 2", 0.5, 1, 1}, {"substeps x 2", 1, 2, 1}, {"s / 2", 1, 1, 2},
 };
 
-static SingeResult look_observe(const BenchOptions *options, BenchSetup setup, Look *look, SingeError *error) {
-    SingeSim *sim = NULL;
-    double seconds = options->time > 0 ? options->time : options->quick ? 0.5 : 3;
-    setup.approach = 0.1f;
-
-    SingeResult result = sheet_build(&setup, &sim, error);
-    for (double t = 0; !result && t < seconds; t += (double)setup.time_step) {
-        result = singe_sim_step(sim);
-        if (result) *error = *singe_sim_error(sim);
-    }
-
-    if (!result) {
-        SingeView view = singe_sim_view(sim);
-        const int cells = setup.cells;
-        const double height_start = 0.5; // of an upright sheet of 1 m
-        double left[3], right[3], centre[3];
-        for (int p = 0; p < POINTS * POINTS; p++)
-            geometry_point(&view, cells, (p % POINTS) / (POINTS - 1.0), (p / POINTS) / (POINTS - 1.0), look->shape[p]);
-        geometry_point(&view, cells, 0, 1, left);
-        geometry_point(&view, cells, 1, 1, right);
-        geometry_point(&view, cells, 0.5, 1, centre);
-        look->sag = 0.5 * (left[2] + right[2]) - centre[2];
-        look->drop = height_start - geometry_height(&view);
-    }
-
-    singe_sim_destroy(sim);
-    return result;
-}
-
 static double change(double value, double base) { return 100 * (value / base - 1); }
 
 SingeResult bench_look(const BenchOptions *options, BenchTable *table, SingeError *error) {
     enum { SETTINGS = sizeof settings / sizeof *settings };
     BenchList cells = bench_list(&options->cells, 1, (const double[]){options->quick ? 16 : 50});
     BenchList thickness = bench_list(&options->thickness, 1, (const double[]){2e-3});
+    const double seconds = options->time > 0 ? options->time : options->quick ? 0.5 : 3;
     Look *looks = calloc(SETTINGS, sizeof *looks);
     SingeResult result = looks ? SINGE_OK : SINGE_ERROR_MEMORY;
     for (int i = 0; i < SETTINGS && !result; i++) {
@@ -77,10 +49,34 @@ SingeResult bench_look(const BenchOptions *options, BenchTable *table, SingeErro
         setup.damping = 3;
         setup.time_step *= (float)setting->step;
         setup.solver.substeps = (int)fmax(1, setup.solver.substeps * setting->substeps);
-        result = look_observe(options, setup, &looks[i], error);
+        setup.approach = 0.1f;
+
+        Look *look = &looks[i];
+        const Look *base = &looks[0];
+        SingeSim *sim = NULL;
+        result = sheet_build(&setup, &sim, error);
+        for (double t = 0; !result && t < seconds; t += (double)setup.time_step) {
+            result = singe_sim_step(sim);
+            if (result) *error = *singe_sim_error(sim);
+        }
+
+        if (!result) {
+            SingeView view = singe_sim_view(sim);
+            const double height_start = 0.5; // of an upright sheet of 1 m
+            double left[3], right[3], centre[3];
+            for (int p = 0; p < POINTS * POINTS; p++)
+                geometry_point(&view, setup.cells, (p % POINTS) / (POINTS - 1.0), (p / POINTS) / (POINTS - 1.0),
+                               look->shape[p]);
+            geometry_point(&view, setup.cells, 0, 1, left);
+            geometry_point(&view, setup.cells, 1, 1, right);
+            geometry_point(&view, setup.cells, 0.5, 1, centre);
+            look->sag = 0.5 * (left[2] + right[2]) - centre[2];
+            look->drop = height_start - geometry_height(&view);
+        }
+
+        singe_sim_destroy(sim);
 
         // differences from the base
-        const Look *look = &looks[i], *base = &looks[0];
         double sum = 0;
         for (int p = 0; p < POINTS * POINTS; p++)
             for (int axis = 0; axis < 3; axis++) sum += pow(look->shape[p][axis] - base->shape[p][axis], 2);

@@ -7,6 +7,7 @@
 #include "bench/geometry.h"
 #include "bench/hung_sheet.h"
 #include "cli/text.h"
+#include "common/float3.h"
 
 // ---- scenes
 
@@ -207,25 +208,13 @@ void lab_sets_mass(SingeMaterialDef *material) {
 
 // ---- shapes
 
-static void cell_normal(const SingeView *view, uint32_t cell, double n[3]) {
-    const uint32_t *c = view->cells[cell];
-    double a[3], b[3], length = 0;
-    for (int k = 0; k < 3; k++) {
-        a[k] = (double)view->position[c[2]][k] - (double)view->position[c[0]][k];
-        b[k] = (double)view->position[c[3]][k] - (double)view->position[c[1]][k];
-    }
-    for (int k = 0; k < 3; k++) {
-        n[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-        length += n[k] * n[k];
-    }
-    for (int k = 0; k < 3; k++) n[k] /= sqrt(fmax(length, 1e-300));
-}
-
 double shape_angle(const SingeView *view, uint32_t a, uint32_t b) {
-    double n[3], m[3], dot = 0;
-    cell_normal(view, a, n), cell_normal(view, b, m);
-    for (int k = 0; k < 3; k++) dot += n[k] * m[k];
-    return acos(fmin(1, fmax(-1, dot)));
+    double n[3], m[3];
+    geometry_normal(view, a, n);
+    geometry_normal(view, b, m);
+    unit3(n);
+    unit3(m);
+    return acos(fmin(1, fmax(-1, dot3(n, m))));
 }
 
 double shape_bend(const SingeView *view) {
@@ -283,17 +272,9 @@ static int edge_order(const void *a, const void *b) {
     return (p->high > q->high) - (p->high < q->high);
 }
 
-static double rest_distance(const SingeSurface *surface, uint32_t a, uint32_t b) {
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        double d = (double)surface->rest_position[a][k] - (double)surface->rest_position[b][k];
-        square += d * d;
-    }
-    return sqrt(square);
-}
-
 double shape_border(const SingeSurface *surface) {
-    size_t count = 3 * (size_t)surface->triangle_count;
+    const size_t count = 3 * (size_t)surface->triangle_count;
+    float(*rest)[3] = surface->rest_position;
     Edge *edges = malloc((count + 1) * sizeof *edges);
     double length = 0, area = 0;
 
@@ -303,15 +284,15 @@ double shape_border(const SingeSurface *surface) {
             uint32_t a = c[k], b = c[(k + 1) % 3];
             edges[3 * (size_t)t + (size_t)k] = a < b ? (Edge){a, b} : (Edge){b, a};
         }
-        double p = rest_distance(surface, c[0], c[1]), q = rest_distance(surface, c[1], c[2]);
-        double r = rest_distance(surface, c[2], c[0]), s = (p + q + r) / 2;
-        area += sqrt(fmax(0, s * (s - p) * (s - q) * (s - r)));
+        double twice[3];
+        area3(rest[c[0]], rest[c[1]], rest[c[2]], twice);
+        area += 0.5 * sqrt(dot3(twice, twice));
     }
 
     if (edges) qsort(edges, count, sizeof *edges, edge_order);
     for (size_t i = 0, j; edges && i < count; i = j) {
         for (j = i + 1; j < count && edge_order(&edges[i], &edges[j]) == 0;) j++;
-        if (j == i + 1) length += rest_distance(surface, edges[i].low, edges[i].high);
+        if (j == i + 1) length += distance_of(rest[edges[i].low], rest[edges[i].high]);
     }
     free(edges);
     return area > 0 ? length / sqrt(area) : NAN;

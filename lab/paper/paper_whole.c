@@ -1,8 +1,10 @@
 // The paper as one system in its scenes of fire, Figs 1, 4 and 11: scenes/whole-fig1.yaml, -fig4 and -fig11. Ours runs
 // on the same sheets. Both are compared at equal burnt mass, as their fires are not equally fast.
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 
+#include "common/float3.h"
 #include "page/appearance.h"
 #include "paper/paper.h"
 
@@ -44,20 +46,6 @@ typedef struct Run {
     double times[MARKS];
 } Run;
 
-/// Mean strain of a colour's springs that are left, against their targets.
-static double colour_strain(const SingeView *view, SingeColour colour) {
-    double sum = 0, count = 0;
-    for (uint32_t s = 0; s < view->spring_count[colour]; s++) {
-        if (!(view->spring_flags[colour][s] & SINGE_ALIVE)) continue;
-        const float *a = view->position[view->springs[colour][s][0]], *b = view->position[view->springs[colour][s][1]];
-        double square = 0;
-        for (int k = 0; k < 3; k++) square += pow((double)a[k] - (double)b[k], 2);
-        sum += fabs(sqrt(square) / (double)view->spring_length[colour][s] - 1), count++;
-    }
-
-    return count > 0 ? sum / count : 0;
-}
-
 /// `more` (ends with NULL; NULL for none) overrides settings of a system. Such runs are not drawn.
 static SingeResult whole_run(Lab *lab, const Figure *figure, int system, const char *const *more, Run *run,
                              SingeError *error) {
@@ -75,8 +63,20 @@ static SingeResult whole_run(Lab *lab, const Figure *figure, int system, const c
         if (!(stats.burnt_fraction >= figure->marks[run->reached])) continue;
         run->times[run->reached++] = time;
         const SingeView view = singe_sim_view(play.sim);
-        for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
-            run->strain[c] = fmax(run->strain[c], colour_strain(&view, (SingeColour)c));
+        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
+            // the mean over the springs that are left, against their targets
+            double sum = 0, count = 0;
+            for (uint32_t i = 0; i < view.spring_count[c]; i++) {
+                if (!(view.spring_flags[c][i] & SINGE_ALIVE)) continue;
+                const uint32_t *ends = view.springs[c][i];
+                const double length = distance_of(view.position[ends[0]], view.position[ends[1]]);
+                sum += fabs(length / (double)view.spring_length[c][i] - 1);
+                count++;
+            }
+
+            if (count > 0) run->strain[c] = fmax(run->strain[c], sum / count);
+        }
+
         result = look_take(&play, 0, &run->look, error);
         if (result || !drawn || run->reached == 1) continue;
         char caption[100];
@@ -89,21 +89,17 @@ static SingeResult whole_run(Lab *lab, const Figure *figure, int system, const c
     return result;
 }
 
-/// The smallest of a system's numbers over the figures, or the largest.
-static double over_figures(Run (*runs)[SYSTEMS], int system, double (*number)(const Look *look), bool largest) {
-    double out = number(&runs[0][system].look);
-    for (int f = 1; f < FIGURES; f++) {
-        const double value = number(&runs[f][system].look);
-        out = largest ? fmax(out, value) : fmin(out, value);
+/// The smallest of a system's numbers, a double of Look, over the figures, or the largest.
+static double over_figures(Run (*runs)[SYSTEMS], int system, size_t number, bool largest) {
+    double out = NAN;
+    for (int f = 0; f < FIGURES; f++) {
+        const double value = *(const double *)(const void *)((const char *)&runs[f][system].look + number);
+        out = largest ? fmax(out, value) : fmin(out, value); // NaN is no number to them
     }
     return out;
 }
 
-static double strain_of(const Look *look) { return look->strain_mean; }
-static double inverted_of(const Look *look) { return look->inverted; }
-static double hottest_of(const Look *look) { return look->hottest; }
-static double dynamics_of(const Look *look) { return look->dynamics; }
-static double heat_of(const Look *look) { return look->heat; }
+#define OF(member) offsetof(Look, member)
 
 enum { ORDERS = 3, LAST_BLUE = 1 };
 static const char *const order_names[ORDERS] = {"red, green, blue, yellow: the paper's", "red, green, yellow, blue",
@@ -169,19 +165,19 @@ SingeResult paper_whole(Lab *lab, SingeError *error) {
                look_curl(&runs[0][PAPERS].look, 0.9), 40, 180, look_curl(&plain.look, 0.9),
                "the same without shrinkage");
     report_bar(lab->report, "strain_paper", "mean strain of the paper's system, the least of the figures",
-               over_figures(runs, PAPERS, strain_of, false), 0.005, 1, over_figures(runs, OURS, strain_of, false),
-               "ours");
+               over_figures(runs, PAPERS, OF(strain_mean), false), 0.005, 1,
+               over_figures(runs, OURS, OF(strain_mean), false), "ours");
     report_bar(lab->report, "strain_ours", "mean strain of ours, the largest of the figures",
-               over_figures(runs, OURS, strain_of, true), 0, 0.02, over_figures(runs, PAPERS, strain_of, true),
-               "the paper's system");
+               over_figures(runs, OURS, OF(strain_mean), true), 0, 0.02,
+               over_figures(runs, PAPERS, OF(strain_mean), true), "the paper's system");
     report_bar(lab->report, "inverted", "share of cells turned over, the paper's system, the largest",
-               over_figures(runs, PAPERS, inverted_of, true), 0.05, 1, over_figures(runs, OURS, inverted_of, true),
+               over_figures(runs, PAPERS, OF(inverted), true), 0.05, 1, over_figures(runs, OURS, OF(inverted), true),
                "ours");
     report_bar(lab->report, "hottest", "K of the hottest, ours, the largest",
-               over_figures(runs, OURS, hottest_of, true), 900, 1600, over_figures(runs, PAPERS, hottest_of, true),
+               over_figures(runs, OURS, OF(hottest), true), 900, 1600, over_figures(runs, PAPERS, OF(hottest), true),
                "the paper's system");
     report_bar(lab->report, "dynamics", "share of a step's time in dynamics, the paper's system, the least",
-               over_figures(runs, PAPERS, dynamics_of, false), 0.5, 1, over_figures(runs, PAPERS, heat_of, true),
+               over_figures(runs, PAPERS, OF(dynamics), false), 0.5, 1, over_figures(runs, PAPERS, OF(heat), true),
                "in heat, the most");
     return SINGE_OK;
 }

@@ -67,12 +67,6 @@ void check_values(const CacheFrame *frame, Findings *findings) {
 
 static bool is_finite_point(const float p[3]) { return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]); }
 
-static double findings_distance(const float a[3], const float b[3]) {
-    double sum = 0;
-    for (int k = 0; k < 3; k++) sum += ((double)a[k] - (double)b[k]) * ((double)a[k] - (double)b[k]);
-    return sqrt(sum);
-}
-
 // ---- crossings
 
 static bool is_rest_known(const CacheFrame *frame) {
@@ -142,9 +136,9 @@ static void add_crossing(const CacheFrame *frame, uint32_t a, uint32_t b, Findin
     // the distance between their nearest corners at rest, and the longest of their sides
     double gap = (double)INFINITY, side = 0;
     for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) gap = fmin(gap, findings_distance(frame->rest[s[i]], frame->rest[t[k]]));
-        side = fmax(side, findings_distance(frame->rest[s[i]], frame->rest[s[(i + 1) % 3]]));
-        side = fmax(side, findings_distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
+        for (int k = 0; k < 3; k++) gap = fmin(gap, distance_of(frame->rest[s[i]], frame->rest[t[k]]));
+        side = fmax(side, distance_of(frame->rest[s[i]], frame->rest[s[(i + 1) % 3]]));
+        side = fmax(side, distance_of(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
     }
 
     const int32_t one = sheet_of(frame, a), other = sheet_of(frame, b);
@@ -313,8 +307,8 @@ static bool check_edges(const CacheFrame *frame, const uint32_t *sound, uint32_t
                          at[0].triangle, at[1].triangle, low, high);
         if (!has_rest(frame, at)) continue;
 
-        const double length = findings_distance(frame->position[low], frame->position[high]);
-        const double rest = findings_distance(frame->rest[low], frame->rest[high]);
+        const double length = distance_of(frame->position[low], frame->position[high]);
+        const double rest = distance_of(frame->rest[low], frame->rest[high]);
         const double shortest = length - rounding(frame->position[low], frame->position[high]);
         const double longest = rest + rounding(frame->rest[low], frame->rest[high]);
         if (shortest > findings->stretch * longest)

@@ -42,19 +42,9 @@ typedef struct RimPoints {
 
 // ---- triangles
 
-/// Twice the vector area of a triangle.
-static void twice_area(float (*position)[3], const uint32_t *t, double *normal) {
-    double a[3], b[3];
-    for (int k = 0; k < 3; k++) {
-        a[k] = (double)position[t[1]][k] - (double)position[t[0]][k];
-        b[k] = (double)position[t[2]][k] - (double)position[t[0]][k];
-    }
-    cross3(a, b, normal);
-}
-
 static double area_of(float (*position)[3], const uint32_t *t) {
     double normal[3];
-    twice_area(position, t, normal);
+    area3(position[t[0]], position[t[1]], position[t[2]], normal);
     return 0.5 * sqrt(dot3(normal, normal));
 }
 
@@ -142,10 +132,8 @@ static Edge *find_edges(const SingeSurface *surface, int32_t piece, size_t *coun
 // ---- points along the rim, in a grid
 
 static int steps_along(const SingeSurface *surface, const Edge *edge) {
-    double square = 0;
-    for (int k = 0; k < 3; k++)
-        square += pow((double)surface->rest_position[edge->to][k] - (double)surface->rest_position[edge->from][k], 2);
-    double steps = ceil(sqrt(square) / point_spacing);
+    const double length = distance_of(surface->rest_position[edge->to], surface->rest_position[edge->from]);
+    const double steps = ceil(length / point_spacing);
     return steps < 1 ? 1 : steps > 1000 ? 1000 : (int)steps;
 }
 
@@ -379,7 +367,7 @@ static bool find_plane(Piece *piece) {
         if (!is_of(piece, f)) continue;
         const uint32_t *t = surface->triangles[f];
         double normal[3], area = area_of(surface->rest_position, t);
-        twice_area(surface->rest_position, t, normal);
+        area3(surface->rest_position[t[0]], surface->rest_position[t[1]], surface->rest_position[t[2]], normal);
         for (int k = 0; k < 3; k++) {
             piece->normal[k] += normal[k];
             for (int i = 0; i < 3; i++) piece->origin[k] += area * (double)surface->rest_position[t[i]][k] / 3;
@@ -457,13 +445,8 @@ static bool take_sample(Work *work, const Sample *sample) {
 static bool take_triangle(Work *work, const uint32_t *t) {
     const SingeSurface *surface = work->piece.surface;
     double longest = 0;
-    for (int i = 0; i < 3; i++) {
-        double square = 0;
-        for (int k = 0; k < 3; k++)
-            square +=
-                pow((double)surface->rest_position[t[i]][k] - (double)surface->rest_position[t[(i + 1) % 3]][k], 2);
-        longest = fmax(longest, sqrt(square));
-    }
+    for (int i = 0; i < 3; i++)
+        longest = fmax(longest, distance_of(surface->rest_position[t[i]], surface->rest_position[t[(i + 1) % 3]]));
 
     const int n = (int)fmax(1, fmin(SAMPLES_A_SIDE_MAX, ceil(longest / sample_spacing)));
     const double rest_area = area_of(surface->rest_position, t) / n / n, area = area_of(surface->position, t) / n / n;

@@ -27,6 +27,7 @@
 #include <stdlib.h>
 
 #include "analysis/rest_raster.h"
+#include "common/float3.h"
 
 /// m
 static const double spacing = 0.75e-3, crease_deviation = 2e-3;
@@ -220,15 +221,10 @@ static bool folds_add_sheet(const SingeSurface *surface, int32_t sheet, void *su
         vertices += surface->sheet[v] == sheet && surface->source_vertex[v] >= 0;
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
         const uint32_t *at = surface->triangles[t];
-        double a[3], b[3], square = 0;
+        double twice[3];
         if (surface->sheet[at[0]] != sheet) continue;
-        for (int k = 0; k < 3; k++) {
-            a[k] = (double)surface->rest_position[at[1]][k] - (double)surface->rest_position[at[0]][k];
-            b[k] = (double)surface->rest_position[at[2]][k] - (double)surface->rest_position[at[0]][k];
-        }
-
-        for (int k = 0; k < 3; k++) square += pow(a[k] * b[(k + 1) % 3] - a[(k + 1) % 3] * b[k], 2);
-        area += 0.5 * sqrt(square);
+        area3(surface->rest_position[at[0]], surface->rest_position[at[1]], surface->rest_position[at[2]], twice);
+        area += 0.5 * sqrt(dot3(twice, twice));
     }
 
     const double cell = vertices > 0 ? sqrt(area / vertices) : 0;

@@ -21,6 +21,7 @@
 #include "cli/folder.h"
 #include "cli/job.h"
 #include "cli/pictures.h"
+#include "common/float3.h"
 #include "common/store.h"
 #include "formats/formats.h"
 
@@ -249,13 +250,9 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
         double area = 0;
         for (uint32_t f = 0; f < surface->triangle_count; f++) {
             const uint32_t *t = surface->triangles[f];
-            double a[3], b[3], c[3];
-            for (int k = 0; k < 3; k++) {
-                a[k] = (double)surface->rest_position[t[1]][k] - (double)surface->rest_position[t[0]][k];
-                b[k] = (double)surface->rest_position[t[2]][k] - (double)surface->rest_position[t[0]][k];
-            }
-            for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-            area += 0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+            double twice[3];
+            area3(surface->rest_position[t[0]], surface->rest_position[t[1]], surface->rest_position[t[2]], twice);
+            area += 0.5 * sqrt(dot3(twice, twice));
         }
 
         fill_row(&wrinkles, &folds, rim, area, row);

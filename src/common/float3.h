@@ -56,6 +56,20 @@ static inline void cross3(const double *a, const double *b, double *out) {
     out[1] = a[2] * b[0] - a[0] * b[2];
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
+/// The distance of two points of floats.
+static inline double distance_of(const float *a, const float *b) {
+    const double x = (double)a[0] - (double)b[0], y = (double)a[1] - (double)b[1], z = (double)a[2] - (double)b[2];
+    return sqrt(x * x + y * y + z * z);
+}
+/// Twice the area of a triangle of three points of floats, along its normal.
+static inline void area3(const float *a, const float *b, const float *c, double *out) {
+    double p[3], q[3];
+    for (int k = 0; k < 3; k++) {
+        p[k] = (double)b[k] - (double)a[k];
+        q[k] = (double)c[k] - (double)a[k];
+    }
+    cross3(p, q, out);
+}
 /// Scales to length 1; false if the length is 0 or not a number.
 static inline bool unit3(double *a) {
     const double length = sqrt(dot3(a, a));
