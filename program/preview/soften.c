@@ -21,35 +21,6 @@ typedef struct Window {
     float noise[SOFT_SIDE][SOFT_ROW], raw[SOFT_SIDE][SOFT_ROW];
 } Window;
 
-/// The pixels around a block; beyond the picture's edges those at the edge.
-static void window_fill(const Preview *preview, const Block *block, Window *window) {
-    const int w = preview->def.width, h = preview->def.height;
-    memset(window, 0, sizeof *window);
-    for (int j = 0; j < SOFT_SIDE; j++)
-        for (int i = 0; i < SOFT_SIDE; i++) {
-            int x = block->x[0] + i - SOFT_MARGIN, y = block->y[0] + j - SOFT_MARGIN;
-            x = x < 0 ? 0 : x < w ? x : w - 1;
-            y = y < 0 ? 0 : y < h ? y : h - 1;
-            const Lit *lit = &preview->lit[(size_t)y * (size_t)w + (size_t)x];
-            float colour[3], shown[3];
-            float3_store(colour, lit->light[SOFT_COLOUR]);
-            float3_store(shown, lit->light[SOFT_SHOWN]);
-            for (int c = 0; c < 3; c++) {
-                window->colour[c][j][i] = colour[c];
-                window->shown[c][j][i] = shown[c];
-            }
-            window->raw[j][i] = lit->noise;
-        }
-
-    // variances of few samples are uncertain: the mean of 3 x 3
-    for (int j = 1; j < SOFT_SIDE - 1; j++)
-        for (int i = 1; i < SOFT_SIDE - 1; i++) {
-            float sum = 0;
-            for (int k = 0; k < 9; k++) sum += window->raw[j + k / 3 - 1][i + k % 3 - 1];
-            window->noise[j][i] = sum / 9;
-        }
-}
-
 /// w(p, q) of all pixels p of the block and those q that lie (i, j) from them.
 static void window_compare(const Window *window, int i, int j, float weight[BLOCK][BLOCK]) {
     enum { PATCHES = BLOCK + 2 * SOFT_PATCH, FIRST = SOFT_MARGIN - SOFT_PATCH, WIDE = 8 };
@@ -84,8 +55,33 @@ void soften(Preview *preview, Block *block) {
     const Lit *first = &preview->lit[(size_t)block->y[0] * (size_t)w + (size_t)block->x[0]];
     if (!(first->blur > 1) || is_still(preview)) return;
 
+    // the pixels around the block; beyond the picture's edges those at the edge
     Window window;
-    window_fill(preview, block, &window);
+    memset(&window, 0, sizeof window);
+    for (int j = 0; j < SOFT_SIDE; j++)
+        for (int i = 0; i < SOFT_SIDE; i++) {
+            int x = block->x[0] + i - SOFT_MARGIN, y = block->y[0] + j - SOFT_MARGIN;
+            x = x < 0 ? 0 : x < w ? x : w - 1;
+            y = y < 0 ? 0 : y < h ? y : h - 1;
+            const Lit *lit = &preview->lit[(size_t)y * (size_t)w + (size_t)x];
+            float colour[3], shown[3];
+            float3_store(colour, lit->light[SOFT_COLOUR]);
+            float3_store(shown, lit->light[SOFT_SHOWN]);
+            for (int c = 0; c < 3; c++) {
+                window.colour[c][j][i] = colour[c];
+                window.shown[c][j][i] = shown[c];
+            }
+            window.raw[j][i] = lit->noise;
+        }
+
+    // variances of few samples are uncertain: the mean of 3 x 3
+    for (int j = 1; j < SOFT_SIDE - 1; j++)
+        for (int i = 1; i < SOFT_SIDE - 1; i++) {
+            float sum = 0;
+            for (int k = 0; k < 9; k++) sum += window.raw[j + k / 3 - 1][i + k % 3 - 1];
+            window.noise[j][i] = sum / 9;
+        }
+
     const int reach = (int)minf(first->blur + 0.5f, SOFT_REACH);
     float sum[4][BLOCK][BLOCK] = {{{0}}}; // the last is of the weights
 

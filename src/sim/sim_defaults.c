@@ -21,17 +21,13 @@ static const struct {
 #undef NOISE
 };
 
-static SingeParam standard_param(float from, float to, const SingeField *field) {
-    return (SingeParam){from, to, field->kind == SINGE_FIELD_NONE ? NULL : field};
-}
-
 static SingeMaterialDef standard_material(void) {
     SingeMaterialDef def = {
         .struct_size = sizeof def,
 #define EVEN(value) value, value
 #define NOISE(from, to, scale, octaves, seed) from, to
 #define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) \
-    .name = standard_param(standard, &standard_fields.name),
+    .name = {standard, standard_fields.name.kind == SINGE_FIELD_NONE ? NULL : &standard_fields.name},
 #define SINGE_PARAM_BACK SINGE_PARAM
 #define SINGE_SCALAR(TYPE, name, dimension, standard, range, text) .name = standard,
 #include "singe/material.def"
