@@ -103,13 +103,19 @@ uniform float transmittance;
 uniform vec3 tint;
 out vec4 colour;
 
-const float EMBER_BURN = 0.74, EMBER_WIDTH = 0.00042, EMBER_GAIN = 3.4;
+const float EMBER_BURN = 0.74, EMBER_WIDTH = 0.00042, EMBER_GAIN = 3.4, EMBER_HOT = 1180.0, EMBER_MOST = 6.0;
+
+/** Hotter embers shine on as orange: a film of ash covers them. */
+vec3 ember(float kelvin) {
+    float above = max(kelvin - EMBER_HOT, 0.0);
+    return emberColour(kelvin - above + above * 160.0 / (above + 160.0)) * EMBER_GAIN;
+}
 
 vec3 scorchColour(float s) {
-    const vec4 stop[7] = vec4[7](vec4(0.0, 1.0, 1.0, 1.0), vec4(0.14, 0.965, 0.90, 0.74), vec4(0.32, 0.85, 0.655, 0.36),
-        vec4(0.50, 0.55, 0.315, 0.105), vec4(0.69, 0.225, 0.098, 0.032), vec4(0.86, 0.062, 0.031, 0.018), vec4(1.0, 0.020, 0.016, 0.014));
+    const vec4 stop[8] = vec4[8](vec4(0.0, 1.0, 1.0, 1.0), vec4(0.09, 0.975, 0.93, 0.81), vec4(0.21, 0.84, 0.68, 0.44), vec4(0.57, 0.53, 0.34, 0.165),
+        vec4(0.68, 0.32, 0.165, 0.068), vec4(0.77, 0.14, 0.062, 0.026), vec4(0.86, 0.056, 0.030, 0.018), vec4(1.0, 0.020, 0.016, 0.014));
     vec3 c = stop[0].yzw;
-    for (int i = 1; i < 7; i++) c = mix(c, stop[i].yzw, clamp((s - stop[i - 1].x) / (stop[i].x - stop[i - 1].x), 0.0, 1.0));
+    for (int i = 1; i < 8; i++) c = mix(c, stop[i].yzw, clamp((s - stop[i - 1].x) / (stop[i].x - stop[i - 1].x), 0.0, 1.0));
     return c;
 }
 
@@ -145,12 +151,13 @@ void main() {
     if (dot(n, view) < 0.0) n = -n;
 
     // fresh paper, browned by the peak of its heat and by what has burnt
-    vec3 fresh = vec3(0.86, 0.852, 0.832) * tint * texture(printMap, vUv).rgb * (1.0 + 0.018 * noise4(p * 417.0).a);
+    vec3 fresh = vec3(0.86, 0.852, 0.832) * tint * texture(printMap, vUv, -0.7).rgb * (1.0 + 0.018 * noise4(p * 417.0).a);
     float jitter = (0.17 * coarse + 0.08 * medium + 0.025 * fine) * (1.0 - 0.6 * inside);
     float peak = peakSoFar + 0.25 * (peakSoFar - 293.0) * jitter * stepf(310.0, 350.0, peakSoFar), above = peak - 293.0;
+    above *= max(1.0 + 0.8 * noise4(p * 111.0).a + 0.35 * coarse, 0.3); // the browned band's border runs in tongues
     float byHeat = above > 55.0 ? 0.76 * min(log(above / 55.0) / log(360.0 / 55.0), 1.0) : 0.0;
     float scorch = 1.0 - (1.0 - byHeat) * exp(-7.5 * max(burn, 0.0));
-    float ink = stepf(0.45, 0.8, 1.0 - clamp(dot(fresh, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0));
+    float ink = stepf(0.3, 0.75, 1.0 - clamp(dot(fresh, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0));
     vec3 albedo = scorchColour(scorch) * mix(fresh, vec3(0.80), stepf(0.6, 1.0, scorch));
     float through = transmittance * (1.0 - stepf(0.1, 0.7, scorch)), gloss = 0.015, power = 14.0;
 
@@ -160,22 +167,22 @@ void main() {
         float value = 1.0 + 0.35 * medium + 0.3 * fine + 0.35 * coarse;
         vec3 soot = mix(vec3(0.034, 0.020, 0.012), vec3(0.0125, 0.0125, 0.0132), stepf(0.22, 0.62, burn));
         float craze = ridge(noise4(p * 476.0 + 1.7).a, 0.08);
-        vec3 charred = soot * value * (1.0 - 0.6 * craze) + ink * vec3(0.024, 0.024, 0.026);
+        vec3 charred = soot * value * (1.0 - 0.6 * craze) + ink * vec3(0.052, 0.052, 0.055);
         albedo = mix(albedo, charred, black);
-        gloss = mix(gloss, 0.075 * clamp(0.75 + 0.5 * coarse - 0.5 * ink, 0.2, 1.2), black);
+        gloss = mix(gloss, 0.055 * clamp(0.75 + 0.5 * coarse - 0.5 * ink, 0.2, 1.2), black);
         vec3 bump = vec3(noise4(p * 278.0 + 5.3).rgb) * 0.30 * black + noise4(p * 1111.0).rgb * 0.10 * black * clamp(1.6 - size * 900.0, 0.0, 1.0);
         n = normalize(n + bump - n * dot(n, bump));
     }
 
     // ash: sooty at first, paler with age, palest at veins and rims
     if (ash > 0.01) {
-        float cloud = noise4(p * 71.0).g + 0.5 * coarse + 0.2 * medium, pale = stepf(1.0, 16.0, age + 5.0 * cloud);
+        float cloud = noise4(p * 71.0).g + 0.5 * coarse + 0.2 * medium, pale = stepf(1.0, 13.0, age + 4.0 * cloud);
         vec4 creases = noise4(p * 118.0 + vec3(medium, coarse, fine) * 0.13);
         float vein = max(ridge(creases.r, 0.10), 0.55 * ridge(noise4(p * 294.0).b, 0.13));
-        float value = mix(0.034, 0.20, pale) + (0.010 + 0.06 * pale) * cloud + (0.02 + 0.06 * pale) * vein + 0.006 * fine;
+        float value = mix(0.040, 0.34, pale) + (0.010 + 0.07 * pale) * cloud + (0.02 + 0.06 * pale) * vein + 0.006 * fine;
         value += (0.03 + 0.07 * pale) * max(stepf(0.25, 0.6, lace), stepf(0.35, 0.95, rim + 0.25 * fine));
-        vec3 tone = mix(vec3(0.98, 0.99, 1.03), vec3(1.03, 1.0, 0.95), pale);
-        albedo = mix(albedo, tone * clamp(value * (1.0 - 0.4 * ink), 0.02, 0.5), ash);
+        vec3 tone = mix(vec3(0.98, 0.99, 1.03), vec3(1.02, 1.0, 0.965), pale);
+        albedo = mix(albedo, tone * clamp(value + (0.05 + 0.19 * pale) * ink, 0.02, 0.64), ash); // ink leaves more ash than fibres
         gloss *= 1.0 - 0.8 * ash;
         through = mix(through, 0.28, ash);
     }
@@ -193,13 +200,13 @@ void main() {
         float kelvin = temperature + 110.0 + 210.0 * (life - 0.6) + 60.0 * fine - (distance_ > 0.0 ? 45.0 * min(x, 3.0) : 0.0);
         float strength = alight * profile * (0.05 + 0.95 * life * life) * (0.85 + 0.4 * fine) * air;
         strength += 0.10 * alight * life * exp(-0.05 * x * x) * ridge(noise4(p * 625.0).g, 0.10);
-        glow = emberColour(kelvin) * EMBER_GAIN * max(strength, 0.0);
+        glow = ember(kelvin) * max(strength, 0.0);
         float leaf = glowing / (glowing + 0.12);
-        glow += emberColour(temperature + 110.0 + 130.0 * (life - 0.5) + 70.0 * fine + 40.0 * medium) * EMBER_GAIN * leaf * (0.15 + 0.85 * life) * air;
+        glow += ember(temperature + 110.0 + 130.0 * (life - 0.5) + 70.0 * fine + 40.0 * medium) * leaf * (0.15 + 0.85 * life) * air;
         float warm = stepf(420.0, 640.0, temperature) * stepf(0.76, 0.86, burn) * stepf(0.10, 0.55, noise4(p * 85.0).r + 0.3 * medium);
         float late = (age - 3.2) * 0.28 - (noise4(p * 240.0).a + 0.5 * medium + 0.25 * fine);
         glow += emberColour(1035.0 + 50.0 * fine) * 1.5 * warm * air * exp(-70.0 * late * late);
-        glow *= min(1.0, 3.0 / max(glow.r, 1e-3)); // the film would cut the brightest channel by channel: they would be white
+        glow /= 1.0 + max(glow.r, max(glow.g, glow.b)) / EMBER_MOST;
     }
 
     float seen = lampSeen(vPosition + 0.0008 * n);
@@ -472,14 +479,15 @@ uniform vec2 resolution;
 out vec4 colour;
 float curve(float x) {
     float f = x * (1.0 - 0.4 * exp(-x / 0.06));
-    f = f < 0.6 ? f : 0.6 + 0.4 * (1.0 - exp((0.6 - f) / 0.4));
+    float over = max(f - 0.6, 0.0) / 0.4;
+    f = f < 0.6 ? f : 0.6 + 0.4 * over / (1.0 + over);
     return f <= 0.0031308 ? 12.92 * f : 1.055 * pow(f, 1.0 / 2.4) - 0.055;
 }
 void main() {
     vec3 c = texture(map, at).rgb * exposure + 0.14 * texture(halo, at).rgb + 0.10 * texture(glare, at).rgb;
     vec2 d = (at - 0.5) * vec2(resolution.x / resolution.y, 1.0);
     c *= 1.0 - vignette * smoothstep(0.35, 1.05, length(d));
-    float over = max(max(c.r, max(c.g, c.b)) - 1.0, 0.0), leak = 0.03 + 0.15 * over * over / (over * over + 16.0);
+    float over = max(max(c.r, max(c.g, c.b)) - 1.0, 0.0), leak = 0.03 + 0.16 * over * over / (over * over + 9.0);
     c = mix(c, vec3((c.r + c.g + c.b) / 3.0), leak);
     float dither = fract(52.9829 * fract(dot(gl_FragCoord.xy, vec2(0.06711, 0.00584)))) - 0.5;
     colour = vec4(curve(c.r), curve(c.g), curve(c.b), 1.0) + dither / 255.0;
