@@ -167,7 +167,7 @@ SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSetting
     if (!NEW(memory, plan->block[0], plan->block_size) || !NEW(memory, plan->block[1], plan->block_size) ||
         !NEW(memory, plan->scratch, plan->scratch_size) || !NEW(memory, plan->normal, plan->particles) ||
         !NEW(memory, plan->partial, planes) || !NEW(memory, plan->hot, planes) ||
-        !NEW(memory, plan->plane_busy, planes)) {
+        !NEW(memory, plan->plane_busy, planes) || smother_create(memory, shell, &plan->smother)) {
         gas_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
@@ -188,6 +188,7 @@ SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSetting
 
 void gas_plan_free(Memory *memory, GasPlan *plan) {
     if (!plan) return;
+    smother_free(memory, &plan->smother);
     FREE(memory, plan->normal, plan->particles);
     FREE(memory, plan->partial, (size_t)plan->grid.n[2]);
     FREE(memory, plan->hot, (size_t)plan->grid.n[2]);

@@ -11,6 +11,7 @@
 #define GAS_GAS_PLAN_H
 
 #include "gas/gas.h"
+#include "world/smother.h"
 
 #define GAS_HEAT (353 * 1005.f) ///< J/m3
 
@@ -107,8 +108,9 @@ struct GasPlan {
     double *partial;                 ///< [planes]
     GasBox (*plane_busy)[GAS_BOXES]; ///< [planes] where there is heat, fuel, smoke, momentum to carry
     float (*normal)[3];              ///< [particles] unit
-    int *hot;                        ///< [planes] whether anything there is warmer than the air around
-    float *scratch;                  ///< all of them but the normals
+    Smother smother;
+    int *hot;       ///< [planes] whether anything there is warmer than the air around
+    float *scratch; ///< all of them but the normals
     size_t scratch_size;
 
     // for readers: without ghosts

@@ -6,7 +6,8 @@
 //   E = (1 - radiated) dm H_gas/pace
 //
 // half a cell off the sheet on the particle's own side (the upper one, where the sheet lies level), where H_gas J/kg is
-// the heat of combustion that did not stay in the sheet (shell/matter.c). The fire runs `pace` times as fast as the gas
+// the heat of combustion that did not stay in the sheet (shell/matter.c). What leaves below a sheet that smothers gets no
+// air and gives nothing: half a cell off the sheet may be above the other one. The fire runs `pace` times as fast as the gas
 // moves, and its power is that of the real fire.
 //
 // A source of power P adds E = (1 - radiated) P dt at its centre: the gas of its own flame.
@@ -131,9 +132,10 @@ static void feed_point(const GasPlan *plan, float *field, const float position[3
 }
 
 void gas_feed(GasPass *pass) {
-    const GasPlan *plan = pass->plan;
+    GasPlan *plan = pass->plan;
     const Matter *matter = &pass->shell->matter;
     const float *now = pass->state->burn->fuel, *before = pass->from->fuel;
+    const bool smothers = smother_place(&plan->smother, pass->shell, pass->state, pass->pool);
     float volume = plan->cell * plan->cell * plan->cell;
     float scale = (1 - plan->settings.def.radiated) / (plan->settings.pace * volume);
     Float3 x, down = float3_unit(float3_load(plan->settings.gravity));
@@ -141,7 +143,7 @@ void gas_feed(GasPass *pass) {
     for (uint32_t i = 0; i < plan->particles; i++) {
         float gone = (before[i] - now[i]) * (1 - field_at(matter->char_yield, i)), position[3];
         pass->to->fuel[i] = now[i];
-        if (!(gone > 0)) continue;
+        if (!(gone > 0) || (smothers && smother_covers(&plan->smother, pass->shell, pass->state, i))) continue;
 
         // gas leaves on the particle's own side; if that faces down it goes up through the burnt sheet
         float side = sheets_side(pass, i);

@@ -102,7 +102,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
         result = heat_matrix_create(memory, plan, shell);
         if (shell->spare_count == 0 && !plan->live) FREE(memory, plan->conductance, plan->springs);
         if (!result) result = heat_rest_create(memory, plan);
-        if (!result) result = heat_smother_create(memory, plan, shell);
+        if (!result) result = smother_create(memory, shell, &plan->smother);
     }
 
     if (result) heat_plan_free(memory, plan);
@@ -181,7 +181,7 @@ void heat_plan_free(Memory *memory, HeatPlan *plan) {
     if (!plan) return;
 
     size_t n = plan->particles, springs = plan->springs;
-    heat_smother_free(memory, plan);
+    smother_free(memory, &plan->smother);
     heat_rest_free(memory, plan);
     heat_matrix_free(memory, plan);
     FREE(memory, plan->thickening, plan->sheets);

@@ -6,6 +6,7 @@
 
 #include "common/float3.h"
 #include "heat/heat.h"
+#include "world/smother.h"
 
 /// Consecutive particles that rest together (rest.c). Divides POOL_BLOCK.
 enum { HEAT_GROUP = 64 };
@@ -57,17 +58,6 @@ typedef struct HeatRest {
     uint8_t *awake[2];           ///< [groups] conducts; alternating, each is the other and all groups near it
 } HeatRest;
 
-/// Cells that keep air from other sheets, in a grid (smother.c).
-typedef struct HeatSmother {
-    uint32_t count, mask; ///< count 0: none, and no arrays
-    uint32_t *cells;      ///< [count]
-    float (*balls)[4];    ///< [count] centroid, and how far about it the cell reaches, m
-    uint32_t *first;      ///< [mask + 1] one of a slot's cells, or SHELL_NONE
-    uint32_t *next;       ///< [count] the next of its slot, or SHELL_NONE
-    float cube;           ///< m
-    float thickness;      ///< m, the largest of any sheet
-} HeatSmother;
-
 struct HeatPlan {
     HeatSettings settings;
     uint32_t particles, springs, sheets;
@@ -85,7 +75,7 @@ struct HeatPlan {
     uint8_t *alive;        ///< [particles] alive in the matrix
     HeatMatrix matrix;
     HeatRest rest;
-    HeatSmother smother;
+    Smother smother;
 
     void *scratch; ///< the arrays below
     size_t scratch_size;
@@ -175,13 +165,6 @@ void heat_rest_free(Memory *memory, HeatPlan *plan);
 
 /// Whether the group or one near it is in `set`.
 bool heat_rest_reaches(const HeatRest *rest, const uint8_t *set, uint32_t group);
-
-/// Lists the cells that keep air from other sheets. SINGE_ERROR_MEMORY.
-SingeResult heat_smother_create(Memory *memory, HeatPlan *plan, const Shell *shell);
-void heat_smother_free(Memory *memory, HeatPlan *plan);
-
-/// Puts out what burns within their reach.
-void heat_smother(HeatPass *pass);
 
 /// Sums all sources into the plan's arrays (source.c).
 void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *colliders, const SingeView *view);

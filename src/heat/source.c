@@ -448,6 +448,15 @@ static void source_gas_task(void *context, int begin, int end) {
         }
 }
 
+static void source_smother_task(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    const HeatPlan *plan = pass->plan;
+    for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++)
+        if (plan->alive[i] && pass->state->burn->release[i] > 0 &&
+            smother_covers(&plan->smother, pass->shell, pass->state, i))
+            plan->put_out[i] = HEAT_SMOTHERED;
+}
+
 void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *colliders, const SingeView *view) {
     HeatPlan *plan = pass->plan;
     double time = pass->state->time;
@@ -465,7 +474,11 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
         if (source_is_lit(source, time)) source_kinds[source->def.kind].add(pass, source, view);
     }
 
-    heat_smother(pass);
+    // sheets that smother
+    bool burns = false;
+    for (uint32_t i = 0; i < plan->particles && !burns; i++) burns = pass->state->burn->release[i] > 0;
+    if (burns && smother_place(&plan->smother, pass->shell, pass->state, pass->pool))
+        pool_for(pass->pool, (int)plan->particles, POOL_BLOCK, source_smother_task, pass);
 
     // colliders that conduct or smother, and the gas
     for (uint32_t k = 0; colliders && k < colliders->count; k++) {

@@ -247,6 +247,59 @@ TEST(a_sheet_smothers_a_fire) {
     for (int k = 0; k < 6; k++) singe_sim_destroy(all[k]);
 }
 
+/// The most power of flames, W, above a blanket that lies 3 mm over a sheet which loses mass.
+static double flames_above(float distance) {
+    SingeSimDef def = singe_default_sim();
+    def.gravity[2] = 0;
+    def.solver.substeps = 1;
+    def.gas.enabled = true;
+    def.gas.cell_size = 8e-3f;
+    def.gas.height = 0.05f;
+    SingeSim *sim;
+    SingeSheetId id;
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    TestMesh low = test_grid(8, 8, 5e-3f, 5e-3f), high = test_grid(10, 10, 8e-3f, 8e-3f);
+    test_mesh_move(&high, -20e-3f, -20e-3f, 3e-3f);
+    SingeSheetDef sheet = test_sheet(&low), blanket = test_sheet(&high);
+    sheet.material.drag = blanket.material.drag = singe_param(0);
+    sheet.material.ablate = false;
+    sheet.material.temperature = singe_param(800); // gives off gas whatever its flame does
+    blanket.material.mass_rate = singe_param(0);
+    blanket.material.smother_distance = singe_param(distance);
+    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+    test_ok(sim, singe_sim_add_sheet(sim, &blanket, &id));
+    test_ok(sim, singe_sim_commit(sim));
+
+    const double before = singe_sim_stats(sim).mass;
+    double most = 0;
+    for (int step = 0; step < 120; step += 5) {
+        test_steps(sim, 5);
+        const SingeGas gas = singe_sim_gas(sim);
+        double power = 0;
+        for (uint32_t c = 0; c < gas.size[0] * gas.size[1] * gas.size[2]; c++) {
+            const uint32_t layer = c / (gas.size[0] * gas.size[1]);
+            const float z = gas.origin[2] + gas.cell * ((float)layer + 0.5f);
+            if (z > 3e-3f) power += (double)gas.flame[c] * pow((double)gas.cell, 3);
+        }
+        most = fmax(most, power);
+    }
+
+    const SingeStats stats = singe_sim_stats(sim);
+    print_message("mass %g of %g kg\n", stats.mass, before);
+    assert_true(stats.ledgers_close && stats.mass < 0.98 * before);
+    test_mesh_free(&low), test_mesh_free(&high);
+    singe_sim_destroy(sim);
+    return most;
+}
+
+TEST(no_fire_stands_above_a_blanket) {
+    const double plain = flames_above(0), smothered = flames_above(4e-3f), thin = flames_above(2e-4f);
+    print_message("flames above: %g W; of one that smothers %g W, too far away %g W\n", plain, smothered, thin);
+    assert_true(plain > 10);
+    assert_true(smothered == 0);
+    assert_true(thin == plain);
+}
+
 TEST(bad_water_is_refused) {
     SingeSim *sim = lit(0, true);
     SingeSourceDef rain = singe_default_source();
