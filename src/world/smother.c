@@ -6,7 +6,6 @@
 #include "world/smother.h"
 
 #include "common/real.h"
-
 #include "world/triangle.h"
 
 static uint32_t smother_slot(const Smother *smother, int x, int y, int z) {
