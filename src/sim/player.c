@@ -425,10 +425,10 @@ static SingeResult player_begin(Player *player, const SingeSimDef *hooks, SingeE
         return error_set(error, SINGE_ERROR_FORMAT, "replay", 0, "not a recording");
     header.singe[sizeof header.singe - 1] = 0;
     memcpy(player->report.version, header.singe, sizeof header.singe);
-    if (header.version > RECORD_VERSION || header.version == 0)
+    if (header.version != RECORD_VERSION)
         return error_set(error, SINGE_ERROR_VERSION, "replay", 0,
-                         "the recording has format %u; singe %s reads formats up to %d", header.version,
-                         singe_version(), RECORD_VERSION);
+                         "the recording has format %u; singe %s reads format %d", header.version, singe_version(),
+                         RECORD_VERSION);
 
     uint8_t kind = 0;
     if (!player_peek(player, &kind) || (kind != RECORD_CREATE && kind != RECORD_LOAD))

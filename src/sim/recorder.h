@@ -23,7 +23,7 @@ enum RecordKind {
     RECORD_CALL = 16,  ///< and above: numbers of calls.def
 };
 
-enum { RECORD_VERSION = 1, RECORD_HEAD = 1 + 8 };
+enum { RECORD_VERSION = 2, RECORD_HEAD = 1 + 8 };
 
 typedef struct RecordHeader {
     char magic[8];    ///< "SINGEREC"

@@ -103,15 +103,19 @@ class Replay(Case):
         self.assertIn("No such file", self.singe("replay", self.path("none"), expect=2)[1])
         self.assertIn("needs FILE", self.singe("replay", expect=2)[1])
 
-        def newer(data):
-            data[8] = 99
-            return data
+        def format_of(number):
+            def change(data):
+                data[8] = number
+                return data
+            return change
 
         def unknown_call(data):
             data[[at for at, kind, _ in self.records(data) if kind == 36][2]] = 250
             return data
 
-        self.assertIn("has format 99", self.singe("replay", self.changed(path, newer), expect=2)[1])
+        for number in (0, 1, 99): # 1 had other pins
+            error = self.singe("replay", self.changed(path, format_of(number)), expect=2)[1]
+            self.assertRegex(error, r"the recording has format %d; singe [0-9.]+ reads format 2" % number)
         self.assertRegex(self.singe("replay", self.changed(path, unknown_call), expect=2)[1],
                          r"the recording is damaged: unknown call 250 at byte \d+")
 

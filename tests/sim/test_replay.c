@@ -252,13 +252,17 @@ TEST(damage_is_an_error_or_a_difference) {
 }
 
 TEST(other_bytes_are_no_recording) {
+    enum { FORMAT = 2 };
     Tape tape = {.bytes = (uint8_t[64]){"SINGESIM"}, .size = 64};
     replay_some(&tape, 0, SINGE_ERROR_FORMAT);
     replay_some(&tape, 64, SINGE_ERROR_FORMAT);
     memcpy(tape.bytes, "SINGEREC", 8);
-    tape.bytes[8] = 200;
-    replay_some(&tape, 64, SINGE_ERROR_VERSION);
-    tape.bytes[8] = 1;
+    const uint8_t others[] = {0, FORMAT - 1, FORMAT + 1, 200};
+    for (size_t k = 0; k < sizeof others; k++) {
+        tape.bytes[8] = others[k];
+        replay_some(&tape, 64, SINGE_ERROR_VERSION);
+    }
+    tape.bytes[8] = FORMAT;
     replay_some(&tape, 64, SINGE_ERROR_FORMAT);
 }
 
