@@ -171,6 +171,9 @@ static SingeResult easel_begin(const BenchOptions *options, const Shot *shot, in
                                SingeError *error) {
     PreviewDef *def = &easel->def;
     *easel = (Easel){.def = preview_default()};
+    memcpy(def->sun_direction, (const float[3]){-0.55f, 0.45f, 0.62f}, sizeof def->sun_direction); // by day
+    memcpy(def->sun_colour, (const float[3]){2.2f, 2.05f, 1.85f}, sizeof def->sun_colour);
+    memcpy(def->sky_colour, (const float[3]){0.4f, 0.45f, 0.53f}, sizeof def->sky_colour);
     def->width = width;
     def->height = width * 9 / 16;
     def->samples = samples;

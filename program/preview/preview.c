@@ -7,28 +7,21 @@
 #include <string.h>
 
 PreviewDef preview_default(void) {
+#define DEGREE (3.14159265358979323846 / 180)
+#define BRACED(...) \
+    { __VA_ARGS__ }
+#define PREVIEW_MAIN(TYPE, key, member, target, length, dimension, standard, range, text) .target = standard,
+#define PREVIEW_CAMERA PREVIEW_MAIN
+#define PREVIEW_LIGHT PREVIEW_MAIN
+#define PREVIEW_LAMP PREVIEW_MAIN
+#define PREVIEW_ENVIRONMENT PREVIEW_MAIN
+#define PREVIEW_GROUND PREVIEW_MAIN
     return (PreviewDef){
         .width = 960,
         .height = 540,
-        .samples = 8,
         .thread_count = 1,
-        .camera = {.eye = {0, -0.42f, 0.34f}, .target = {0, -0.01f, 0}, .up = {0, 0, 1}, .fov = 0.6f},
-        .sun_direction = {-0.55f, 0.45f, 0.62f},
-        .sun_angle = 0.045f,
-        .sun_colour = {2.2f, 2.05f, 1.85f},
-        .sky_colour = {0.4f, 0.45f, 0.53f},
-        .lamp_radius = 0.03f,
-        .ground_height = 0,
-        .ground_colour = {0.235f, 0.145f, 0.085f},
-        .ground_gloss = 2,
-        .ground_stain = 1,
-        .background = {0.16f, 0.15f, 0.145f},
-        .exposure = 1,
-        .sparks = 1,
-        .flakes = 1,
-        .wisps = 1,
-        .hottest = 5000,
         .pace = 1,
+#include "preview/preview.def"
     };
 }
 

@@ -1,6 +1,7 @@
 // Draws the synthetic scenes into PNG files and prints how long each took: for looking at, and for timing.
 // Usage: preview_pictures FOLDER [PICTURE [THREADS]]
 
+#include "day.h"
 #include "preview/preview.h"
 #include "synthetic.h"
 #include "synthetic_gas.h"
@@ -50,7 +51,7 @@ static SingeResult time_frame(Preview *preview, const SingeSurface *surface, uin
 static int draw(const Shot *shot, const Image *picture, const char *folder, int threads) {
     SingeSurface surface;
     SingeError error = {0};
-    PreviewDef def = preview_default();
+    PreviewDef def = by_day();
     const Image *pictures[1] = {picture};
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
                          .position = {0.02f, -0.03f, 0.24f},

@@ -2,18 +2,18 @@
 #ifndef TESTS_PREVIEW_FIXTURE_H
 #define TESTS_PREVIEW_FIXTURE_H
 
-#include "preview/preview.h"
-
 #include <stdlib.h>
 #include <string.h>
 
+#include "day.h"
 #include "support/test.h"
 
 enum { W = 96, H = 64, BYTES = W * H * 3 };
 
 static inline PreviewDef small(void) {
-    PreviewDef def = preview_default();
-    def.width = W, def.height = H, def.samples = 8;
+    PreviewDef def = by_day();
+    def.width = W;
+    def.height = H;
     return def;
 }
 

@@ -15,7 +15,8 @@ typedef struct Frame {
 /// From 1 m above a plane that is 0.4 m wide in the picture: 1 mm a pixel.
 static PreviewDef camera_above(void) {
     PreviewDef def = preview_default();
-    def.width = WIDE, def.height = HIGH;
+    def.width = WIDE;
+    def.height = HIGH;
     def.camera = (PreviewCamera){.eye = {0, 0, 1}, .up = {0, 1, 0}, .fov = 2 * atanf(0.15f)};
     return def;
 }
