@@ -149,11 +149,11 @@ static void print_summary(Run *run) {
     console_duration(run->totals->wall_seconds, took);
     console_note(run->console, "%s: %d of %d frames in %s", record->result, record->frames_done, run->job.scene->frames,
                  took);
-    char front[100] = ""; // a front that has had several paces has no one speed
+    char front[100] = ""; // a front that has had several paces has no one speed, nor has what a source has just lit
     const double pace = (double)run->job.scene->sim.pace, speed = 1e3 * stats.front_speed;
     if (pace == 1) snprintf(front, sizeof front, "front %.1f mm/s, ", speed);
     else snprintf(front, sizeof front, "front %.1f mm/s in the fire's time, %.1f on film, ", speed, speed * pace);
-    if (run->job.scene->pace_count) front[0] = 0;
+    if (run->job.scene->pace_count || stats.burnt_fraction < 0.01 || speed == 0) front[0] = 0;
     console_note(run->console, "%shottest %.0f C, %.0f %% burnt, %u pieces, %u particles left", front,
                  run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces, stats.particles);
     bool mapped = false;
