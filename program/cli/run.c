@@ -207,7 +207,7 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
     // an earlier run keeps its record as long as nothing of it has been replaced
     const bool ours = run->begun || access(run->folder.record, F_OK) != 0;
     SingeResult written = SINGE_OK;
-    if (run->begun && record->frames_done > 0)
+    if (run->begun && run->converted && record->frames_done > 0)
         written = outputs_write_roots(&run->outputs, record->frames_done, &write_error);
     if (!written && ours) written = record_write(record, run->folder.record, &run->job, &write_error);
     if (written) {
@@ -244,8 +244,8 @@ static ExitCode run_scene(Run *run, const RunOptions *options) {
     bool whole = false;
     SingeResult result = SINGE_OK;
     if (run->begun) result = record_write(&run->record, run->folder.record, &run->job, &error);
-    if (!result) result = run_convert_missing(run, &whole, &error);
-    if (!result && whole) result = run_draw_missing(run, &whole, &error);
+    if (!result) result = run_convert_missing(run, &error);
+    if (!result && run->converted) result = run_draw_missing(run, &whole, &error);
     if (!run->pictures) lock_release(&run->pictures_lock);
     if (!result && whole) result = run_frames(run, &error);
     else if (!result) run->record.result = "interrupted";

@@ -108,6 +108,7 @@ typedef struct Run {
     double strain;                     ///< strain_p99 in that frame
     uint64_t halts;                    ///< totals->contact_halts at the last frame
     bool halted;                       ///< contact's bound has been reported
+    bool converted;                    ///< the frames so far have all their formats: roots may name them
     bool begun;                        ///< the folder belongs to this run: its first frame is whole, or it has resumed
 } Run;
 
@@ -141,9 +142,9 @@ SINGE_NODISCARD SingeResult run_take_over(Run *run, SingeError *error);
 /// Draws missing pictures of earlier frames. *whole is false if Ctrl-C interrupted it.
 SINGE_NODISCARD SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error);
 
-/// Writes earlier frames in the formats in which they are missing, and their finer gas, from the cache. *whole as
-/// above.
-SINGE_NODISCARD SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error);
+/// Writes earlier frames in the formats in which they are missing, and their finer gas, from the cache, and then
+/// the roots, which name them. run->converted is false if Ctrl-C interrupted it.
+SINGE_NODISCARD SingeResult run_convert_missing(Run *run, SingeError *error);
 
 /// Steps to the next frame, or by at least one step if the run is asked to stop; run->step says how far.
 SINGE_NODISCARD SingeResult run_advance(Run *run, int frame, SingeError *error);

@@ -136,13 +136,13 @@ SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error) {
     return result;
 }
 
-SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error) {
+SingeResult run_convert_missing(Run *run, SingeError *error) {
     SingeResult result = SINGE_OK;
     const int last = run->record.resumed_from;
     const bool fine = run_parts(run).gas_detail;
 
-    *whole = true;
-    for (int frame = 1; frame <= last && !result && *whole; frame++) {
+    bool stopped = false;
+    for (int frame = 1; frame <= last && !result && !stopped; frame++) {
         const OutputSet missing = outputs_missing(&run->outputs, frame);
         if (missing) result = outputs_convert(&run->outputs, frame, missing, error);
 
@@ -151,10 +151,11 @@ SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error) {
         if (coarse && !result)
             result = gas_detail_convert(&run->folder, run->baker, frame, run->job.scene->gas_detail, error);
         free(path);
-        if (missing || coarse) *whole = !interrupt_asked();
+        if (missing || coarse) stopped = interrupt_asked();
     }
 
-    return result;
+    run->converted = !result && !stopped;
+    return run->converted && last ? outputs_write_roots(&run->outputs, last, error) : result;
 }
 
 // ---- from the start

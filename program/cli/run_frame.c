@@ -177,7 +177,7 @@ static SingeResult write_checkpoint(Run *run, CheckpointBytes *taken, Progress p
     totals->wall_seconds = run->wall_before + clock - run->started;
     memcpy(totals->output_seconds, run->totals->output_seconds, sizeof totals->output_seconds);
     SingeResult result = tables_sync(&run->tables, error);
-    if (!result) result = outputs_write_roots(&run->outputs, progress.frame, error);
+    if (!result && run->converted) result = outputs_write_roots(&run->outputs, progress.frame, error);
     if (!result)
         result = checkpoint_write(&run->folder, run->sim, run->job.hooks.allocator, taken, progress, run->hash,
                                   &run->job.assets, totals, error);

@@ -117,6 +117,21 @@ class Branch(Case):
                 with open(self.path("drawn", "frames", name), "rb") as a, open(self.path("p", "frames", name), "rb") as b:
                     self.assertEqual(a.read(), b.read(), name)
 
+    def test_a_root_names_only_what_is_there(self):
+        """Earlier frames are written in the branch's formats before its root names them."""
+        usd = "output.formats=[ply, usd]"
+        self.whole("--set", "checkpoints.every=3")
+        os.truncate(self.path("whole", "ply", "tiny.0002.ply"), 200)
+        _, err = self.branch("b", 3, usd, expect=1)
+        self.assertIn("tiny.0002.ply", err)
+        self.assertEqual(os.listdir(self.path("b", "usd")), ["tiny.0001.usdc"])
+        self.assertFalse(os.path.exists(self.path("b", "tiny.usda")))
+        shutil.copy(self.path("whole", "ply", "tiny.0001.ply"), self.path("b", "ply", "tiny.0002.ply"))
+        self.run_scene("b", "--resume", "--set", usd)
+        with open(self.path("b", "tiny.usda")) as file:
+            named = set(re.findall(r"@\./usd/(.*?)@", file.read()))
+        self.assertEqual(sorted(named), sorted(os.listdir(self.path("b", "usd"))))
+
     def test_keyed_pace(self):
         """A pace by keys: constant it is that number, at 0 the fire stands still, and it survives a branch."""
         self.whole("--set", "pace=4")
