@@ -39,6 +39,6 @@ for program in "$build"/tests/fuzz/fuzz_*; do
     fi
 
     limit=10 # s for one input of a reader; whole simulations have more, as in run.sh
-    case $name in fuzz_step | fuzz_snapshot) limit=120 ;; esac
+    case $name in fuzz_step | fuzz_snapshot | fuzz_calls | fuzz_replay) limit=120 ;; esac
     printf '[libfuzzer]\nmax_len = 65536\ntimeout = %d\n' $limit > "$OUT/$name.options"
 done

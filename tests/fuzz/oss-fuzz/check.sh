@@ -42,8 +42,8 @@ done
 [ "$count" -gt 0 ]
 
 mkdir -p "$folder/archive"
-clang -c -O1 "$here/../replay.c" -o "$folder/archive/replay.o"
-ar rcs "$folder/archive/libengine.a" "$folder/archive/replay.o"
+clang -c -O1 "$here/../give_files.c" -o "$folder/archive/give_files.o"
+ar rcs "$folder/archive/libengine.a" "$folder/archive/give_files.o"
 build archive "$folder/archive/libengine.a"
 for options in "$OUT"/*.options; do
     name=$(basename "$options" .options)
