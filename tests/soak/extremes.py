@@ -19,8 +19,9 @@ COSTS = {"frames": 3, "steps": 100, "sheets.0.grid.cells": [14, 1], "solver.subs
          "gas.cell_size": 0.1, "gas.height": 1, "gas.detail": 2, "preview.size": [64, 48], "preview.samples": 2,
          "output.texture_size": 64}
 # what nothing is computed from, or what a scene with a grid cannot have
-UNUSED = ("sheets.0.material.measured", "sheets.0.weld", "sheets.0.quads", "sheets.0.up", "sheets.0.units")
-FILES = ("texture", "heightfield", "mesh", "")  # kinds that need a file, or have no word
+UNUSED = ("sheets.0.material.measured", "sheets.0.weld", "sheets.0.quads", "sheets.0.up", "sheets.0.units",
+          "sheets.0.render_mesh")
+FILES = ("texture", "heightfield", "mesh", "arrival", "")  # kinds that need a file, or have no word
 
 
 def read_ends(draw):
