@@ -24,7 +24,8 @@ static const PageItem items[] = {
      validate_oxygen},
     {"damp", "Damp cotton",
      "Fire spreads over level cotton cloth with 0 to 34 % of water, and fastest with 2 % (Textile Research Journal 2018, "
-     "10.1177/0040517518807450).",
+     "10.1177/0040517518807450). In beds of excelsior the speed is as exp(-3.22 M) of its share M of water (Catchpole "
+     "et al. 1998).",
      validate_damp},
     {"beam", "A clamped strip", "Plate theory: w = rho g l&#8308;/(8 D) + rho g l²/(2 S).", validate_beam},
     {"disc", "A bilayer disc",
