@@ -126,6 +126,8 @@ static void bind_range(void *context, int begin, int end) {
             vertex->offset[k] = float3_dot(from, frame.axis[k]);
             vertex->normal[k] = float3_dot(turned, frame.axis[k]);
         }
+        const float height = vertex->offset[2];
+        vertex->slack = float_max(1, 2 * fabsf(height) / render_bend_room(fine, &vertex->foot, height));
     }
 }
 

@@ -8,6 +8,8 @@
 // An edge is parted if the sheet has come apart between its feet: their cells belong to different pieces, or share
 // fewer vertices than at rest. A parted edge is cut from both ends, each up to the tear, as the way on the sheet ends
 // there. So a triangle across a tear becomes a part on either side, and none is stretched over the gap.
+#include <float.h>
+
 #include "common/assertion.h"
 #include "common/real.h"
 #include "surface/render_parts.h"
@@ -22,6 +24,8 @@ enum { HALVINGS = 6 };
 /// Offsets along the normal are at most this share of the distance to another surface. With what the surface beneath
 /// leaves of it (fine_position.c) less than half of it is taken from either side, so that nothing crosses.
 #define ROOM_SHARE 0.25f
+/// On the inner side of a bend, also this share of the radius of curvature: at a share of 1 a parallel surface folds over.
+#define BEND_SHARE 0.5f
 
 /// A mesh that is being drawn.
 typedef struct RenderDrawing {
@@ -74,9 +78,40 @@ static bool is_parted(const Fine *fine, uint32_t a, uint32_t b) {
     return now < rest;
 }
 
+void render_bends(Fine *fine) {
+    const float(*position)[4] = (const float(*)[4])fine->corner;
+    for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
+        if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+
+        // between all corners and the middle, over which the normal turns by
+        const uint32_t *at = fine->shell->cells[c];
+        Float3 points[5] = {{0, 0, 0}}, normals[5] = {float3_load(fine->normal[shell_centre(fine->shell, c)])};
+        for (int i = 0; i < 4; i++) {
+            points[1 + i] = float3_load(position[at[i]]);
+            normals[1 + i] = float3_load(fine->normal[at[i]]);
+            points[0] = float3_mad(points[0], points[1 + i], 0.25f);
+        }
+        float most[2] = {0, 0};
+        for (int i = 1; i < 5; i++)
+            for (int k = 0; k < i; k++) {
+                const Float3 side = float3_sub(points[i], points[k]), turn = float3_sub(normals[i], normals[k]);
+                const float curvature = float3_dot(turn, side) / float_max(float3_dot(side, side), FLT_MIN);
+                most[curvature > 0] = float_max(most[curvature > 0], fabsf(curvature));
+            }
+        for (int i = 0; i < 4; i++)
+            for (int k = 0; k < 2; k++) fine->bend[at[i]][k] = float_max(fine->bend[at[i]][k], most[k]);
+    }
+}
+
+float render_bend_room(const Fine *fine, const FineLocation *foot, float offset) {
+    const Float3 bend = fine_blend(fine->shell->cells[foot->cell], foot, (const float(*)[4])fine->bend);
+    return BEND_SHARE / float_max(offset > 0 ? bend.x : bend.y, FLT_MIN);
+}
+
 SingeResult render_levels(Fine *fine, SingeError *error) {
     Memory *memory = fine->memory;
     bool ok = NEW(memory, fine->renders, fine->mesh_count) != NULL;
+    if (fine->mesh_count) render_bends(fine);
     for (uint32_t m = 0; m < fine->mesh_count && ok; m++) {
         RenderDrawing *drawing = &fine->renders[m];
         const RenderMesh *mesh = fine->meshes[m];
@@ -176,6 +211,7 @@ static uint32_t cut_vertex(Fine *fine, RenderDrawing *drawing, uint32_t edge, in
 
     RenderVertex *made = &drawing->made[drawing->made_count++];
     *made = (RenderVertex){.foot = along(fine, a, b, in), .source = -1, .has_uv = a->has_uv, .rigid = a->rigid};
+    made->slack = mix(a->slack, b->slack, in);
     for (int k = 0; k < 3; k++) {
         made->offset[k] = mix(a->offset[k], b->offset[k], in);
         made->normal[k] = mix(a->normal[k], b->normal[k], in);
@@ -243,6 +279,7 @@ void render_place(const Fine *fine, const FineVertex *vertex, uint32_t v) {
     const FineFrame frame = fine_frame(fine, render->foot.cell, float3_load(surface->normal[v]));
     float room = INFINITY, height = render->offset[2];
     for (int i = 0; i < 4 && fine->room && !render->rigid; i++) room = float_min(room, ROOM_SHARE * fine->room[at[i]]);
+    if (!render->rigid) room = float_min(room, render->slack * render_bend_room(fine, &render->foot, height));
 
     // pressed beyond half of the room, what was higher more, so that faces keep their areas
     const float half = 0.5f * room, beyond = fabsf(height) - half;

@@ -378,6 +378,7 @@ static SingeResult make(Memory *memory, Pool *pool, const RenderSheet *sheet, co
         Fine fine = {.shell = &shell, .state = &state, .memory = memory, .pool = pool, .bulge_max = INFINITY};
         if (sheet->bulge_max > 0) fine.bulge_max = sheet->bulge_max;
         result = fine_open(&fine, &detail, error);
+        if (!result) render_bends(&fine);
         if (!result) result = bind(&fine, sheet->cell_size, def, mesh, error);
         fine_close(&fine);
     }

@@ -54,6 +54,7 @@ typedef struct FineValue {
 typedef struct RenderVertex {
     FineLocation foot;          ///< where it is bound
     float offset[3], normal[3]; ///< from there, m, and unit length: along the foot's frame (fine_frame)
+    float slack;                ///< 1, or by how much more the sheet must bend than at rest until it presses the offset
     float rest[3];              ///< m, as it was given
     float uv[2];                ///< the sheet's is drawn without has_uv
     int32_t source;             ///< number in the drawn surface, or -1 for a new one
@@ -110,13 +111,14 @@ typedef struct Fine {
     uint32_t *side_cut; ///< [blue springs] first of the side's entries in `cuts`
     uint32_t *cuts;     ///< [cut_count] 1 + index of the vertex that cuts a fine side, 0 for none
     uint32_t cut_count;
-    float (*normal)[3];   ///< [particles] unit, or 0
-    float *max;           ///< [vertices] m, max displacement from the flat triangles there
-    float *share;         ///< [vertices] fraction of the displacement to the patches that is applied
-    float (*corner)[4];   ///< [vertices] m, corners of the flat triangles
-    uint8_t *sound;       ///< [cells] 1: alive and not torn
-    float *valence;       ///< [vertices] n of fine_patch.c
-    float *regular;       ///< [vertices] 1 where the patches around meet with the same derivatives, else 0
+    float (*normal)[3]; ///< [particles] unit, or 0
+    float *max;         ///< [vertices] m, max displacement from the flat triangles there
+    float *share;       ///< [vertices] fraction of the displacement to the patches that is applied
+    float (*corner)[4]; ///< [vertices] m, corners of the flat triangles
+    uint8_t *sound;     ///< [cells] 1: alive and not torn
+    float (*bend)[4];   ///< [vertices] 1/m, the largest curvature around, concave on the normal's side and on the other
+    float *valence;     ///< [vertices] n of fine_patch.c
+    float *regular;     ///< [vertices] 1 where the patches around meet with the same derivatives, else 0
     float (*inner)[4][3]; ///< [cells] m, points of the patches beside the corners,
     float (*rail)[2][3];  ///< [blue springs] on sides, in the order of their ends,
     float (*limit)[3];    ///< [vertices] and at the corners
@@ -255,6 +257,10 @@ FineFrame fine_frame(const Fine *fine, uint32_t cell, Float3 normal);
 
 // ---- render_draw.c
 
+/// Fills `bend`. The normals are in place.
+void render_bends(Fine *fine);
+/// How far from the sheet an offset along its normal may go for the sheet's bending at a foot, m.
+float render_bend_room(const Fine *fine, const FineLocation *foot, float offset);
 /// Finds which vertices of the render meshes are drawn, and sets the max numbers that they add.
 SingeResult render_levels(Fine *fine, SingeError *error);
 /// Draws their triangles and lists their vertices.

@@ -1,6 +1,7 @@
 // Meshes that are drawn in place of a sheet: flat, moved, curled, burnt, torn, with buttons, and damaged ones.
 #include "drawing.h"
 
+#include "../collision/count_crossings.h"
 #include "drawn_mesh.h"
 #include "support/support.h"
 #include "surface/render_mesh.h"
@@ -207,6 +208,36 @@ TEST(thickness_is_kept_in_a_curl) {
     print_message("off the cylinder by %.3g mm, of a thickness of %g mm\n", (double)(1e3f * worst), 2e3 * (double)half);
     assert_true(worst < 0.05f * half);
     garment_free(g);
+}
+
+/// In folds sharper than a mesh is thick its inner side is pressed together, and does not cross itself. Gentler ones leave
+/// it as it is.
+TEST(thick_meshes_do_not_cross_in_folds) {
+    static const struct {
+        float amplitude, half;
+    } cases[] = {{1.5e-3f, 4e-3f}, {4e-3f, 4e-3f}, {8e-3f, 4e-3f}, {8e-3f, 8e-3f}, {12e-3f, 8e-3f}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        Garment *g = garment(20, 1e-3f, 0);
+        g->def.reach = 0.02f;
+        add_layer(g->draft, 50, side, cases[k].half);
+        add_layer(g->draft, 50, side, -cases[k].half);
+        for (uint32_t v = 0; v < g->d->sheet->shell.vertex_count; v++) {
+            float *p = g->d->sheet->state.dynamics.position[v];
+            p[2] = cases[k].amplitude * sinf(157.0796f * p[0] + 40 * p[1]); // eight cells a wave
+        }
+        const SingeSurface *s = draw(g);
+        const long crossings = crossings_count(s);
+        float thinnest = INFINITY, thickest = 0;
+        for (uint32_t v = 0; v < 51 * 51; v++) {
+            const float apart = distance(s->position[found(s, v)], s->position[found(s, 2601 + v)]);
+            thinnest = fminf(thinnest, apart), thickest = fmaxf(thickest, apart);
+        }
+        print_message("waves of %g mm: %ld crossings, thickness %.2f to %.2f of %g mm\n",
+                      1e3 * (double)cases[k].amplitude, crossings, 1e3 * (double)thinnest, 1e3 * (double)thickest,
+                      2e3 * (double)cases[k].half);
+        assert_int_equal(crossings, 0);
+        garment_free(g);
+    }
 }
 
 /// What the fire cuts from the mesh is what it cuts from the sheet, at the border within a fifth of a cell; edges that
