@@ -176,9 +176,9 @@ TEST(a_plate_smothers_a_fire) {
     singe_sim_destroy(plain), singe_sim_destroy(smothered);
 }
 
-/// A sheet that burns, and another above it, which does not. From the 200th step on one of them keeps air within `distance`
-/// from the other.
-static SingeSim *covered(float height, float distance, bool from_above, uint32_t threads) {
+/// A sheet that burns, and another above it, which burns at another rate. From the 200th step on one of them keeps air
+/// within `distance` from the other.
+static SingeSim *covered_by(float cover_rate, float height, float distance, bool from_above, uint32_t threads) {
     SingeSimDef def = singe_default_sim();
     def.thread_count = threads;
     def.gravity[2] = 0;
@@ -191,7 +191,8 @@ static SingeSim *covered(float height, float distance, bool from_above, uint32_t
     SingeSheetDef sheet = test_sheet(&low), above = test_sheet(&high);
     sheet.material.drag = above.material.drag = singe_param(0);
     sheet.material.ablate = false;
-    above.material.mass_rate = singe_param(0);
+    above.material.mass_rate = singe_param(cover_rate);
+    above.material.mass_loss = singe_param(0.95f);
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &burning));
     test_ok(sim, singe_sim_add_sheet(sim, &above, &cover));
     test_ok(sim, singe_sim_commit(sim));
@@ -211,6 +212,11 @@ static SingeSim *covered(float height, float distance, bool from_above, uint32_t
     assert_true(singe_sim_stats(sim).ledgers_close);
     test_mesh_free(&low), test_mesh_free(&high);
     return sim;
+}
+
+/// The same by a sheet that does not burn.
+static SingeSim *covered(float height, float distance, bool from_above, uint32_t threads) {
+    return covered_by(0, height, distance, from_above, threads);
 }
 
 /// K, of the sheet that burns.
@@ -245,6 +251,21 @@ TEST(a_sheet_smothers_a_fire) {
     free(bytes.data);
     SingeSim *all[] = {plain, near, again, far, own, loaded};
     for (int k = 0; k < 6; k++) singe_sim_destroy(all[k]);
+}
+
+/// A blanket may burn itself. It smothers what is below as long as it is there.
+TEST(a_burning_sheet_smothers_until_it_has_gone) {
+    static const float rates[] = {0, 1e-3f, 0.2f}; // stays, goes in the middle, goes before
+    double left[3];
+    for (int k = 0; k < 3; k++) {
+        SingeSim *sim = covered_by(rates[k], 3e-3f, 8e-3f, true, 1);
+        left[k] = 0;
+        for (uint32_t v = 0; v < 81; v++) left[k] += (double)singe_sim_view(sim).mass[v] / 81;
+        print_message("hottest %g K, %.3f of the sheet is left\n", (double)hottest(sim), left[k]);
+        assert_true(k == 0 ? hottest(sim) < 513 : hottest(sim) > 600);
+        singe_sim_destroy(sim);
+    }
+    assert_true(left[0] > left[1] + 0.1 && left[1] > left[2] + 0.1);
 }
 
 /// The most power of flames, W, above a blanket that lies 3 mm over a sheet which loses mass.
