@@ -15,7 +15,7 @@ HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 .PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        site check-clients check-godot check-unity check-unreal check-blender check-farm check-packages check-platforms web web-serve web-pictures check-web check-web-core check-web-examples torture mutations coverage fuzz-long soak pictures bench-peers clean
+        site check-clients check-godot check-unity check-unreal check-blender check-farm check-packages check-platforms web web-serve web-pictures check-web check-web-size check-web-core check-web-examples torture mutations coverage fuzz-long soak pictures bench-peers clean
 
 all: build
 
@@ -165,6 +165,12 @@ site:
 	SINGE_LIBRARY=$(CURDIR)/build/python/singe/libsinge.so build/site/venv/bin/sphinx-build --quiet --fresh-env --fail-on-warning \
 	    -c docs/site -d build/site/doctrees . build/site/html
 	docs/site/check.py build/site/html
+
+# the core as WebAssembly alone, without Node.js: at most 200 kB gzipped
+check-web-size:
+	cmake --preset wasm
+	cmake --build --preset wasm --target singe_wasm
+	@size=$$(gzip -9c build-wasm/web/singe.wasm | wc -c); echo "singe.wasm: $$size bytes gzipped"; [ $$size -le 200000 ]
 
 # tests the package in node; its burn must have the bytes of the native library
 check-web-core: web-package

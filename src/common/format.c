@@ -33,6 +33,7 @@ static bool text_in_number(char c) {
 static bool text_convert(Text *text, const char *spec, va_list *arguments) {
     char number[TEXT_NUMBER];
     size_t room = text->size - text->length;
+    const char *l = strchr(spec, 'l');
     int bytes;
     switch (spec[strlen(spec) - 1]) {
     case '%': text_add(text, "%", 1); return true;
@@ -43,8 +44,8 @@ static bool text_convert(Text *text, const char *spec, va_list *arguments) {
     case 'd':
     case 'u':
     case 'x':
-        if (strstr(spec, "ll")) snprintf(number, sizeof number, spec, va_arg(*arguments, long long));
-        else if (strchr(spec, 'l')) snprintf(number, sizeof number, spec, va_arg(*arguments, long));
+        if (l && l[1] == 'l') snprintf(number, sizeof number, spec, va_arg(*arguments, long long));
+        else if (l) snprintf(number, sizeof number, spec, va_arg(*arguments, long));
         else if (strchr(spec, 'z')) snprintf(number, sizeof number, spec, va_arg(*arguments, size_t));
         else snprintf(number, sizeof number, spec, va_arg(*arguments, int));
         text_add(text, number, strlen(number));

@@ -3,9 +3,12 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFile } from "node:fs/promises";
 import { test } from "node:test";
+import { gzipSync } from "node:zlib";
 import { load, loadFiles, SingeError } from "../dist/index.js";
 
-const singe = await load(await readFile(new URL("../dist/singe.wasm", import.meta.url)));
+const MODULE_BYTES_MAX = 200_000; // gzipped
+
+const bytes = await readFile(new URL("../dist/singe.wasm", import.meta.url)), singe = await load(bytes);
 
 const CELLS = 24, SIDE = 0.15, CORNERS = CELLS + 1;
 
@@ -86,6 +89,11 @@ test("the gas burns above the sheet", () => {
     assert.equal(gas.flame.length, gas.size[0] * gas.size[1] * gas.size[2]);
     assert.ok(gas.flame.some((power) => power > 0));
     sim.destroy();
+});
+
+test("the module is small", () => {
+    const size = gzipSync(bytes, { level: 9 }).length;
+    assert.ok(size <= MODULE_BYTES_MAX, `${size} bytes gzipped; without wasm-opt (Debian: binaryen) it is larger`);
 });
 
 test("a wrong option is refused by name", () => {
