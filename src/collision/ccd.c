@@ -6,7 +6,8 @@
 //
 // The work of a step has a bound, in counts, so that it is the same on every machine: sheets that pass each other at many
 // cells a step, or crowds beyond all reason, would take minutes for one. A step that reaches it halts: all cells keep
-// the places that they had as it began, up to one displacement in common. So they do not cross in such a step either.
+// the places that they had as it began, up to one displacement in common. So they do not cross in such a step either, but
+// where held corners, which go where their pins take them, move differently.
 //
 // A corner that has left the box that the search gave its cell may have met a cell that the search did not list: then
 // the search is repeated for this step's own displacements.
