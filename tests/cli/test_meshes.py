@@ -1,6 +1,7 @@
 """Mesh files that are good, hostile, or refer to other files, as `check` meets them."""
 
 import os
+import resource
 import subprocess
 import time
 import unittest
@@ -12,7 +13,13 @@ HAS_ASSIMP = os.environ["SINGE_ASSIMP"] == "1"
 OWN = (".obj", ".ply", ".stl", ".gltf", ".glb")
 SANITIZED = os.environ["SINGE_SANITIZED"] == "1"
 SECONDS = 30
+STACK = 256 << 10  # the least with which a command runs (test_failure.py); sanitizers need more
 MEGABYTES = 4000 if SANITIZED else 750
+
+
+def limit_stack():
+    if not SANITIZED:
+        resource.setrlimit(resource.RLIMIT_STACK, (STACK, STACK))
 
 
 class Meshes(Case):
@@ -25,7 +32,8 @@ class Meshes(Case):
                 file.write(f"  - mesh: {name}\n    scale: 0.1\n    translate: [0, 0, {i} cm]\n")
         with open(self.path("printed"), "w+") as printed:
             begin = time.monotonic()
-            singe = subprocess.Popen([SINGE, "check", scene], stdout=printed, stderr=printed)
+            singe = subprocess.Popen([SINGE, "check", scene], stdout=printed, stderr=printed,
+                                     preexec_fn=limit_stack)
             _, status, usage = os.wait4(singe.pid, 0)  # children's memory, too
             singe.returncode = os.waitstatus_to_exitcode(status)
             seconds = time.monotonic() - begin
