@@ -1,7 +1,8 @@
 // Finds the position of a sheet at rest that is nearest to each vertex of a render mesh, and what the vertex keeps from
 // there. Cells lie in a hashed grid by their centroids; its cubes have sides of the reach and the largest cell's radius,
 // so the 27 cubes around a position hold all cells within reach. By uv it is the same in the plane of uv, where the reach
-// is the largest cell's radius.
+// is the largest cell's radius. In the same way it finds what is near a sheet where it is now, and leaves little room for a
+// mesh.
 #include "common/real.h"
 #include "surface/render_parts.h"
 
@@ -9,12 +10,14 @@ typedef struct Binding {
     const Fine *fine;
     RenderMesh *mesh;
     bool by_uv;             ///< below, uv are in place of m
+    bool now;               ///< cells are where they are drawn, not at rest
     float reach, cube;      ///< m
     float (*centroid)[4];   ///< [cells] and the radius, m
     uint32_t *first, *list; ///< [mask + 2], [cells] the cells of a slot
     uint32_t mask;
     uint32_t begin;
-    float *distance; ///< [vertices of the mesh from `begin` on] m, INFINITY where no cell is near
+    float *distance; ///< [vertices of the mesh from `begin` on, or of the sheets] m, INFINITY where no cell is near
+    uint32_t *near;  ///< [vertices of the sheets] the nearest cell, or SHELL_NONE
 } Binding;
 
 static uint32_t slot_of(const Binding *binding, int x, int y, int z) {
@@ -28,6 +31,7 @@ static int cube_of(const Binding *binding, float x) {
 
 static Float3 corner_of(const Binding *binding, uint32_t cell, int i) {
     const Shell *shell = binding->fine->shell;
+    if (binding->now) return float3_load(binding->fine->corner[shell->cells[cell][i]]);
     if (!binding->by_uv) return float3_load(shell->rest_position[shell->cells[cell][i]]);
     const float *uv = shell_corner_uv(shell, cell, i);
     return float3(uv[0], uv[1], 0);
@@ -139,8 +143,10 @@ void render_bind(const Fine *fine, bool by_uv, RenderMesh *mesh) {
 /// Puts the cells into the grid.
 static void fill_grid(Binding *binding) {
     const Shell *shell = binding->fine->shell;
+    const uint8_t *flags = binding->now ? binding->fine->state->ablate.cell_flags : NULL;
     float radius = 0;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
+        if (flags && !(flags[c] & SINGE_ALIVE)) continue;
         Float3 centroid = {0, 0, 0};
         for (int i = 0; i < 4; i++) centroid = float3_add(centroid, corner_of(binding, c, i));
         centroid = float3_scale(centroid, 0.25f);
@@ -157,6 +163,7 @@ static void fill_grid(Binding *binding) {
     binding->cube = float_max(binding->reach + radius, 1e-5f);
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t c = 0; c < shell->cell_count; c++) {
+            if (flags && !(flags[c] & SINGE_ALIVE)) continue;
             const float *at = binding->centroid[c];
             const uint32_t slot =
                 slot_of(binding, cube_of(binding, at[0]), cube_of(binding, at[1]), cube_of(binding, at[2]));
@@ -212,4 +219,77 @@ SingeResult render_find_feet(const Fine *fine, bool by_uv, float reach, uint32_t
     FREE(memory, binding.first, (size_t)binding.mask + 2);
     FREE(memory, binding.distance, count);
     return result;
+}
+
+// ---- room
+
+/// Positions of a sheet that were this many times as far from each other at rest are of a fold, as half a turn is (pi/2);
+/// nearer ones are bent (render_bends).
+#define FOLDED 1.5f
+
+/// The distance of a vertex from another sheet, or from a part of its own that has been folded over it.
+static void room_range(void *context, int begin, int end) {
+    const Binding *binding = context;
+    const Shell *shell = binding->fine->shell;
+    const uint16_t *sheet = shell->matter.sheet;
+    for (int v = begin; v < end; v++) {
+        const Float3 p = float3_load(binding->fine->corner[v]), rest = float3_load(shell->rest_position[v]);
+        const int x = cube_of(binding, p.x), y = cube_of(binding, p.y), z = cube_of(binding, p.z);
+        float min = binding->reach * binding->reach;
+        for (int k = 0; k < 27; k++) {
+            const uint32_t slot = slot_of(binding, x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1);
+            for (uint32_t i = binding->first[slot]; i < binding->first[slot + 1]; i++) {
+                const uint32_t cell = binding->list[i], centre = shell_centre(shell, cell);
+                const Float3 centroid = float3_load(binding->centroid[cell]);
+                if (float3_length(float3_sub(p, centroid)) - binding->centroid[cell][3] > sqrtf(min)) continue;
+
+                for (int side = 0; side < 4; side++) {
+                    const Float3 corner[3] = {corner_of(binding, cell, side), corner_of(binding, cell, (side + 1) & 3),
+                                              centroid};
+                    FineLocation there = {.cell = cell, .side = (uint8_t)side};
+                    const float square = nearest(p, corner, there.weight);
+                    if (!(square < min)) continue;
+                    const Float3 from = float3_sub(rest, fine_blend(shell->cells[cell], &there, shell->rest_position));
+                    const float before = float3_dot(from, from);
+                    if (sheet[centre] == sheet[v] && before < FOLDED * FOLDED * square) continue;
+                    if (before == 0) continue; // its own cell, or that across a tear
+                    min = square;
+                    binding->near[v] = cell;
+                }
+            }
+        }
+        binding->distance[v] = sqrtf(min);
+    }
+}
+
+SingeResult render_rooms(Fine *fine, float reach, SingeError *error) {
+    Memory *memory = fine->memory;
+    const Shell *shell = fine->shell;
+    const uint32_t cells = shell->cell_count, count = shell->vertex_count;
+    Binding binding = {.fine = fine, .now = true, .reach = reach, .mask = 7};
+    while (binding.mask < cells) binding.mask = 2 * binding.mask + 1;
+    const bool ok = NEW(memory, binding.centroid, cells) && NEW(memory, binding.list, cells) &&
+                    NEW(memory, binding.first, (size_t)binding.mask + 2) && NEW(memory, binding.distance, count) &&
+                    NEW(memory, binding.near, count);
+    if (ok) {
+        fill_grid(&binding);
+        for (uint32_t v = 0; v < count; v++) binding.near[v] = SHELL_NONE;
+        pool_for(fine->pool, (int)count, 64, room_range, &binding);
+
+        // for both of the two that are near
+        for (uint32_t v = 0; v < count; v++) fine->mesh_room[v] = fine->room ? fine->room[v] : INFINITY;
+        for (uint32_t v = 0; v < count; v++) {
+            if (binding.near[v] == SHELL_NONE) continue;
+            const uint32_t *at = shell->cells[binding.near[v]];
+            fine->mesh_room[v] = float_min(fine->mesh_room[v], binding.distance[v]);
+            for (int i = 0; i < 4; i++) fine->mesh_room[at[i]] = float_min(fine->mesh_room[at[i]], binding.distance[v]);
+        }
+    }
+
+    FREE(memory, binding.centroid, cells);
+    FREE(memory, binding.list, cells);
+    FREE(memory, binding.first, (size_t)binding.mask + 2);
+    FREE(memory, binding.distance, count);
+    FREE(memory, binding.near, count);
+    return ok ? SINGE_OK : error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the render mesh");
 }

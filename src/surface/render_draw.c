@@ -111,7 +111,16 @@ float render_bend_room(const Fine *fine, const FineLocation *foot, float offset)
 SingeResult render_levels(Fine *fine, SingeError *error) {
     Memory *memory = fine->memory;
     bool ok = NEW(memory, fine->renders, fine->mesh_count) != NULL;
-    if (fine->mesh_count) render_bends(fine);
+    float thickest = 0;
+    for (uint32_t m = 0; m < fine->mesh_count; m++)
+        for (uint32_t v = 0; v < fine->meshes[m]->vertex_count; v++) {
+            const RenderVertex *vertex = &fine->meshes[m]->vertices[v];
+            if (!vertex->rigid) thickest = float_max(thickest, fabsf(vertex->offset[2]));
+        }
+    if (fine->mesh_count) {
+        render_bends(fine);
+        TRY(render_rooms(fine, 2 / ROOM_SHARE * thickest, error)); // nearer ones press it
+    }
     for (uint32_t m = 0; m < fine->mesh_count && ok; m++) {
         RenderDrawing *drawing = &fine->renders[m];
         const RenderMesh *mesh = fine->meshes[m];
@@ -278,7 +287,7 @@ void render_place(const Fine *fine, const FineVertex *vertex, uint32_t v) {
     const uint32_t *at = fine->shell->cells[render->foot.cell];
     const FineFrame frame = fine_frame(fine, render->foot.cell, float3_load(surface->normal[v]));
     float room = INFINITY, height = render->offset[2];
-    for (int i = 0; i < 4 && fine->room && !render->rigid; i++) room = float_min(room, ROOM_SHARE * fine->room[at[i]]);
+    for (int i = 0; i < 4 && !render->rigid; i++) room = float_min(room, ROOM_SHARE * fine->mesh_room[at[i]]);
     if (!render->rigid) room = float_min(room, render->slack * render_bend_room(fine, &render->foot, height));
 
     // pressed beyond half of the room, what was higher more, so that faces keep their areas

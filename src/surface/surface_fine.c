@@ -30,7 +30,7 @@ static int list_arrays(const Fine *fine, FineArray arrays[]) {
     if (shell->corner_uv) ARRAY(cell_triangle, cells + 1);
     ARRAY(sheets, shell->sheet_count), ARRAY(raw_level, shell->particle_count);
     ARRAY(normal, shell->particle_count), ARRAY(share, corners), ARRAY(max, corners), ARRAY(corner, corners),
-        ARRAY(bend, corners);
+        ARRAY(bend, corners), ARRAY(mesh_room, corners);
     ARRAY(sound, cells), ARRAY(valence, corners), ARRAY(regular, corners), ARRAY(inner, cells), ARRAY(rail, sides);
     ARRAY(limit, corners), ARRAY(shift, corners), ARRAY(bent, cells), ARRAY(bent_point, cells), ARRAY(bent_side, sides);
     ARRAY(splits, cells), ARRAY(parts, sides), ARRAY(cell_value, cells), ARRAY(low, cells), ARRAY(flags, cells);

@@ -117,6 +117,7 @@ typedef struct Fine {
     float (*corner)[4]; ///< [vertices] m, corners of the flat triangles
     uint8_t *sound;     ///< [cells] 1: alive and not torn
     float (*bend)[4];   ///< [vertices] 1/m, the largest curvature around, concave on the normal's side and on the other
+    float *mesh_room;   ///< [vertices] m, as `room`, farther for render meshes
     float *valence;     ///< [vertices] n of fine_patch.c
     float *regular;     ///< [vertices] 1 where the patches around meet with the same derivatives, else 0
     float (*inner)[4][3]; ///< [cells] m, points of the patches beside the corners,
@@ -254,6 +255,11 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
 
 /// The frame at a cell's position that has this normal.
 FineFrame fine_frame(const Fine *fine, uint32_t cell, Float3 normal);
+
+// ---- render_bind.c
+
+/// Fills `mesh_room` up to `reach`, m.
+SingeResult render_rooms(Fine *fine, float reach, SingeError *error);
 
 // ---- render_draw.c
 

@@ -499,8 +499,8 @@ class Verify(Case):
 
 
 class RenderMeshes(Case):
-    """A thick mesh in place of each of two sheets that fall on each other and on a ball crosses nothing, if it is no
-    thicker than the contact; one that is thicker does."""
+    """A mesh in place of each of two sheets that fall on each other and on a ball crosses nothing, however thick it is; rigid
+    ones do."""
 
     SCENE = """\
 frames: 6
@@ -515,7 +515,7 @@ colliders:
 gas: no
 """
 
-    def crossings(self, height, expect=0):
+    def crossings(self, height, expect=0, more=""):
         """Pairs of triangles that cross, with two layers at this height (m) to either side; 0: without a mesh."""
         n, side = 16, 0.04
         with open(self.path("layers.obj"), "w") as file:
@@ -526,7 +526,7 @@ gas: no
                 corners = [first + k // n * (n + 1) + k % n for k in range(n * n)]
                 file.writelines("f %d %d %d %d\n" % (v, v + 1, v + n + 2, v + n + 1) for v in corners)
         with open(self.scene, "w") as file:
-            file.write(self.SCENE.format(mesh=", render_mesh: {mesh: layers.obj}" if height else ""))
+            file.write(self.SCENE.format(mesh=f", render_mesh: {{mesh: layers.obj{more}}}" if height else ""))
         self.run_scene("o", "--force", "--quiet")
         self.singe("verify", self.path("o"), "--csv=" + self.path("v.csv"), expect=expect)
         with open(self.path("v.csv")) as file:
@@ -536,7 +536,9 @@ gas: no
         self.assertEqual(self.crossings(0), 0)
         self.assertEqual(self.crossings(0.15e-3), 0)
         self.assertEqual(self.crossings(0.25e-3), 0)
-        self.assertGreater(self.crossings(0.7e-3, expect=1), 0)
+        self.assertEqual(self.crossings(0.7e-3), 0)
+        self.assertEqual(self.crossings(3e-3), 0)
+        self.assertGreater(self.crossings(0.7e-3, expect=1, more=", rigid: 10 cm"), 0)
 
 
 if __name__ == "__main__":
