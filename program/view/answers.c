@@ -166,9 +166,10 @@ static Answer answer_room(const Exhibit *shown) {
     text_json_string(out, scene->name);
     fprintf(
         out,
-        ", \"frames\": %d, \"fps\": %.9g, \"width\": %d, \"height\": %d, \"fov\": %.9g, \"exposure\": %.9g, \"sun_angle\": %.9g, \"ground\": %d, \"pace\": %.9g",
+        ", \"frames\": %d, \"fps\": %.9g, \"width\": %d, \"height\": %d, \"fov\": %.9g, \"exposure\": %.9g, \"sun_angle\": %.9g, \"ground\": %d, \"pace\": %.9g, "
+        "\"sparks\": %.9g, \"flakes\": %.9g",
         scene->frames, (double)scene->fps, def.width, def.height, (double)def.camera.fov, (double)def.exposure,
-        (double)def.sun_angle, (int)def.ground, (double)def.pace);
+        (double)def.sun_angle, (int)def.ground, (double)def.pace, (double)def.sparks, (double)def.flakes);
     fputs(", \"ground_height\": ", out);
     text_json_number(out, (double)def.ground_height); // null: there is none
     put_numbers(out, "eye", def.camera.eye, 3);

@@ -1,5 +1,6 @@
 // From the library's surface and gas to what the shaders read: the fields of program/preview/mesh_in.c and fire.c.
 import type { Gas, Surface } from "singe";
+import { airborneOf } from "../view/airborne.js";
 import { refineGas } from "../view/gas.js";
 
 const CHAR_LEAF = 0.64; // the look of a leaf of char (paper_look.h)
@@ -85,6 +86,13 @@ export function meshOf(surface: Surface, time: number, pace: number): Mesh {
     }
     return { vertices: out, triangles: triangles.slice(), burning };
 }
+
+/** Of a vertex, what airborne.js asks for, in its order. */
+const AIRBORNE = [0, 1, 2, 6, 7, 8, 11, 13, 14, 15, 16];
+
+/** Sparks and flakes in the air. */
+export const airborneAt = ({ vertices, triangles }: Mesh, time: number): Float32Array =>
+    airborneOf(triangles, (vertex: number, field: number) => vertices[FLOATS * vertex + AIRBORNE[field]!]!, time);
 
 // ---- the fire
 

@@ -2,6 +2,7 @@
 import { MOUSE, Plane, Raycaster, TOUCH, Triangle, Vector2, Vector3 } from "three";
 import { loadFiles, type Files } from "singe";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { AIRBORNE_FLOATS } from "../view/airborne.js";
 import { FLOATS } from "./fields.js";
 import { glbOf } from "./glb.js";
 import { MARKS, type Frame, type FromWorker, type Shape, type ToWorker } from "./messages.js";
@@ -696,7 +697,7 @@ document.querySelectorAll<HTMLElement>("[data-save]").forEach((button) => button
 
 Object.assign(globalThis, { page: {
     /** Some seconds of motion in frames of 1/24 s; the clock stands still afterwards. */
-    async step(seconds: number): Promise<Omit<Frame, "vertices" | "triangles" | "fire" | "lights">> {
+    async step(seconds: number): Promise<Omit<Frame, "vertices" | "triangles" | "fire" | "lights" | "airborne">> {
         pause(true);
         const idle = async () => { while (busy) await new Promise<void>((resolve) => { waiting.push(resolve); }); };
         await idle();
@@ -707,8 +708,8 @@ Object.assign(globalThis, { page: {
             await idle();
         }
         stepping = false;
-        const { vertices, triangles, fire, lights, ...rest } = frame!;
-        return { ...rest, ...{ vertexCount: vertices.length / FLOATS, triangleCount: triangles.length / 3 } };
+        const { vertices, triangles, fire, lights, airborne, ...rest } = frame!;
+        return { ...rest, ...{ vertexCount: vertices.length / FLOATS, triangleCount: triangles.length / 3, flying: airborne.length / AIRBORNE_FLOATS } };
     },
     /** Loudness, root mean square, of a second in which so many cells burn. */
     async loudness(burning: number): Promise<number> {

@@ -21,7 +21,7 @@ export type ToWorker =
 export interface Frame {
     kind: "frame";
     vertices: Float32Array; triangles: Uint32Array; burning: number;
-    fire: Fire | null; lights: Lights;
+    fire: Fire | null; lights: Lights; airborne: Float32Array;
     time: number; steps: number; ms: number; burnt: number; pieces: number; tears: number; springs: number; hottest: number;
     pins: Point[]; match: Point | null; marks: number; memory: number; skipped: boolean; strokes: Stroke[]; pinRests: Point[];
 }

@@ -1,14 +1,15 @@
 // Draws a frame of the worker: the table, the sheet, the match and pins, then the fire, a lens's halo and a film's curve.
 import {
-    BufferGeometry, CanvasTexture, CylinderGeometry, Data3DTexture, DataTexture, DepthTexture, DoubleSide, DynamicDrawUsage, GLSL3, HalfFloatType,
-    InterleavedBuffer, InterleavedBufferAttribute, BufferAttribute, LatheGeometry, LessEqualCompare, LinearFilter, LinearSRGBColorSpace, Matrix4, Mesh,
-    NoColorSpace, OrthographicCamera, PerspectiveCamera, PlaneGeometry, RawShaderMaterial, RepeatWrapping, RGBAFormat, Scene,
+    AddEquation, BufferGeometry, CanvasTexture, CustomBlending, CylinderGeometry, Data3DTexture, DataTexture, DepthTexture, DoubleSide, DynamicDrawUsage, GLSL3, HalfFloatType,
+    InstancedBufferGeometry, InstancedInterleavedBuffer, InterleavedBuffer, InterleavedBufferAttribute, BufferAttribute, LatheGeometry, LessEqualCompare, LinearFilter, LinearSRGBColorSpace, Matrix4, Mesh,
+    NoColorSpace, OneFactor, OneMinusSrcAlphaFactor, OrthographicCamera, PerspectiveCamera, PlaneGeometry, RawShaderMaterial, RepeatWrapping, RGBAFormat, Scene,
     SphereGeometry, SRGBColorSpace, Texture, UnsignedByteType, UnsignedIntType, Vector2, Vector3, Vector4, WebGLRenderer, WebGLRenderTarget,
     DataUtils, type IUniform,
 } from "three";
 import { ATTRIBUTES, FLOATS } from "./fields.js";
 import type { Frame } from "./messages.js";
 import { BALL, placeOf, type Place, type Point, type Where } from "./places.js";
+import { AIRBORNE_FLOATS, AIRBORNE_LIMIT } from "../view/airborne.js";
 import { glowBytes, noiseBytes } from "../view/tables.js";
 import * as glsl from "../view/shaders.js";
 
@@ -52,6 +53,8 @@ export class Renderer {
     private fireMap: Data3DTexture | null = null;
     private match: Mesh[];
     private pins: Mesh[] = [];
+    private airborne: Mesh<InstancedBufferGeometry, RawShaderMaterial>;
+    private airborneBuffer = new InstancedInterleavedBuffer(new Float32Array(AIRBORNE_LIMIT * AIRBORNE_FLOATS), AIRBORNE_FLOATS);
     private solid: (albedo: Point, gloss: number) => RawShaderMaterial;
     scale = 1;
 
@@ -100,7 +103,10 @@ export class Renderer {
         this.ball = new Mesh(new SphereGeometry(BALL.radius, 64, 40).translate(...BALL.at), this.solid([0.16, 0.15, 0.14], 0.12));
         this.ember = new Mesh(new SphereGeometry(1, 48, 32), this.solid([0.02, 0.02, 0.02], 0.02));
         (this.ember.material.uniforms.emission!.value as Vector3).set(...EMBER);
-        this.scene.add(table, this.paper, this.ball, this.ember, ...this.match);
+        this.airborne = new Mesh(flying(this.airborneBuffer), material(glsl.AIRBORNE_VERTEX, glsl.airborne(glsl.LAMP), { ...this.shared, resolution: { value: new Vector2(1, 1) } }));
+        Object.assign(this.airborne.material, { side: DoubleSide, transparent: true, depthWrite: false, blending: CustomBlending, blendEquation: AddEquation, blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor });
+        this.airborne.frustumCulled = false;
+        this.scene.add(this.airborne, table, this.paper, this.ball, this.ember, ...this.match);
         this.setPlace("table");
 
         this.passes = {
@@ -135,7 +141,7 @@ export class Renderer {
         for (const small of [this.bright, this.across, this.halo, this.glare]) small.setSize(Math.ceil(w / 4), Math.ceil(h / 4));
         this.camera.aspect = width / height;
         this.camera.updateProjectionMatrix();
-        (this.passes.film.uniforms.resolution!.value as Vector2).set(w, h);
+        for (const { uniforms } of [this.passes.film, this.airborne.material]) (uniforms.resolution!.value as Vector2).set(w, h);
     }
 
     /** What is printed on the sheet. */
@@ -155,6 +161,9 @@ export class Renderer {
     show(frame: Frame): void {
         this.setMesh(frame);
         this.setFire(frame);
+        (this.airborneBuffer.array as Float32Array).set(frame.airborne);
+        this.airborneBuffer.needsUpdate = true;
+        this.airborne.geometry.instanceCount = frame.airborne.length / AIRBORNE_FLOATS;
         this.shared.time!.value = frame.time % 1000;
         const lights = this.shared.fireLights!.value as Vector4[];
         lights.forEach((light, i) => {
@@ -344,6 +353,17 @@ function glowTexture(): DataTexture {
     texture.magFilter = LinearFilter;
     texture.needsUpdate = true;
     return texture;
+}
+
+/** A corner each of the quads of sparks and flakes. */
+function flying(buffer: InstancedInterleavedBuffer): InstancedBufferGeometry {
+    const geometry = new InstancedBufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
+    geometry.setIndex([0, 1, 2, 0, 2, 3]);
+    ["from", "to", "across", "what"].forEach((name, i) => geometry.setAttribute(name, new InterleavedBufferAttribute(buffer, 3, 3 * i)));
+    geometry.instanceCount = 0;
+    buffer.setUsage(DynamicDrawUsage);
+    return geometry;
 }
 
 /** A brass tack, its point down. */

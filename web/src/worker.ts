@@ -1,6 +1,6 @@
 // The simulation, away from the page's own thread. The page asks for one frame at a time, so nothing queues up.
 import { load, type Handle, type Simulation, type Singe, type Texture } from "singe";
-import { fireOf, lightsOf, meshOf, refined } from "./fields.js";
+import { airborneAt, fireOf, lightsOf, meshOf, refined } from "./fields.js";
 import { MARKS, type FromWorker, type Shape, type ToWorker } from "./messages.js";
 import { BALL, placeOf, type Point, type Where } from "./places.js";
 import { BREATH, gridOf, MATCH, materialOptions, MOUTH, PIN_RADIUS, simulationOptions, sourceOf, TIME_STEP, type Settings, type Stroke } from "./scene.js";
@@ -214,15 +214,15 @@ function plannedMatch(time: number): Point | null {
 function frame(steps: number, ms: number): void {
     const surface = sim!.draw(), view = sim!.view(), stats = sim!.stats();
     const mesh = meshOf(surface, view.time, settings.pace), gas = sim!.gas(), cells = gas ? fireOf(gas, surface) : null;
-    const lights = lightsOf(cells, mesh), fire = cells && refined(cells), positions = view.position;
+    const lights = lightsOf(cells, mesh), airborne = airborneAt(mesh, view.time).slice(), fire = cells && refined(cells), positions = view.position;
     const places = pins.map(({ rest, handle }) => { // beside the first particle that the pin holds
         const particle = sim!.pinParticles(handle)[0] ?? 0;
         return [0, 1, 2].map((c) => positions[4 * particle + c]! + rest[c]! - view.rest_position[4 * particle + c]!) as Point;
     });
     tell({
-        kind: "frame", ...mesh, fire, lights, time: view.time, steps, ms, burnt: stats.burnt_fraction, pieces: stats.pieces, tears: stats.tears,
+        kind: "frame", ...mesh, fire, lights, airborne, time: view.time, steps, ms, burnt: stats.burnt_fraction, pieces: stats.pieces, tears: stats.tears,
         springs: stats.springs, hottest: stats.temperature_max, pins: places, match: plannedMatch(view.time), marks: marks.length, skipped,
         memory: singe.memory.memory.buffer.byteLength + marks.reduce((sum, { bytes }) => sum + bytes.length, 0),
         strokes, pinRests: pins.map(({ rest }) => rest),
-    }, [mesh.vertices.buffer, mesh.triangles.buffer, lights.buffer, ...(fire ? [fire.cells.buffer] : [])] as Transferable[]);
+    }, [mesh.vertices.buffer, mesh.triangles.buffer, lights.buffer, airborne.buffer, ...(fire ? [fire.cells.buffer] : [])] as Transferable[]);
 }

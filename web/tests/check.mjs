@@ -15,6 +15,7 @@ import { promisify } from "node:util";
 import { validateBytes } from "gltf-validator";
 import { chromium } from "playwright-core";
 import { serve } from "../serve.mjs";
+import { AIRBORNE_FLOATS, airborneOf } from "../view/airborne.js";
 import { gapsOf, REACH } from "../view/contact.js";
 import { refineGas } from "../view/gas.js";
 import { placesOf, readCells } from "../view/strands.js";
@@ -80,6 +81,7 @@ const CASES = {
         assert.ok(lit.burnt > 0.003, `burnt ${lit.burnt}`);
         const before = lit.triangleCount, later = await step(2);
         assert.ok(later.burnt > 3 * lit.burnt && later.triangleCount !== before, `burnt ${later.burnt}`);
+        assert.ok(later.flying > 5, `${later.flying} sparks and flakes fly`);
     },
     async "breath puts the fire out"() {
         await open("cells=20&gas=false&pace=3");
@@ -477,6 +479,20 @@ const CASES = {
         const places = placesOf(cells, { vertexCount: seen.length, reals, words: new Uint32Array(reals.buffer) });
         assert.deepEqual([...Array(12).keys()].filter((v) => !places[4 * v + 3]), [2, 5]);
         assert.deepEqual([...places.slice(28, 32)], [7, 1, 0, 1]);
+    },
+    async "embers throw sparks and flakes, the same at the same time; what is cold throws none"() {
+        const side = 21, triangles = [];
+        for (let y = 0; y + 1 < side; y++) for (let x = 0; x + 1 < side; x++) { const a = y * side + x; triangles.push(a, a + 1, a + side, a + 1, a + side + 1, a + side); }
+        const things = (kelvin, time, wanted) => airborneOf(new Uint32Array(triangles), (v, field) => {
+            const place = [0.01 * (v % side), 0.01 * Math.floor(v / side), 0.1];
+            return field < 6 ? place[field % 3] : [kelvin, 1, 0.2, 5 * place[0], 5][field - 6];
+        }, time, wanted);
+        const hot = things(1000, 7.5), kinds = (all) => Array.from({ length: all.length / AIRBORNE_FLOATS }, (_, i) => all[AIRBORNE_FLOATS * i + 9] > 0);
+        assert.ok(kinds(hot).filter(Boolean).length > 20 && kinds(hot).some((spark) => !spark), `${kinds(hot)}`);
+        assert.deepEqual(things(1000, 7.5), hot);
+        assert.ok(hot.every((x) => Number.isFinite(x)));
+        assert.equal(things(700, 7.5).length, 0);
+        assert.ok(kinds(things(1000, 7.5, { sparks: 0, flakes: 1 })).every((spark) => !spark));
     },
     async "the core has at most 200 kB, all of the page 600 kB"() {
         const [core, all] = (await readFile(new URL("../dist/size.txt", import.meta.url), "utf8")).split(" ").map(Number);

@@ -278,6 +278,63 @@ void main() {
     colour = vec4(albedo * grain * lit(vPosition, n, 0.0, seen) + gloss * shine(vPosition, n, view, 40.0, seen) + emission, 1.0);
 }`;
 
+/** Sparks and flakes (airborne.js), four corners each: a spark is a streak at least some pixels wide, a flake a plate. */
+export const AIRBORNE_VERTEX = /* glsl */ `
+in vec3 position, from, to, across, what; // position: the corner
+uniform mat4 viewProjection;
+uniform vec2 resolution;
+out vec3 vPosition, vNormal, vWhat;
+out vec2 vAt;
+out float vLong;
+void main() {
+    vec2 corner = position.xy;
+    vAt = corner;
+    vWhat = what;
+    vLong = 0.0;
+    if (what.x == 0.0) {
+        vPosition = from + corner.x * to + corner.y * across;
+        vNormal = cross(to, across);
+        gl_Position = viewProjection * vec4(vPosition, 1.0);
+        return;
+    }
+    vec4 p = viewProjection * vec4(from, 1.0), q = viewProjection * vec4(to, 1.0);
+    vec2 along = (q.xy / q.w - p.xy / p.w) * resolution * 0.5;
+    float size = length(along), seen = what.x * resolution.y / p.w, wide = max(1.15 * resolution.y / 720.0, 1.0); // px
+    vec2 d = size > 0.01 ? along / size : vec2(1.0, 0.0);
+    vLong = size / (2.0 * wide);
+    vAt = vec2(corner.x * (1.0 + vLong), corner.y);
+    seen = max(seen, 0.6 * wide);
+    vWhat.z *= 0.785 * seen * seen / (wide * (2.0 * wide + size)); // its light goes over the streak
+    vPosition = corner.x < 0.0 ? from : to;
+    vNormal = vec3(0.0, 0.0, 1.0);
+    gl_Position = corner.x < 0.0 ? p : q;
+    gl_Position.xy += (corner.x * d + corner.y * vec2(-d.y, d.x)) * 2.0 * wide / resolution * gl_Position.w;
+}`;
+
+/** Drawn with blending ONE, ONE_MINUS_SRC_ALPHA: a spark only adds light. */
+export const airborne = (light) => /* glsl */ `${NOISE}${GLOW}${light}
+in vec3 vPosition, vNormal, vWhat;
+in vec2 vAt;
+in float vLong;
+out vec4 colour;
+void main() {
+    if (vWhat.x > 0.0) {
+        vec2 d = vec2(max(abs(vAt.x) - vLong, 0.0), vAt.y);
+        float inside = max(1.0 - dot(d, d), 0.0) * mix(0.3, 1.25, stepf(-1.0, 0.7, vAt.x / (1.0 + vLong))); // its end is younger light
+        colour = vec4(emberColour(vWhat.y) * 3.4 * vWhat.z * inside * inside, 0.0);
+        return;
+    }
+    vec2 seed = vWhat.yz * vec2(0.37, 71.0);
+    float inside = 0.80 + 0.34 * noise4(vec3(1.6 * vAt, seed.y)).r + 0.15 * noise4(vec3(5.0 * vAt, seed.y)).g - length(vAt);
+    if (inside < 0.0) discard;
+    vec3 n = normalize(vNormal), view = normalize(eye - vPosition);
+    if (dot(n, view) < 0.0) n = -n;
+    float rim = 1.0 - stepf(0.0, 0.28, inside), pale = clamp(vWhat.z + 0.25 * rim + 0.3 * noise4(vec3(2.3 * vAt, seed.y)).b, 0.0, 1.0);
+    vec3 albedo = mix(vec3(0.014), vec3(0.30, 0.30, 0.29), pale * pale);
+    vec3 glow = emberColour(vWhat.y) * 1.6 * stepf(800.0, 950.0, vWhat.y) * stepf(-0.1, 0.5, noise4(vec3(4.0 * vAt, seed.y)).a);
+    colour = vec4(albedo * lit(vPosition, n, 0.25, lampSeen(vPosition)) + glow, 0.96) * vec4(vec3(0.96), 1.0);
+}`;
+
 export const FULL_VERTEX = /* glsl */ `
 in vec3 position;
 out vec2 at;

@@ -1,5 +1,6 @@
 // Draws a frame by WebGL 2: ground, sheets and shapes in the scene's light, then fire, a lens's halo and the film's curve,
 // with the shaders of the page; or one field of the sheets by colour.
+import { Flying } from "./flying.js";
 import { refineGas } from "./gas.js";
 import * as glsl from "./shaders.js";
 import { glowBytes, noiseBytes } from "./tables.js";
@@ -267,7 +268,7 @@ export class Stage {
         this.programs = {
             wood: this.program(glsl.PLAIN_VERTEX, GROUND_WOOD), plain: this.program(glsl.PLAIN_VERTEX, GROUND_PLAIN), shape: this.program(glsl.PLAIN_VERTEX, SHAPE),
             paper: this.program(SHEET_VERTEX, glsl.paper(DAY)), field: this.program(SHEET_VERTEX, FIELD), slice: this.program(glsl.PLAIN_VERTEX, SLICE), grid: this.program(glsl.PLAIN_VERTEX, FIELD_GROUND),
-            strand: this.program(STRAND_VERTEX, STRAND), fire: this.program(glsl.FULL_VERTEX, glsl.FIRE), merge: this.program(glsl.FULL_VERTEX, glsl.MERGE), bright: this.program(glsl.FULL_VERTEX, glsl.BRIGHT),
+            strand: this.program(STRAND_VERTEX, STRAND), flying: this.program(glsl.AIRBORNE_VERTEX, glsl.airborne(DAY)), fire: this.program(glsl.FULL_VERTEX, glsl.FIRE), merge: this.program(glsl.FULL_VERTEX, glsl.MERGE), bright: this.program(glsl.FULL_VERTEX, glsl.BRIGHT),
             blur: this.program(glsl.FULL_VERTEX, glsl.BLUR), film: this.program(glsl.FULL_VERTEX, glsl.FILM), copy: this.program(glsl.FULL_VERTEX, COPY),
         };
         const { side, bytes } = noiseBytes(), glow = glowBytes();
@@ -277,6 +278,7 @@ export class Stage {
         this.white = this.texture2d(1, 1, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array([255, 255, 255, 255]));
         this.quad = this.mesh([-1, -1, 0, 0, 0, 1, 1, -1, 0, 0, 0, 1, 1, 1, 0, 0, 0, 1, -1, 1, 0, 0, 0, 1], [0, 1, 2, 0, 2, 3]);
         this.kinds = { 1: this.mesh(...sphere()), 2: this.mesh(...box()) };
+        this.flying = new Flying(this, this.programs.flying);
         this.solids = new Map();
         this.pictures = [];
         this.sheets = { array: gl.createVertexArray(), vertices: gl.createBuffer(), triangles: gl.createBuffer(), gaps: gl.createBuffer(), runs: [] };
@@ -529,6 +531,7 @@ export class Stage {
             this.drawMesh(this.quad);
         }
 
+        if (paper && this.fire) this.flying.draw(this, shared);
         if (this.layer === "gas" && frame.gas) this.drawSlice(camera, matrix);
         if (this.layer === "strands" && this.cells) this.drawStrands(camera, matrix);
 

@@ -1,0 +1,57 @@
+// Draws the sparks and flakes of airborne.js into the stage's scene.
+import { AIRBORNE_FLOATS, airborneOf } from "./airborne.js";
+
+const PARTS = ["from", "to", "across", "what"];
+
+/** Of a frame, what airborneOf asks for: shorts are read as the card reads them (SHEET_VERTEX in stage.js). */
+const valueOf = ({ reals, shorts }) => (vertex, field) => {
+    if (field < 6) return reals[16 * vertex + (field < 3 ? field : field + 1)];
+    const [place, most] = [[18, 5000], [20, 64], [21, 64], [22, 1], [23, 400]][field - 6];
+    return (shorts[32 * vertex + place] / 65535) * most;
+};
+
+export class Flying {
+    /** @param stage its WebGL, and @param program of AIRBORNE_VERTEX */
+    constructor({ gl }, { program }) {
+        this.array = gl.createVertexArray();
+        this.things = gl.createBuffer();
+        this.frame = null;
+        this.count = 0;
+        gl.bindVertexArray(this.array);
+        gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+        gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0]), gl.STATIC_DRAW);
+        const corner = gl.getAttribLocation(program, "position");
+        gl.enableVertexAttribArray(corner);
+        gl.vertexAttribPointer(corner, 3, gl.FLOAT, false, 0, 0);
+        gl.bindBuffer(gl.ARRAY_BUFFER, this.things);
+        PARTS.forEach((name, i) => {
+            const place = gl.getAttribLocation(program, name);
+            gl.enableVertexAttribArray(place);
+            gl.vertexAttribPointer(place, 3, gl.FLOAT, false, 4 * AIRBORNE_FLOATS, 12 * i);
+            gl.vertexAttribDivisor(place, 1);
+        });
+        gl.bindVertexArray(null);
+    }
+
+    /** Draws what flies in the stage's frame, where the depth buffer lets it be seen. */
+    draw(stage, shared) {
+        const { gl, frame, room, canvas } = stage;
+        if (this.frame !== frame) {
+            const things = airborneOf(frame.triangles, valueOf(frame), frame.time, room);
+            this.frame = frame;
+            this.count = things.length / AIRBORNE_FLOATS;
+            gl.bindBuffer(gl.ARRAY_BUFFER, this.things);
+            gl.bufferData(gl.ARRAY_BUFFER, things, gl.STREAM_DRAW);
+        }
+        if (!this.count) return;
+        gl.enable(gl.BLEND);
+        gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+        gl.depthMask(false);
+        stage.use(stage.programs.flying, { ...shared, resolution: [canvas.width, canvas.height] });
+        gl.bindVertexArray(this.array);
+        gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count);
+        gl.bindVertexArray(null);
+        gl.depthMask(true);
+        gl.disable(gl.BLEND);
+    }
+}
