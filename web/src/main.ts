@@ -21,6 +21,7 @@ const BUDGET = { least: 45, most: 250 }; // ms of computing in a frame, more whe
 const FILE_MOST = 30e6; // bytes
 const MESH_SIZE: [number, number] = [0.25, 0.25]; // m, of all that is dropped
 const SECOND_FINGER = { wait: 90, slip: 8 }; // ms and px for which the first does nothing, as two turn the view
+const TOOLS_HEIGHT = 100; // px at the bottom, with what is around them
 const PAPER: Point = [0.86, 0.852, 0.832]; // linear, as in shaders.js
 const HINTS: Record<Tool, string> = {
     match: "Drag the match over the paper", breath: "Hold to blow the fire out", hand: "Take the paper, pull, and tear it",
@@ -105,7 +106,7 @@ function start(): void {
 
 function send(message: ToWorker): void { worker.postMessage(message); }
 
-/** A view of the whole sheet: on portrait screens from further away, until its corners are on them. */
+/** A view of the whole sheet: from further away until its corners are on the screen, above the tools. */
 function place(): void {
     const name = shape ? "table" : settings.place, { view: { at, from }, sheets, upright, key } = placeOf(name), { camera } = renderer;
     const { size: [width, height], translate: [, , z] } = sheets[0]!;
@@ -118,7 +119,8 @@ function place(): void {
         camera.position.set(from[0], from[1], up * from[2]).sub(controls.target).multiplyScalar(away).add(controls.target);
         camera.lookAt(controls.target);
         camera.updateMatrixWorld();
-        if (corners.every((corner) => Math.abs(new Vector3(...corner).multiplyScalar(0.5).project(camera).x) < 0.97)) break;
+        const places = corners.map((corner) => new Vector3(...corner).multiplyScalar(0.5).project(camera));
+        if (places.every(({ x, y }) => Math.abs(x) < 0.97 && y > (2 * TOOLS_HEIGHT) / innerHeight - 1)) break;
     }
     controls.maxDistance = Math.max(1.1, 1.2 * camera.position.distanceTo(controls.target));
     renderer.setPlace(name);

@@ -18,6 +18,7 @@ const KEYS = { Escape: "\uE00C", Home: "\uE011", End: "\uE010", ArrowLeft: "\uE0
 async function chromiumPage() {
     const browser = await chromium.launch({ executablePath: CHROMIUM, args: CHROMIUM_ARGS });
     const page = await browser.newPage({ viewport: { width: 1100, height: 700 } }), errors = [];
+    page.setDefaultTimeout(2 * PATIENCE); // a busy machine starts slowly
     page.on("pageerror", (error) => errors.push(error.message));
     return {
         errors,
@@ -120,3 +121,17 @@ export async function until(page, call, argument, what = String(call)) {
     }
     throw new Error(`it did not happen: ${what}`);
 }
+
+/** Frames a second of what `singe view` shows, in whole pixels. */
+export const speedOf = (page) => page.evaluate(() => {
+    globalThis.view.quality(1);
+    const { stage, camera } = globalThis.view, { gl, canvas, frame } = stage, info = gl.getExtension("WEBGL_debug_renderer_info");
+    const wait = () => gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    stage.draw(camera);
+    wait();
+    const before = performance.now();
+    for (let i = 0; i < 2; i++) stage.draw(camera);
+    wait();
+    const rate = 2000 / (performance.now() - before);
+    return `${frame.triangleCount} triangles, ${canvas.width} x ${canvas.height} pixels at ${rate.toFixed(2)} frames/s by ${gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER)}`;
+});

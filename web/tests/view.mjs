@@ -9,7 +9,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { serve } from "../serve.mjs";
-import { BROWSERS, until } from "./browsers.mjs";
+import { BROWSERS, speedOf, until } from "./browsers.mjs";
 
 const only = process.env.ONLY, words = process.argv.slice(2), pictures = words[0] === "--pictures" ? words[1] : null;
 const ROOT = new URL("../../", import.meta.url).pathname, SINGE = process.env.SINGE ?? `${ROOT}build/singe`;
@@ -197,26 +197,12 @@ const CASES = {
 if (pictures) await mkdir(pictures, { recursive: true });
 execFileSync(SINGE, ["run", "examples/letter", "-o", cache, "--no-preview", "--frames", String(FRAMES), "--set", "sheets.0.grid.cells=[42, 59]", "--set", "pace=10"], { cwd: ROOT, stdio: "pipe" });
 process.chdir(ROOT);
-/** Frames a second of the last frame as it looks, in whole pixels. */
-const speed = (page) => page.evaluate(() => {
-    globalThis.view.quality(1);
-    const { stage, camera } = globalThis.view, { gl, canvas, frame } = stage, info = gl.getExtension("WEBGL_debug_renderer_info");
-    const wait = () => gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-    stage.draw(camera);
-    wait();
-    const before = performance.now();
-    for (let i = 0; i < 2; i++) stage.draw(camera);
-    wait();
-    const rate = 2000 / (performance.now() - before);
-    return `${frame.triangleCount} triangles, ${canvas.width} x ${canvas.height} pixels at ${rate.toFixed(1)} frames/s by ${gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER)}`;
-});
-
 for (const [name, open] of Object.entries(BROWSERS)) {
     const served = await view(cache), page = await open();
     for (const [title, run] of Object.entries({ ...CASES, speed: async (page, { address }) => {
         await ready(page, address);
         await goTo(page, FRAMES);
-        console.log(`${name}: ${await speed(page)}`);
+        console.log(`${name}: ${await speedOf(page)}`);
     } })) {
         if (only && !title.match(`cache opens|${only}`)) continue;
         const begun = Date.now();
