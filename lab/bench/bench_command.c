@@ -104,17 +104,6 @@ static ExitCode bench_measure(int m, const BenchRequest *request) {
     return code;
 }
 
-/// The measurement's index, or -1 after a message.
-static int bench_find(const char *word) {
-    for (int i = 0; i < MEASUREMENTS; i++)
-        if (strcmp(measurements[i].name, word) == 0) return i;
-    const char *near = args_nearest(word, measurements, MEASUREMENTS, sizeof measurements[0]);
-    fprintf(stderr, "singe bench: error: unknown measurement '%s'", shown(word).text);
-    if (near) fprintf(stderr, "; did you mean '%s'?", near);
-    fputs("\nsee: singe bench --help\n", stderr);
-    return -1;
-}
-
 const ArgCommand bench_command = {
     .name = "bench",
     .operand = "MEASUREMENT",
@@ -142,8 +131,17 @@ int command_bench(int argc, char **argv) {
         return EXIT_GOOD;
     }
 
-    int m = bench_find(strcmp(argv[0], "--compare") == 0 ? "compare" : argv[0]);
-    if (m < 0) return EXIT_INPUT;
+    const char *word = strcmp(argv[0], "--compare") == 0 ? "compare" : argv[0];
+    int m = 0;
+    while (m < MEASUREMENTS && strcmp(measurements[m].name, word) != 0) m++;
+    if (m == MEASUREMENTS) {
+        const char *near = args_nearest(word, measurements, MEASUREMENTS, sizeof measurements[0]);
+        fprintf(stderr, "singe bench: error: unknown measurement '%s'", shown(word).text);
+        if (near) fprintf(stderr, "; did you mean '%s'?", near);
+        fputs("\nsee: singe bench --help\n", stderr);
+        return EXIT_INPUT;
+    }
+
     BenchRequest request;
     ExitCode code;
     if (!bench_args_read(measurements[m].name, measurements[m].summary, measurements[m].accepted, argc - 1, argv + 1,

@@ -27,6 +27,10 @@ static const PageItem items[] = {
      "10.1177/0040517518807450). In beds of excelsior the speed is as exp(-3.22 M) of its share M of water (Catchpole "
      "et al. 1998).",
      validate_damp},
+    {"plume", "A fire on a floor",
+     "On the axis of a fire of 30 cm speed and temperature follow its power and the height (McCaffrey 1979, NBSIR "
+     "79-1910); fires puff 1.5/sqrt(D) times a second (Cetegen &amp; Ahmed 1993).",
+     validate_plume},
     {"beam", "A clamped strip", "Plate theory: w = rho g l&#8308;/(8 D) + rho g l²/(2 S).", validate_beam},
     {"disc", "A bilayer disc",
      "A strongly bent disc of two layers is a cylinder whose curvature is (1 + nu)/2 times its natural one, 3/4 at nu "
@@ -41,7 +45,8 @@ static const PageItem items[] = {
 
 static const ArgOption validate_options[] = {
     {"output", 'o', "DIR", "folder for the page [out/validate]", .read = args_folder, offsetof(PageRequest, folder)},
-    {"only", 0, "NAME", "one of heat, umbrella, front, pmma, cone, oxygen, damp, beam, disc, kinetics, ledgers, grades",
+    {"only", 0, "NAME",
+     "one of heat, umbrella, front, pmma, cone, oxygen, damp, plume, beam, disc, kinetics, ledgers, grades",
      .read = args_text, offsetof(PageRequest, only)},
     {"quick", 0, NULL, "small sizes, for a quick check", .read = args_switch, offsetof(PageRequest, quick)},
     {"threads", 0, "N", "threads [all]", .read = args_int, offsetof(PageRequest, threads), 1, JOB_THREADS_MAX},

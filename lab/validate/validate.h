@@ -9,7 +9,7 @@
 #define VALIDATE_HIGH 1.5
 
 LabFn validate_heat, validate_umbrella, validate_front, validate_pmma, validate_disc, validate_beam, validate_kinetics,
-    validate_ledgers, validate_cone, validate_oxygen, validate_damp, validate_grades;
+    validate_ledgers, validate_cone, validate_oxygen, validate_damp, validate_plume, validate_grades;
 
 /// The grade of a measure.
 ReportGradeFn validate_grade;

@@ -6,7 +6,7 @@ import unittest
 
 from test_paper import Paper
 
-ITEMS = "heat umbrella front pmma cone oxygen damp beam disc kinetics ledgers grades".split()
+ITEMS = "heat umbrella front pmma cone oxygen damp plume beam disc kinetics ledgers grades".split()
 
 
 class Validate(Paper):
