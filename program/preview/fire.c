@@ -110,7 +110,7 @@ static void mark_all(Fire *fire) {
         for (int y = 1; y < fire->size[1] - 1; y++)
             for (int x = 1; x < fire->size[0] - 1; x++) {
                 if (fire->cells[fire_at(fire, x, y, z)].smoke > SMOKE_SEEN)
-                    mark_bricks(fire, x, y, z, 1 + 1.5f * SMOKE_WARP / fire->cell, FIRE_SMOKE);
+                    mark_bricks(fire, x, y, z, 1 + 1.5f * fire->scale * SMOKE_WARP / fire->cell, FIRE_SMOKE);
 
                 // the max of the spline in the cell's box: the largest of its Bezier points, which are the means of
                 // the cells that meet in its faces, edges and corners

@@ -73,7 +73,7 @@ typedef struct Fire {
 // m, max displacement by eddies
 #define FIRE_WARP_WIDE 0.0055f
 #define FIRE_WARP_FINE 0.0018f
-#define SMOKE_WARP 0.011f
+#define SMOKE_WARP 0.018f
 
 enum { FIRE_FLAME = 1, FIRE_SMOKE = 2 };
 

@@ -252,15 +252,17 @@ FirePoint fire_at_point(const Fire *fire, Float3 p) {
     return point;
 }
 
-/// Smoke rises in streaks: eddies three times as tall as wide move and thin it.
+/// Smoke rises in folds: eddies of two sizes, three times as tall as wide and as large as the flames', move it and thin it.
 Matter fire_smoke_at(const Fire *fire, Float3 p) {
-    const float passed = (SMOKE_SPEED * fire->moment - p.z) / SMOKE_EDDY;
-    Noise wide = eddies(fire, p, passed, SMOKE_EDDY, 0.35f);
-    Noise small = eddies(fire, p, passed, SMOKE_EDDY / 2.6f, 0.9f);
-    Float3 moved = float3_mad(float3_mad(p, float3(wide.a, wide.b, wide.c), SMOKE_WARP),
-                              float3(small.a, small.b, small.c), 0.5f * SMOKE_WARP);
+    const float eddy = fire->scale * SMOKE_EDDY, warp = fire->scale * SMOKE_WARP;
+    const float passed = (SMOKE_SPEED * fire->moment - p.z) / eddy;
+    const Noise wide = eddies(fire, p, passed, eddy, 0.35f);
+    Float3 moved = float3_mad(p, float3(wide.a, wide.b, wide.c), warp);
+    const Noise small = eddies(fire, moved, passed + 0.4f * wide.c, eddy / 2.6f, 0.9f);
+    moved = float3_mad(moved, float3(small.a, small.b, small.c), 0.5f * warp);
     const FireCell cell = cell_at(fire, moved, NULL);
-    const float dense = cell.smoke * maxf(1 + 1.2f * wide.d + 0.7f * small.d, 0);
+    const float fold = 1.7f - 2.1f * fabsf(wide.d + 0.5f * small.d);
+    const float dense = cell.smoke * maxf(fold + 0.7f * small.a, 0);
 
     // soot and tar scatter about a third, in all directions
     Float3 lit = float3_mad(float3_scale(fire->daylight, 0.35f), float3(1, 0.5f, 0.16f), 0.35f * cell.glow);

@@ -21,7 +21,7 @@ enum {
 #define SPEEDING 0.13f    ///< m/s2
 #define RIBBON 0.0060f    ///< m, half of its width where it begins
 #define THREAD 0.0009f    ///< m, radius there
-#define WISP_DEPTH 5e-3f  ///< m, optical depth across a wisp times its width
+#define WISP_DEPTH 11e-3f ///< m, optical depth across a wisp times its width
 #define SMOKING 6.0f      ///< sites of which half smoke
 #define WISP_AREA 2.5e-5f ///< m2 that smoulder and give half of the densest wisp
 #define FORWARD 0.45f     ///< g of the phase function
@@ -39,16 +39,16 @@ static inline float swing(const Wisp *wisp, float moment, float often, float pla
 }
 
 static Float3 wisp_at(const Wisp *wisp, float age, float place) {
-    const float moment = wisp->now - age, early = age * age / (0.25f + age), late = early * age;
+    const float moment = wisp->now - age, early = age * age / (0.14f + age), late = early * age;
     const float neck = 0.35f + 0.65f * expf(-7 * age) + 2.2f * age * age;
     const float turn = 1.2f * age + 1.6f * noise2(moment * 1.3f, 3, wisp->seed), c = cosf(turn), s = sinf(turn);
     const float side = RIBBON * place * neck;
     Float3 p = wisp->from;
     p.x += side * (c * wisp->across.x - s * wisp->across.y) + 0.085f * early * swing(wisp, moment, 2.6f, place, 11);
     p.y += side * (s * wisp->across.x + c * wisp->across.y) + 0.085f * early * swing(wisp, moment, 2.6f, place, 12);
-    p.x += 0.13f * late * swing(wisp, moment, 8, 1.7f * place, 13);
-    p.y += 0.13f * late * swing(wisp, moment, 8, 1.7f * place, 14);
-    p.z += (RISE + SPEEDING * age) * age + 0.13f * late * swing(wisp, moment, 7, 1.7f * place, 15);
+    p.x += 0.24f * late * swing(wisp, moment, 8, 1.7f * place, 13);
+    p.y += 0.24f * late * swing(wisp, moment, 8, 1.7f * place, 14);
+    p.z += (RISE + SPEEDING * age) * age + 0.24f * late * swing(wisp, moment, 7, 1.7f * place, 15);
     return p;
 }
 
