@@ -18,7 +18,9 @@
 //
 // and a step of a ray takes its mean between the depths of its ends, by the integral of P: the shell is thinner than a
 // step. It begins at the paper, is faint and blue in the first millimetres, where there is no soot yet, yellow above,
-// orange at its tips. Soot glows as a black body between FLAME_COOL and FLAME_HOT; it hides almost nothing behind it.
+// orange at its tips. Soot glows as a black body between FLAME_COOL and FLAME_HOT; it hides almost nothing behind it. It
+// is the hotter the more heat is released around it (core) and the further it is from the edge (strong): so a flame of one
+// or two sheets has a pale core, too.
 
 #include "preview/internal.h"
 
@@ -149,7 +151,9 @@ static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noi
     point->shell = 0.5f * outer * outer / SHELL_RISE + fill * inner + SHELL * (1 - fill - fading);
 
     float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001f * fine.d);
-    float strong = stepf(0, 0.7f, edge), hot = 0.39f + 0.42f * strong - 0.2f * tip + 0.25f * wide.d + 0.15f * fine.a;
+    float core = stepf(0.35f, 0.7f, cell->flame) * stepf(SOOT_BEGINS, SOOT_FULL, rise);
+    float strong = stepf(0, 0.7f, edge);
+    float hot = 0.28f + 0.42f * strong + 0.16f * core - 0.2f * tip + 0.25f * wide.d + 0.2f * fine.a;
     soot *= soot;
     float root = stepf(STAND_OFF, 3 * STAND_OFF, rise) * (1 - soot) * (1 - stepf(BLUE_ENDS / 3, BLUE_ENDS, rise));
     soot *= 0.3f + 1.2f * stepf(-0.5f, 0.5f, 0.7f * wide.d + 0.6f * fine.a);
