@@ -250,9 +250,9 @@ static void room_range(void *context, int begin, int end) {
                     const float square = nearest(p, corner, there.weight);
                     if (!(square < min)) continue;
                     const Float3 from = float3_sub(rest, fine_blend(shell->cells[cell], &there, shell->rest_position));
-                    const float before = float3_dot(from, from);
-                    if (sheet[centre] == sheet[v] && before < FOLDED * FOLDED * square) continue;
-                    if (before == 0) continue; // its own cell, or that across a tear
+                    const float before = float3_dot(from, from), radius = binding->centroid[cell][3];
+                    const bool bent = before < FOLDED * FOLDED * square || before < radius * radius; // or beside it
+                    if (sheet[centre] == sheet[v] && bent) continue;
                     min = square;
                     binding->near[v] = cell;
                 }
