@@ -15,7 +15,7 @@ HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 .PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        site check-clients check-godot check-unity check-unreal check-blender check-farm check-packages check-platforms web web-serve web-pictures check-web check-web-size check-web-core check-web-examples torture mutations coverage fuzz-long soak pictures bench-peers clean
+        site check-clients check-godot check-unity check-unreal check-blender check-farm check-packages check-platforms web web-serve web-pictures web-speed check-web check-web-size check-web-core check-web-examples torture mutations coverage fuzz-long soak pictures bench-peers clean
 
 all: build
 
@@ -140,6 +140,10 @@ check-web: web
 	cd web && SINGE_PROGRAM=$(CURDIR)/build/singe SINGE_USD=$(CURDIR)/build/usd/bin/python npm test
 	cd web && SINGE_PROGRAM=../build/singe SINGE_LIBRARY=$(CURDIR)/build/python/singe/libsinge.so \
 	    PYTHONPATH=../bindings/python node tests/notebook.mjs ../build/notebook/bin/python ../build/notebook/run
+
+# the page's size, and its speed in Chromium
+web-speed: web
+	cd web && ONLY=speed node tests/check.mjs
 
 # pictures of the page for docs/web.md, its first minute among them, into build/web-pictures
 web-pictures: web
