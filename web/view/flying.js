@@ -3,12 +3,12 @@ import { AIRBORNE_FLOATS, airborneOf } from "./airborne.js";
 
 const PARTS = ["from", "to", "across", "what"];
 
-/** Of a frame, what airborneOf asks for: shorts are read as the card reads them (SHEET_VERTEX in stage.js). */
-const valueOf = ({ reals, shorts }) => (vertex, field) => {
-    if (field < 6) return reals[16 * vertex + (field < 3 ? field : field + 1)];
-    const [place, most] = [[18, 5000], [20, 64], [21, 64], [22, 1], [23, 400]][field - 6];
-    return (shorts[32 * vertex + place] / 65535) * most;
-};
+/** Of temperature, rate, glowing, burn and gradient: which short of a vertex it is, and its value at 1 (SHEET_VERTEX in stage.js). */
+const SHORT = [18, 20, 21, 22, 23], MOST = [5000, 64, 64, 1, 400].map((most) => most / 65535);
+
+/** Of a frame, what airborneOf asks for. */
+const valueOf = ({ reals, shorts }) => (vertex, field) =>
+    field < 6 ? reals[16 * vertex + (field < 3 ? field : field + 1)] : shorts[32 * vertex + SHORT[field - 6]] * MOST[field - 6];
 
 export class Flying {
     /** @param stage its WebGL, and @param program of AIRBORNE_VERTEX */
