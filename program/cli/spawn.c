@@ -1,10 +1,16 @@
 #include "cli/spawn.h"
+#include "cli/text.h"
 
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <unistd.h>
+#ifdef __APPLE__
+#include <mach-o/dyld.h>
+#endif
 
 extern char **environ;
 
@@ -33,4 +39,17 @@ int spawn_program(char *const *arguments, const char *log, pid_t *child) {
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     return reason;
+}
+
+char *spawn_own_path(void) {
+    char path[4096];
+#ifdef __APPLE__
+    uint32_t length = sizeof path;
+    const bool known = _NSGetExecutablePath(path, &length) == 0;
+#else
+    const ssize_t size = readlink("/proc/self/exe", path, sizeof path - 1);
+    const bool known = size > 0;
+    if (known) path[size] = 0;
+#endif
+    return text_format("%s", known ? path : "singe");
 }

@@ -7,3 +7,6 @@
 /// appended to that file, and it has a process group of its own: Ctrl-C in a terminal does not reach it, so the caller
 /// ends it. Without one (NULL) it shares ours. Returns 0, with the process in `child`, or an errno.
 int spawn_program(char *const *arguments, const char *log, pid_t *child);
+
+/// The path of this program, allocated; "singe" where it is unknown.
+char *spawn_own_path(void);

@@ -202,7 +202,7 @@ SingeResult file_draft(const char *path, char **draft, SingeError *error) {
 }
 
 SingeResult file_publish(char *draft, const char *path, SingeError *error) {
-    int file = open(draft, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    int file = open(draft, O_RDWR | O_NOFOLLOW | O_CLOEXEC); // Windows flushes no file that is only read
     int reason = file < 0 ? errno : fsync(file) && errno != EINVAL && errno != ENOTSUP ? errno : 0;
     if (file >= 0) close(file);
     if (!reason) reason = put_in_place(draft, path);
@@ -228,10 +228,17 @@ void file_discard(char *draft) {
 
 // ---- files that a file refers to
 
+bool path_is_absolute(const char *path) {
+#ifdef _WIN32
+    if (path[0] && path[1] == ':') return true;
+#endif
+    return path[0] == '/';
+}
+
 bool path_is_inside(const char *name, const char *path) {
     const char *slash = strrchr(name, '/');
     size_t length = slash ? (size_t)(slash - name) + 1 : 0;
-    if (strncmp(path, name, length) != 0 || path[length] == '/' || path[length] == 0) return false;
+    if (strncmp(path, name, length) != 0 || path_is_absolute(path + length) || path[length] == 0) return false;
 
     // no part is ".."
     for (const char *part = path + length;;) {

@@ -24,6 +24,8 @@ SINGE_NODISCARD SingeResult file_read_max(const char *path, size_t max, SingeAll
 size_t file_read_head(const char *path, uint8_t *bytes, size_t max);
 void bytes_free(Bytes *bytes);
 
+/// Whether it begins at the root, or at a drive of Windows.
+bool path_is_absolute(const char *path);
 /// Whether `path` is in the folder of the file `name` or below, contains no "..", and leads there through links, too.
 /// False when out of memory.
 bool path_is_inside(const char *name, const char *path);

@@ -131,7 +131,7 @@ static uint32_t put_images(GlbFile *f, const char *up) {
         }
 
         // a path as a URI, prefixed by `up` if it is relative
-        sink_text(&f->text, "\"uri\":\"%s", *f->scene->sheets[i].picture == '/' ? "" : up);
+        sink_text(&f->text, "\"uri\":\"%s", path_is_absolute(f->scene->sheets[i].picture) ? "" : up);
         for (const unsigned char *c = (const unsigned char *)f->scene->sheets[i].picture; *c; c++) {
             const bool plain =
                 (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9') || strchr("-_.~/", *c);

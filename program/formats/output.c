@@ -22,7 +22,7 @@ SingeResult ply_write_frame(const char *path, const OutputScene *scene, const Ou
 SingeResult output_picture_read(const char *path, const char *picture, Bytes *bytes, SingeError *error) {
     char name[8192];
     const char *slash = strrchr(path, '/');
-    const int folder = *picture == '/' || !slash ? 0 : (int)(slash - path) + 1;
+    const int folder = path_is_absolute(picture) || !slash ? 0 : (int)(slash - path) + 1;
     *bytes = (Bytes){0};
     if ((size_t)snprintf(name, sizeof name, "%.*s%s", folder, path, picture) >= sizeof name)
         return refuse(error, SINGE_ERROR_LIMIT, "output", -1, "%s: the name is too long", short_name(picture));

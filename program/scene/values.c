@@ -233,7 +233,7 @@ void value_name(Reader *reader, const SchemaRow *row, const YamlNode *node, char
 // A name relative to a folder, unless it is absolute. NULL when out of memory.
 static char *value_join(SceneArena *arena, const char *folder, const char *slash, char *name) {
     size_t length = strlen(folder) + strlen(slash) + strlen(name) + 1;
-    if (name[0] == '/' || !(folder[0] || slash[0])) return name;
+    if (path_is_absolute(name) || !(folder[0] || slash[0])) return name;
     char *joined = arena_new(arena, length, 1);
     if (joined) snprintf(joined, length, "%s%s%s", folder, slash, name);
     return joined;

@@ -1,11 +1,11 @@
 // singe sweep: the command.
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "cli/args.h"
 #include "cli/folder.h"
 #include "cli/interrupt.h"
+#include "cli/spawn.h"
 #include "cli/text.h"
 #include "common/printable.h"
 #include "sweep/sweep.h"
@@ -107,13 +107,9 @@ ExitCode sweep_prepare(Sweep *sweep) {
 }
 
 Sweep sweep_make(Console *console, const SweepOptions *options) {
-    // the path of this program, valid on other nodes that see the same files
-    char path[4096];
-    const ssize_t size = readlink("/proc/self/exe", path, sizeof path - 1);
-    if (size > 0) path[size] = 0;
     return (Sweep){.console = console,
                    .options = options,
-                   .program = text_format("%s", size > 0 ? path : "singe"),
+                   .program = spawn_own_path(), // valid on other nodes that see the same files
                    .plan_path = absolute(options->plan),
                    .lock = LOCK_NONE};
 }

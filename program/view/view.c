@@ -8,6 +8,7 @@
 
 #include "cli/args.h"
 #include "cli/interrupt.h"
+#include "cli/spawn.h"
 #include "cli/text.h"
 #include "common/printable.h"
 
@@ -73,10 +74,7 @@ static ExitCode show(View *view, const ViewOptions *o) {
             view->live.scene ? job_read(&job, view->console, view->live.scene, &o->sets, 1) : EXIT_INPUT;
         if (code) return code;
         job_close(&job);
-        char path[4096];
-        const ssize_t size = readlink("/proc/self/exe", path, sizeof path - 1);
-        if (size > 0) path[size] = 0;
-        view->live.program = text_format("%s", size > 0 ? path : "singe");
+        view->live.program = spawn_own_path();
         view->live.sets = &o->sets;
         view->live.threads = o->threads;
     }

@@ -12,6 +12,7 @@ import sys
 
 from . import files
 
+PROGRAM = "singe.exe" if sys.platform == "win32" else "singe"
 RUNNING = {}  # jobs of this Blender, by folder
 
 
@@ -31,13 +32,13 @@ def find_program(chosen=""):
         return chosen
     package = importlib.util.find_spec("singe")
     if package and package.origin:
-        path = os.path.join(os.path.dirname(package.origin), "bin", "singe")
+        path = os.path.join(os.path.dirname(package.origin), "bin", PROGRAM)
         if os.path.isfile(path):
             if not os.access(path, os.X_OK):  # Blender's installer drops this permission
                 os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
             return path
     for folder in os.get_exec_path():
-        path = os.path.join(folder, "singe.exe" if sys.platform == "win32" else "singe")
+        path = os.path.join(folder, PROGRAM)
         # a relative folder of PATH could be that of the .blend file
         if os.path.isabs(folder) and os.path.isfile(path) and os.access(path, os.X_OK):
             return path

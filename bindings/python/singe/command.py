@@ -22,6 +22,7 @@ from ._library import logger
 from .cache import Cache, column, read_cache
 
 Path = Union[str, "os.PathLike[str]"]
+PROGRAM = "singe.exe" if os.name == "nt" else "singe"
 
 
 def command_path() -> pathlib.Path:
@@ -30,7 +31,7 @@ def command_path() -> pathlib.Path:
     Restores an executable bit that installers dropped. CommandMissingError if there is no program.
     """
     named = os.environ.get("SINGE_PROGRAM")
-    path = pathlib.Path(named) if named else pathlib.Path(__file__).with_name("bin") / "singe"
+    path = pathlib.Path(named) if named else pathlib.Path(__file__).with_name("bin") / PROGRAM
     if not path.is_file():
         raise errors.CommandMissingError(
             f"SINGE_PROGRAM names {path}, which does not exist" if named else
@@ -50,6 +51,8 @@ def main() -> None:
         path = str(command_path())
     except errors.CommandMissingError as error:
         sys.exit(f"singe: error: {error}")
+    if os.name == "nt":  # which cannot replace a process
+        sys.exit(subprocess.call([path, *arguments]))
     os.execv(path, [path, *arguments])
 
 
