@@ -16,7 +16,6 @@
 #include <windows.h>
 
 #include <psapi.h>
-#include <shellapi.h>
 #include <stdarg.h>
 #include <wchar.h>
 
@@ -34,8 +33,7 @@ static WidePath widen(const char *path) {
     return wide;
 }
 
-/// UTF-8 with / between the parts, allocated.
-static char *narrow(const wchar_t *wide) {
+char *windows_utf8(const wchar_t *wide) {
     const int size = WideCharToMultiByte(CP_UTF8, 0, wide, -1, NULL, 0, NULL, NULL);
     char *text = malloc((size_t)size + 1);
     if (!text) return NULL;
@@ -150,7 +148,7 @@ char *realpath(const char *path, char *buffer) {
     wchar_t whole[PATH_UNITS];
     (void)buffer;
     if (windows_access(path, F_OK) || !GetFullPathNameW(widen(path).text, PATH_UNITS, whole, NULL)) return NULL;
-    char *text = narrow(whole);
+    char *text = windows_utf8(whole);
     for (size_t n = text ? strlen(text) : 0; n > 3 && text[n - 1] == '/'; n--) text[n - 1] = 0;
     return text;
 }
@@ -407,28 +405,4 @@ char *mkdtemp(char *path) {
     if (getentropy(&number, sizeof number)) return NULL;
     snprintf(path + strlen(path) - 6, 7, "%06x", (unsigned)(number & 0xffffff));
     return windows_mkdir(path) ? NULL : path;
-}
-
-// ---- the program
-
-int singe_main(int count, char **words);
-
-/// Runs the command on arguments in UTF-8, with binary streams.
-int main(void) {
-    int count;
-    wchar_t **wide = CommandLineToArgvW(GetCommandLineW(), &count);
-    char **words = wide ? calloc((size_t)count + 1, sizeof *words) : NULL;
-    for (int i = 0; words && i < count; i++)
-        if (!(words[i] = narrow(wide[i]))) return 1;
-    if (!words) return 1;
-    LocalFree(wide);
-
-    _setmode(_fileno(stdin), _O_BINARY);
-    _setmode(_fileno(stdout), _O_BINARY);
-    _setmode(_fileno(stderr), _O_BINARY);
-    SetConsoleOutputCP(CP_UTF8);
-    const int code = singe_main(count, words);
-    for (int i = 0; i < count; i++) free(words[i]);
-    free(words);
-    return code;
 }

@@ -37,6 +37,9 @@
 #define ENOTSUP 129
 #endif
 
+/// UTF-8 with / in place of \\, allocated; NULL without memory.
+char *windows_utf8(const wchar_t *wide);
+
 /// What is known of a file, with its number, which Windows' own lacks.
 struct windows_stat {
     uint64_t st_dev, st_ino;
