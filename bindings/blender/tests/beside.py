@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A frame of a cache as `singe render` draws it and, right of it, as Cycles does with the extension's materials, lit and
-seen as the scene's `preview` says.
+"""A frame of a cache as `singe render` draws it and, right of it, as Blender does with the extension's materials, lit
+and seen as the scene's `preview` says.
 
-usage: beside.py SINGE CACHE FRAME FOLDER [SAMPLES]     CACHE has USD and the finer gas (docs/blender.md)
+usage: beside.py SINGE CACHE FRAME FOLDER [SAMPLES [cycles | eevee]]     CACHE has USD and the finer gas (docs/blender.md)
 
-Leaves FOLDER/preview.png, FOLDER/blender.png and both as FOLDER/beside.png. Needs Blender (PyPI's bpy).
+Leaves FOLDER/preview.png, FOLDER/blender.png and both as FOLDER/beside.png. Needs Blender (PyPI's bpy), and
+for Eevee a display.
 """
 
 import json
@@ -90,7 +91,7 @@ def save(array, path):
     image.save()
 
 
-def main(program, cache, frame, folder, samples="24"):
+def main(program, cache, frame, folder, samples="24", engine="cycles"):
     cache, folder, frame = os.path.abspath(cache), os.path.abspath(folder), int(frame)
     os.makedirs(folder, exist_ok=True)
     with open(os.path.join(cache, "run.json"), encoding="utf-8") as file:
@@ -109,7 +110,11 @@ def main(program, cache, frame, folder, samples="24"):
     stage(run["scene"]["preview"])
     scene.view_settings.view_transform, scene.view_settings.look = VIEW, LOOK
     scene.view_settings.exposure = math.log2(run["scene"]["preview"]["exposure"])
-    scene.render.engine, scene.cycles.samples, scene.cycles.use_denoising = "CYCLES", int(samples), True
+    if engine == "eevee":
+        scene.render.engine = "BLENDER_EEVEE" if bpy.app.version >= (5, 0) else "BLENDER_EEVEE_NEXT"
+        scene.eevee.taa_render_samples = int(samples)
+    else:
+        scene.render.engine, scene.cycles.samples, scene.cycles.use_denoising = "CYCLES", int(samples), True
     scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
     scene.frame_set(frame)
     scene.render.filepath = os.path.join(folder, "blender.png")
