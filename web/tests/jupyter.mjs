@@ -34,6 +34,7 @@ try {
     await page.keyboard.press("Shift+Enter");
     const frame = await (await page.waitForSelector(".jp-OutputArea iframe")).contentFrame();
     await frame.waitForSelector("#view.ready");
+    await frame.evaluate(() => globalThis.view.quality(0.2) /* drawn without a card */);
     const last = await frame.evaluate(() => globalThis.view.state.last);
     await frame.evaluate((f) => globalThis.view.goTo(f), last);
     await frame.waitForFunction((f) => globalThis.view.state.shown === f, last);

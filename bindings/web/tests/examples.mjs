@@ -6,10 +6,11 @@
 // table; fails where a state differs, or where a damaged recording passes.
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { resolve } from "node:path";
 
 const FRAMES = 48, CELLS = 300, GAS = "gas.cell_size=12 mm";
 const EXAMPLES = new URL("../../../examples/", import.meta.url).pathname;
-const [program, replayer, folder, ...wanted] = process.argv.slice(2);
+const [program, replayer, out, ...wanted] = process.argv.slice(2), folder = resolve(out); // WASI knows no current folder
 mkdirSync(folder, { recursive: true });
 
 /** Settings that make each grid of a scene coarse, in the order of its sheets. */
