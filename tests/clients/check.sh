@@ -105,7 +105,7 @@ npm_packages() {
 
 gltf_client() {
     echo "== gltf"
-    if ! npm_packages; then lacking gltf "npm's gltf-validator and @gltf-transform"
+    if ! { npm_packages && environment vtk; }; then lacking gltf "npm's gltf-validator and @gltf-transform, and PyPI's vtk"
     elif NODE_PATH="$folder/npm/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
             node "$here/gltf.js" "$singe" "$folder/work/gltf" > "$folder/gltf.log" 2>&1; then cat "$folder/gltf.log"
     else
@@ -118,7 +118,7 @@ vat_client() {
     echo "== vat"
     browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
     if [ -z "$browser" ]; then lacking vat chromium
-    elif ! npm_packages; then lacking vat "npm's three"
+    elif ! { npm_packages && environment vtk; }; then lacking vat "npm's three and PyPI's vtk"
     elif NODE_PATH="$folder/npm/node_modules" PYTHON="$folder/vtk/bin/python" PYTHONDONTWRITEBYTECODE=1 \
             node "$here/vat.js" "$singe" "$folder/work/vat" "$browser" > "$folder/vat.log" 2>&1; then cat "$folder/vat.log"
     else
