@@ -69,6 +69,7 @@ void block_add_light(const Preview *preview, Block *block, const int *active, in
             colour = float3_mad(fire, colour, clear);
         }
 
+        known[i] -= float3_luminance(fire); // what hides it, or does not, makes samples differ
         through[i] = clear * (1 - point->fade);
         colour = float3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
         block->sum[i] = float3_add(block->sum[i], colour);

@@ -372,6 +372,39 @@ TEST(a_sheet_hides_the_flame_behind_it) {
     assert_true(bare > 60 && hidden < 0.25f * bare); // shone through, at most
 }
 
+/// The edge of a dark sheet that a lens blurs before a flame has no grain.
+TEST(a_blurred_edge_before_a_flame_is_smooth) {
+    static uint8_t exact[BYTES], few[BYTES];
+    static Ball ball;
+    Float4 q;
+
+    quad_make(&q, 0.02f, 0.3f);
+    ball_make(&ball, 0, 0, 0.2f, 0.04f, 4e6f, 0);
+    PreviewDef def = above();
+    def.camera.aperture = 0.02f;
+    def.camera.focus = 0.24f;
+    for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
+    def.samples = 1024;
+    draw_gas(&def, &q.surface, &ball.gas, 0.3, exact);
+    def.samples = 16;
+    draw_gas(&def, &q.surface, &ball.gas, 0.3, few);
+
+    // grain: how far pixels leave the mean of their neighbours, beyond what the exact picture's do
+    int grains = 0;
+    for (int y = 8; y < H - 8; y++)
+        for (int x = 24; x < W - 24; x++) {
+            float off[2];
+            const uint8_t *pictures[2] = {few, exact};
+            for (int k = 0; k < 2; k++)
+                off[k] = (float)pixel(pictures[k], x, y)[1] -
+                         0.25f * (float)(pixel(pictures[k], x - 1, y)[1] + pixel(pictures[k], x + 1, y)[1] +
+                                         pixel(pictures[k], x, y - 1)[1] + pixel(pictures[k], x, y + 1)[1]);
+            grains += fabsf(off[0] - off[1]) > 12;
+        }
+    print_message("16 samples: %d grains\n", grains);
+    assert_true(grains < 26); // 35 if what differs behind the edge counts as no noise
+}
+
 /// Flames light the paper beside them, warmly.
 TEST(flames_light_the_paper_beside_them) {
     static uint8_t dark[BYTES], lit[BYTES];
