@@ -5,6 +5,8 @@
 
 #include "preview/internal.h"
 
+#include <string.h>
+
 #define FIRE_SHORT 0.35f  ///< step near an edge, relative to the usual one: longer ones miss thin sheets
 #define SMOKE_STEP 0.010f ///< m, distance at most between the places of a ray where its smoke is looked up
 #define FIRE_EVEN 0.020f  ///< difference of light, as l / (1 + l), that may be interpolated
@@ -121,11 +123,13 @@ static void see_corner(const Preview *preview, int x, int y, int k, FireTile *ti
     tile->empty = tile->empty && !tile->views[k].count;
 }
 
-/// Whether the rays at the corners of a square of 4 x 4 pixels, the first of which is `k`, see nearly the same.
-static bool is_even(const FireTile *tile, int k) {
+/// Whether the rays that are known in a square of 4 x 4 pixels, the first of which is `k`, see nearly the same.
+static bool is_even(const FireTile *tile, const bool *known, int k) {
     float low[2] = {INFINITY, INFINITY}, high[2] = {0, 0};
-    for (int i = 0; i < 4; i++) {
-        const FireView *view = &tile->views[k + i % 2 * 2 + i / 2 * 2 * FIRE_ACROSS];
+    for (int m = 0; m < 9; m++) {
+        const int i = k + m / 3 * FIRE_ACROSS + m % 3;
+        if (!known[i]) continue;
+        const FireView *view = &tile->views[i];
         float light = view->count ? float3_luminance(view->light[view->count - 1]) : 0;
         float value[2] = {light / (1 + light), view->count ? 1 - view->clear[view->count - 1] : 0};
         for (int c = 0; c < 2; c++) {
@@ -140,22 +144,28 @@ static bool is_even(const FireTile *tile, int k) {
 void fire_see(const Preview *preview, int x, int y, FireTile *tile) {
     bool known[FIRE_ACROSS * FIRE_ACROSS] = {false};
     tile->empty = true;
+    memset(tile->fine, 0, sizeof tile->fine);
     for (int i = 0; i < FIRE_ACROSS; i += 2)
         for (int j = 0; j < FIRE_ACROSS; j += 2) {
             see_corner(preview, x, y, i * FIRE_ACROSS + j, tile);
             known[i * FIRE_ACROSS + j] = true;
         }
 
-    for (int i = 0; i < FIRE_COARSE; i++)
-        for (int j = 0; j < FIRE_COARSE; j++) {
-            int first = 2 * i * FIRE_ACROSS + 2 * j;
-            bool fine = tile->fine[i * FIRE_COARSE + j] = !is_even(tile, first);
-            for (int m = 0; fine && m < 9; m++) {
-                int k = first + m / 3 * FIRE_ACROSS + m % 3;
+    // a ray between two corners may meet what both miss: then the square beyond it is looked at, too, and so on along a
+    // tongue that is thinner than the corners are apart
+    for (bool again = true; again;) {
+        again = false;
+        for (int square = 0; square < FIRE_COARSE * FIRE_COARSE; square++) {
+            const int first = 2 * (square / FIRE_COARSE) * FIRE_ACROSS + 2 * (square % FIRE_COARSE);
+            if (tile->fine[square] || is_even(tile, known, first)) continue;
+            again = tile->fine[square] = true;
+            for (int m = 0; m < 9; m++) {
+                const int k = first + m / 3 * FIRE_ACROSS + m % 3;
                 if (!known[k]) see_corner(preview, x, y, k, tile);
                 known[k] = true;
             }
         }
+    }
 }
 
 /// Adds a ray's light and transmittance, times a weight.
