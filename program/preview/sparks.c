@@ -56,7 +56,10 @@ static void spark_draw(Preview *preview, const Spark *spark, float begin, float 
         float left = 1 - stepf(0.6f, 1, age / spark->life), open = seen[(int)(part * SIGHT_POINTS)];
         Float3 glow = blackbody_glow(preview->blackbody, temperature);
         if (!airborne_project(preview, spark_at(spark, age), at, &depth)) return;
-        float light = EMBER_GAIN * strength * left * open * 0.25f * PI_F * wide * wide / (float)dots;
+
+        // a shutter opens and closes gradually, so that streaks end in points
+        const float lets = 1.5f * (1 - (2 * part - 1) * (2 * part - 1));
+        float light = EMBER_GAIN * strength * left * open * lets * 0.25f * PI_F * wide * wide / (float)dots;
         airborne_dot(preview, at, radius, float3_scale(glow, light), 0);
     }
 }
