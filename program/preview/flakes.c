@@ -75,8 +75,9 @@ static Plate flake_at(const Flake *flake, float age) {
     return plate;
 }
 
-/// Draws the flake as it is at the age; `share` of the exposure, `lit` what an albedo of 1 reflects.
-static void plate_draw(Preview *preview, const Flake *flake, Float3 lit, float age, float share) {
+/// Draws the flake as it is at the age; `share` of the exposure, `lit` what an albedo of 1 reflects. `apart`: pixels from one
+/// such moment to the next.
+static void plate_draw(Preview *preview, const Flake *flake, Float3 lit, float age, float share, float apart) {
     const Plate plate = flake_at(flake, age);
     const Float3 to = float3_sub(preview->camera.eye, plate.centre);
     float at[2], depth;
@@ -84,6 +85,7 @@ static void plate_draw(Preview *preview, const Flake *flake, Float3 lit, float a
     const float pixel = preview->camera.pixel * depth, wide = 2 * flake->size / pixel;
     const int across = (int)clampf(ceilf(1.2f * wide), 3, ACROSS_LIMIT);
     const float spacing = wide / (float)across, blur = camera_blur(&preview->camera, depth);
+    const float radius = maxf(maxf(0.8f * spacing, blur), 1.6f * apart);
 
     // edge on, it is as thick as it is curled
     const float seen = 0.07f + 0.93f * fabsf(float3_dot(plate.normal, to)) / float3_length(to);
@@ -115,7 +117,7 @@ static void plate_draw(Preview *preview, const Flake *flake, Float3 lit, float a
 
             const Float3 point = float3_mad(float3_mad(plate.centre, plate.along, u), plate.across, v);
             if (!airborne_project(preview, point, at, &depth)) return;
-            airborne_dot(preview, at, maxf(0.8f * spacing, blur), float3_scale(light, cover), cover);
+            airborne_dot(preview, at, radius, float3_scale(light, cover), cover);
         }
 }
 
@@ -151,7 +153,8 @@ static void flake_draw(Preview *preview, const Flake *flake, float begin, float 
     for (int k = 0; k < moments; k++) {
         const float part = ((float)k + 0.5f) / (float)moments, age = mixf(begin, end, part);
         const float left = 1 - stepf(0.75f, 1, age / flake->life), open = clear[(int)(part * SIGHT_POINTS)];
-        if (open * left > 0) plate_draw(preview, flake, lit, age, strength * open * left / (float)moments);
+        if (open * left > 0)
+            plate_draw(preview, flake, lit, age, strength * open * left / (float)moments, way / (float)moments);
     }
 }
 
