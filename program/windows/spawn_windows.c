@@ -35,6 +35,7 @@ int spawn_program(char *const *arguments, const char *log, pid_t *child) {
     static wchar_t wide[32768];
     CommandLine line = {.length = 0};
     for (int i = 0; arguments[i]; i++) put_argument(&line, arguments[i]);
+    if (line.length + 1 == sizeof line.text) return E2BIG; // it is cut off
     if (!MultiByteToWideChar(CP_UTF8, 0, line.text, -1, wide, 32768)) return E2BIG;
 
     const int nothing = open("/dev/null", O_RDONLY),
