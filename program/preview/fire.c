@@ -19,6 +19,7 @@
 
 #define FLAME_LOW 5e4f     ///< W/m3, the heat released where the flame is 0
 #define FLAME_HIGH 5e6f    ///< where it is 1
+#define FLAME_THICK 0.01f  ///< m, of burning gas: in wider cells the heat is a mean with what does not burn
 #define FIRE_PASSING 0.75f ///< share of the gas over burning paper that came from flames below
 #define SMOKE_SEEN 0.08f   ///< 1/m
 
@@ -78,19 +79,64 @@ static void raise_cells(Preview *preview) {
             }
 }
 
+// ---- the widest eddies
+
+/// How far eddies move the flame of each cell. The height of a flame's gas is known in its own cells; it is spread over
+/// those around them, as far as eddies reach.
+static void sway_cells(Fire *fire) {
+    const size_t over[3] = {1, (size_t)fire->size[0], (size_t)fire->size[0] * (size_t)fire->size[1]};
+
+    for (size_t i = 0; i < fire->cell_capacity; i++) {
+        const FireCell *cell = &fire->cells[i];
+        const bool burns = cell->flame > 0.5f * FLAME_SEEN; // a fainter one's height is not known well
+        float *sway = fire->sway[i];
+        sway[0] = sway[1] = 0;
+        sway[2] = burns ? maxf(cell->rise / cell->flame, 0) : 0;
+        sway[3] = burns ? 1 : 0; // later 1 more than the number of cells over which it was spread
+    }
+
+    const int reach = 1 + (int)minf(fire->scale * FIRE_SWAY / fire->cell, 1000);
+    for (int far = 1; far <= reach; far++)
+        for (int z = 1; z < fire->size[2] - 1; z++)
+            for (int y = 1; y < fire->size[1] - 1; y++)
+                for (int x = 1; x < fire->size[0] - 1; x++) {
+                    const size_t here = fire_at(fire, x, y, z);
+                    if (fire->sway[here][3] > 0) continue;
+                    float sum = 0, count = 0;
+                    for (int c = 0; c < 3; c++)
+                        for (int side = 0; side < 2; side++) {
+                            const float *near = fire->sway[side ? here + over[c] : here - over[c]];
+                            if (!(near[3] > 0) || near[3] > (float)far) continue;
+                            sum += near[2] + (c < 2 ? 0 : side ? -fire->cell : fire->cell);
+                            count++;
+                        }
+                    if (count <= 0) continue;
+                    fire->sway[here][2] = maxf(sum / count, 0);
+                    fire->sway[here][3] = (float)far + 1;
+                }
+
+    for (int z = 0; z < fire->size[2]; z++)
+        for (int y = 0; y < fire->size[1]; y++)
+            for (int x = 0; x < fire->size[0]; x++) {
+                float *sway = fire->sway[fire_at(fire, x, y, z)];
+                if (!(sway[3] > 0)) continue;
+                const Float3 p = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);
+                fire_sway(fire, p, sway[2], sway);
+            }
+}
+
 // ---- the bricks
 
 static size_t brick_at(const Fire *fire, int x, int y, int z) {
     return (size_t)x + (size_t)fire->bricks[0] * ((size_t)y + (size_t)fire->bricks[1] * (size_t)z);
 }
 
-/// Marks the bricks that come nearer than `reach` cells to the box of cell (x, y, z).
-static void mark_bricks(Fire *fire, int x, int y, int z, float reach, uint8_t what) {
-    const int position[3] = {x, y, z};
+/// Marks the bricks that come nearer than `reach` cells to the box of a cell around a position, in cells.
+static void mark_bricks(Fire *fire, const float position[3], float reach, uint8_t what) {
     int low[3], high[3];
     for (int c = 0; c < 3; c++) {
-        low[c] = (int)(maxf((float)position[c] - 0.5f - reach, 0) / FIRE_BRICK);
-        int last = (int)(((float)position[c] + 0.5f + reach) / FIRE_BRICK);
+        low[c] = (int)(maxf(position[c] - 0.5f - reach, 0) / FIRE_BRICK);
+        int last = (int)((position[c] + 0.5f + reach) / FIRE_BRICK);
         high[c] = last < fire->bricks[c] ? last : fire->bricks[c] - 1;
     }
 
@@ -109,8 +155,10 @@ static void mark_all(Fire *fire) {
     for (int z = 1; z < fire->size[2] - 1; z++)
         for (int y = 1; y < fire->size[1] - 1; y++)
             for (int x = 1; x < fire->size[0] - 1; x++) {
+                const int position[3] = {x, y, z};
+                float seen[3] = {(float)x, (float)y, (float)z};
                 if (fire->cells[fire_at(fire, x, y, z)].smoke > SMOKE_SEEN)
-                    mark_bricks(fire, x, y, z, 1 + 1.5f * fire->scale * SMOKE_WARP / fire->cell, FIRE_SMOKE);
+                    mark_bricks(fire, seen, 1 + 1.5f * fire->scale * SMOKE_WARP / fire->cell, FIRE_SMOKE);
 
                 // the max of the spline in the cell's box: the largest of its Bezier points, which are the means of
                 // the cells that meet in its faces, edges and corners
@@ -127,8 +175,13 @@ static void mark_all(Fire *fire) {
 
                 if (!(max > FLAME_SEEN)) continue;
 
-                mark_bricks(fire, x, y, z, wide, FIRE_FLAME);
-                const int position[3] = {x, y, z};
+                // it is seen where eddies bring it: at q, with q + sway(q) here
+                for (int again = 0; again < 3; again++) {
+                    const float *sway = fire->sway[fire_at(fire, (int)(seen[0] + 0.5f), (int)(seen[1] + 0.5f), z)];
+                    for (int c = 0; c < 2; c++)
+                        seen[c] = clampf((float)position[c] - sway[c] / fire->cell, 0, (float)(fire->size[c] - 1));
+                }
+                mark_bricks(fire, seen, wide + 0.5f, FIRE_FLAME);
                 int low[3], high[3];
                 for (int c = 0; c < 3; c++) {
                     low[c] = position[c] > fine ? position[c] - fine : 0;
@@ -158,6 +211,7 @@ void fire_raise(Preview *preview) {
         cell->rise *= left;
     }
 
+    sway_cells(fire);
     mark_all(fire);
 
     // bounds of the bricks that are not empty
@@ -186,6 +240,7 @@ static void free_cells(const Preview *preview, const Fire *fire) {
     allocator_resize(*allocator, fire->seen, fire->seen ? fire->brick_capacity : 0, 0);
     allocator_resize(*allocator, fire->burns, fire->burns ? fire->cell_capacity : 0, 0);
     allocator_resize(*allocator, fire->source, fire->source ? fire->cell_capacity * sizeof *fire->source : 0, 0);
+    allocator_resize(*allocator, fire->sway, fire->sway ? fire->cell_capacity * sizeof *fire->sway : 0, 0);
     allocator_resize(*allocator, fire->roots, fire->roots ? fire->cell_capacity * sizeof *fire->roots : 0, 0);
 }
 
@@ -203,13 +258,14 @@ static bool make_room(const Preview *preview, Fire *fire) {
         fire->seen = allocator_resize(preview->allocator, NULL, 0, bricks);
         fire->burns = allocator_resize(preview->allocator, NULL, 0, cells);
         fire->source = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->source);
+        fire->sway = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->sway);
         fire->roots = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->roots);
         fire->cell_capacity = cells;
         fire->brick_capacity = bricks;
         free_cells(preview, &old);
     }
 
-    return fire->cells && fire->seen && fire->burns && fire->source && fire->roots;
+    return fire->cells && fire->seen && fire->burns && fire->source && fire->sway && fire->roots;
 }
 
 static SingeResult check_gas(const SingeGas *gas, SingeError *error) {
@@ -270,13 +326,15 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
     memset(fire->cells, 0, fire->cell_capacity * sizeof *fire->cells);
     memset(fire->source, 0, fire->cell_capacity * sizeof *fire->source);
     for (size_t i = 0; i < fire->cell_capacity; i++) fire->source[i][3] = 1;
+    const float thin = maxf(gas->cell / FLAME_THICK, 1);
     size_t from = 0;
 
     for (uint32_t z = 0; z < gas->size[2]; z++)
         for (uint32_t y = 0; y < gas->size[1]; y++)
             for (uint32_t x = 0; x < gas->size[0]; x++, from++) {
                 size_t to = fire_at(fire, (int)x + FIRE_BORDER, (int)y + FIRE_BORDER, (int)z + FIRE_BORDER);
-                float flame = gas->flame[from], smoke = gas->smoke[from], up = maxf(gas->velocity[from][2], 0.1f);
+                float flame = thin * gas->flame[from], smoke = gas->smoke[from],
+                      up = maxf(gas->velocity[from][2], 0.1f);
                 fire->source[to][2] = flame > FLAME_LOW ? minf(logf(flame / FLAME_LOW) / range, 1) : 0;
                 fire->source[to][3] = up;
                 fire->cells[to].smoke = smoke > 0 ? GAS_EXTINCTION * smoke : 0;

@@ -53,6 +53,7 @@ typedef struct Fire {
     uint8_t *seen;      ///< [bricks] FIRE_FLAME and FIRE_SMOKE that eddies may bring there
     float (*source)[4]; ///< [cells] displacement of the gas along x and y as it rises by one; its flame; its rise, m/s
     float (*roots)[2];  ///< [cells] rate at which paper burns there, and its height times that
+    float (*sway)[4];   ///< [cells] m, how far eddies move a flame along x and y; its height above the paper; 0
     uint8_t *burns;     ///< [cells] whether flame may be within reach of the small eddies
     size_t brick_capacity;
     float fading;      ///< m/s: what flames lose as they rise by a cell, times their speed
@@ -71,6 +72,7 @@ typedef struct Fire {
 #define FLAME_END 0.30f        ///< m, max height of a flame
 
 // m, max displacement by eddies
+#define FIRE_SWAY 0.018f
 #define FIRE_WARP_WIDE 0.0055f
 #define FIRE_WARP_FINE 0.0018f
 #define SMOKE_WARP 0.018f
@@ -121,6 +123,9 @@ float fire_share(const Fire *fire, size_t at);
 
 /// How bright a flame around p is now, 1 in the mean: tongues come and go.
 float fire_flicker(const Fire *fire, Float3 p);
+
+/// sway[0] and [1]: how far the widest eddies move a flame along x and y, m, at a height above the paper.
+void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]);
 FirePoint fire_at_point(const Fire *fire, Float3 p);
 
 /// Adds the mean of the flame over a step between two points.

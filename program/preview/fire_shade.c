@@ -4,6 +4,9 @@
 // visible. Finer detail is added: the lookup position is shifted by noise (domain warping), which rises with the gas and
 // grows longer as the gas accelerates, so flames have tongues and streaks and flicker.
 //
+// The widest eddies bend whole tongues and the streaks in them: they move the position first, by an amount that grows from
+// nothing at the paper and is known in each cell (fire.c).
+//
 // A flame over paper is a thin shell of glowing soot around clear, hot vapour. With f the flame (fire.c), r the height
 // above the paper and N, n noises of the width of a tongue and of a streak, its edge lies where
 //
@@ -28,9 +31,12 @@
 // at the base grows longer as it rises, and moves by the same share of its length in every frame.
 #define BASE_SPEED 0.14f ///< m/s
 #define BUOYANCY 3.0f    ///< m/s2
+#define RISE_MOST 0.7f   ///< m/s, which it reaches
 #define EDDY_RATE 8.0f   ///< 1/s, eddies that pass a height
 #define EDDY_WIDE 0.014f ///< m across
 #define EDDY_FINE 0.006f
+#define SWAY_WIDE 0.1f   ///< m, of the eddies that bend whole tongues
+#define SWAY_SLOPE 0.35f ///< m aside per m above the paper
 #define SMOKE_EDDY 0.028f
 #define SMOKE_SPEED 0.5f ///< m/s, at which they rise
 
@@ -87,8 +93,10 @@ static inline Noise noise_at(const Fire *fire, Float3 q) {
 
 /// The number of eddies that have passed the height since the start: grows with time, and by one over each eddy.
 static inline float eddies_passed(float height, float time) {
-    float speed = sqrtf(BASE_SPEED * BASE_SPEED + 2 * BUOYANCY * maxf(height, 0));
-    return EDDY_RATE * (time - (speed - BASE_SPEED) / BUOYANCY) - minf(height, 0) * EDDY_RATE / BASE_SPEED;
+    const float steady = (RISE_MOST * RISE_MOST - BASE_SPEED * BASE_SPEED) / (2 * BUOYANCY); // m
+    float speed = sqrtf(BASE_SPEED * BASE_SPEED + 2 * BUOYANCY * clampf(height, 0, steady));
+    float risen = (speed - BASE_SPEED) / BUOYANCY + maxf(height - steady, 0) / RISE_MOST; // s
+    return EDDY_RATE * (time - risen) - minf(height, 0) * EDDY_RATE / BASE_SPEED;
 }
 
 /// Noise of eddies `width` across, of which `often` pass where one of the largest does; rotated away from the axes.
@@ -129,6 +137,14 @@ float fire_flicker(const Fire *fire, Float3 p) {
     Noise whole = noise_at(fire, float3(0.4f, 0.6f, 6 * fire->moment));
     Noise part = eddies(fire, p, EDDY_RATE * fire->moment / sqrtf(fire->scale), fire->scale * 0.04f, 1);
     return maxf(1 + 0.5f * whole.a + 0.8f * part.c, 0.1f);
+}
+
+void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]) {
+    const float scale = fire->scale, most = minf(SWAY_SLOPE * maxf(height, 0), FIRE_SWAY * scale);
+    const float passed = EDDY_RATE * (fire->moment / sqrtf(scale) - p.z / (scale * RISE_MOST));
+    const Noise n = eddies(fire, p, passed, scale * SWAY_WIDE, 1);
+    sway[0] = most * n.a;
+    sway[1] = most * n.b;
 }
 
 /// The flame at a position, from its cell, the gradient of its share in 1/m, and the noises.
@@ -221,23 +237,23 @@ static FireCell cell_at(const Fire *fire, Float3 p, float *slope) {
 FirePoint fire_at_point(const Fire *fire, Float3 p) {
     FirePoint point = {.depth = FIRE_OUTSIDE};
 
-    // height above the paper: where there is flame its own, linear between the cells, as it only turns the eddies
-    float height = p.z - fire->low.z, f[3];
+    // how far the widest eddies move the flame there, and its height above the paper, linear between the cells
+    float f[3];
     const Float3 g = in_cells(fire, p);
     const float at[3] = {g.x, g.y, g.z};
     size_t base = 0, over[3] = {1, (size_t)fire->size[0], (size_t)fire->size[0] * (size_t)fire->size[1]};
     for (int c = 0; c < 3; c++)
         base += over[c] * (size_t)fire_split(clampf(at[c], 0, (float)fire->size[c] - 1.01f), &f[c]);
-    Four sum = {0, 0, 0, 0};
+    Four sway = {0, 0, 0, 0};
     for (int k = 0; k < 8; k++) {
         size_t corner = base + (k & 1 ? over[0] : 0) + (k & 2 ? over[1] : 0) + (k & 4 ? over[2] : 0);
         float weight = (k & 1 ? f[0] : 1 - f[0]) * (k & 2 ? f[1] : 1 - f[1]) * (k & 4 ? f[2] : 1 - f[2]);
-        sum += four_load(&fire->cells[corner].flame) * weight;
+        sway += four_load(fire->sway[corner]) * weight;
     }
-    if (sum[0] > 1e-4f) height = sum[1] / sum[0];
+    p = float3_add(p, float3(sway[0], sway[1], 0));
 
     // large eddies move it, then small ones
-    const float scale = fire->scale, passed = eddies_passed(height / scale, fire->moment / sqrtf(scale));
+    const float scale = fire->scale, passed = eddies_passed(sway[2] / scale, fire->moment / sqrtf(scale));
     Noise wide = eddies(fire, p, passed, scale * EDDY_WIDE, 1);
     Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), scale * 0.7f * FIRE_WARP_WIDE);
 
