@@ -14,6 +14,7 @@ enum { SPARKS_A_SLOT = 4 }; ///< that a site may throw in a slot
 #define SLOT 0.05f          ///< s
 #define LIFE 1.05f          ///< s, the longest
 #define LAG 0.09f           ///< s
+#define CURL 0.0022f        ///< m
 #define SPARK_COLD 900.0f   ///< K
 #define COOLING 1.7f
 #define SPARK_OPEN (1 / 120.0f) ///< s, the shortest exposure of a spark: eye and film keep it
@@ -32,6 +33,11 @@ static Float3 spark_at(const Spark *spark, float age) {
     Float3 p = float3_mad(float3_mad(spark->from, spark->air, age - lag), spark->launch, lag);
     p.x += aside * (sinf(spark->turn[0] + 7.3f * age) - sinf(spark->turn[0]));
     p.y += aside * (sinf(spark->turn[1] + 6.1f * age) - sinf(spark->turn[1]));
+
+    // crumbs spin, and their way curls
+    const float spin = 38 + 5 * spark->turn[0], curl = CURL * minf(age / LAG, 1);
+    p.x += curl * sinf(spin * age + spark->turn[1]);
+    p.z += curl * cosf(spin * age + spark->turn[0]);
     return p;
 }
 
@@ -59,7 +65,8 @@ static void spark_draw(Preview *preview, const Spark *spark, float begin, float 
 
         // a shutter opens and closes gradually, so that streaks end in points
         const float lets = 1.5f * (1 - (2 * part - 1) * (2 * part - 1));
-        float light = EMBER_GAIN * strength * left * open * lets * 0.25f * PI_F * wide * wide / (float)dots;
+        const float flicker = 1 + 0.6f * sinf(90 * age + 7 * spark->turn[1]);
+        float light = EMBER_GAIN * strength * flicker * left * open * lets * 0.25f * PI_F * wide * wide / (float)dots;
         airborne_dot(preview, at, radius, float3_scale(glow, light), 0);
     }
 }
@@ -94,7 +101,7 @@ void sparks_draw(Preview *preview) {
                 float r[10];
                 for (uint32_t n = 0; n < 10; n++) r[n] = hash_unit(key + 1 + n);
                 const float turn = 2 * PI_F * r[0], up = 0.15f + 0.85f * r[1], out = sqrtf(1 - up * up);
-                const float speed = (burst ? 0.5f : 0.15f) + 0.9f * r[2] * r[2];
+                const float speed = (burst ? 0.5f : 0.15f) + 0.9f * r[2] * r[2] * r[2];
 
                 // the air leans as the eddies of the moment do; large crumbs fall through it
                 const Spark spark = {.from = float3_mad(sites[i].position, float3(r[6] - 0.5f, r[7] - 0.5f, 0), 0.006f),
@@ -102,7 +109,7 @@ void sparks_draw(Preview *preview) {
                                      .air = float3(0.28f * (r[8] - 0.5f), 0.28f * (r[9] - 0.5f),
                                                    updraft * (0.55f + 0.7f * r[9]) - 0.5f * r[5]),
                                      .life = LIFE * (0.3f + 0.7f * r[3]),
-                                     .hot = 1500 + 420 * r[4],
+                                     .hot = 1330 + 560 * r[4] * r[4], // few are bright
                                      .size = 0.00030f + 0.0006f * r[5] * r[5] * r[5],
                                      .wander = 0.02f + 0.10f * r[6],
                                      .turn = {2 * PI_F * r[7], 2 * PI_F * r[8]}};
