@@ -19,7 +19,7 @@
 
 #define FLAME_LOW 5e4f     ///< W/m3, the heat released where the flame is 0
 #define FLAME_HIGH 5e6f    ///< where it is 1
-#define FLAME_THICK 0.01f  ///< m, of burning gas: in wider cells the heat is a mean with what does not burn
+#define FLAME_THICK 0.014f ///< m, of burning gas: in wider cells the heat is a mean with what does not burn
 #define FIRE_PASSING 0.75f ///< share of the gas over burning paper that came from flames below
 #define SMOKE_SEEN 0.08f   ///< 1/m
 
