@@ -50,9 +50,13 @@ int collision_parts(CollisionPlan *plan, const Shell *shell, const StateInput *s
 SingeResult collision_open(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                            float h, bool first, const DynamicsState *dynamics);
 
-/// Pushes points apart that are too near, in a substep of h seconds that began at `predicted` less h times the
-/// velocities.
-void repulsion_apply(CollisionPlan *plan, const Shell *shell, Pool *pool, const float (*predicted)[4], float h,
+/// In how many turns a substep pushes points apart: 1, or 2 to 4 where sheets crowd. What a turn has strained is to be
+/// mended before the next.
+int repulsion_turns(const CollisionPlan *plan);
+
+/// A turn: pushes points apart that are too near, in a substep of h seconds that began at `predicted` less h times the
+/// velocities. False: there were none.
+bool repulsion_apply(CollisionPlan *plan, const Shell *shell, Pool *pool, const float (*predicted)[4], float h,
                      DynamicsState *dynamics);
 
 /// Closes the step: no cell of the drawn mesh has passed through another since collision_open.

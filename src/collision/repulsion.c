@@ -10,8 +10,9 @@
 // (Coulomb), as in contact with colliders. A virtual centre is replaced by its four corners, a quarter each. Points
 // nearer at rest than twice the thickness (the edges of a tear) are kept apart by four times CCD's gap only.
 //
-// One pass carries a push from a layer to the next. In a crowd, where layers lie on many others, there are more passes, in
-// turn forwards and backwards: what they leave is work for CCD, which costs many times more. A crowd's pairs are sorted into
+// One pass carries a push from a layer to the next. In a crowd, where layers lie on many others, there are several turns of
+// two passes, forwards and backwards: what they leave is work for CCD, which costs many times more. Between turns the
+// dynamics shorten the sides that pushes have stretched. A crowd's pairs are sorted into
 // stripes across its longest axis, each wider than twice what a pair's corners reach from its first corner. So stripes
 // that are not beside each other share no vertex: threads take the even ones, then the odd ones. Stripes follow from the
 // positions alone, not from the number of threads.
@@ -22,9 +23,9 @@
 #include <math.h>
 #include <string.h>
 
-/// Repulsions per cell from which on there are more passes, and the most passes. Folds and heaps have up to .8, ten layers
+/// Repulsions per cell from which on there are more turns, and the most turns. Folds and heaps have up to .8, ten layers
 /// 2 to 5.
-enum { CROWD_FROM = 1, CROWD_PASSES = 8 };
+enum { CROWD_FROM = 1, CROWD_TURNS = 4 };
 
 typedef struct Push {
     CollisionPlan *plan;
@@ -161,25 +162,33 @@ void repulsion_sort(CollisionPlan *plan, const Shell *shell, const float (*x)[4]
     }
 }
 
-void repulsion_apply(CollisionPlan *plan, const Shell *shell, Pool *pool, const float (*predicted)[4], float h,
+int repulsion_turns(const CollisionPlan *plan) {
+    const uint64_t count = plan->repulsion_count, cells = plan->cell_count;
+    if (count <= CROWD_FROM * cells) return 1;
+    const uint64_t turns = 1 + count / cells;
+    return turns < CROWD_TURNS ? (int)turns : CROWD_TURNS;
+}
+
+bool repulsion_apply(CollisionPlan *plan, const Shell *shell, Pool *pool, const float (*predicted)[4], float h,
                      DynamicsState *dynamics) {
     const double start = clock_seconds();
-    const uint32_t count = plan->repulsion_count, cells = plan->cell_count;
+    const uint32_t count = plan->repulsion_count;
     Push push = {plan, shell, predicted, h, dynamics, 0};
-    uint64_t passes = 1;
-    if (count > CROWD_FROM * (uint64_t)cells) passes = 1 + 2 * (uint64_t)count / cells;
-    if (passes > CROWD_PASSES) passes = CROWD_PASSES;
-    const uint64_t at_once = plan->stripe_count > 0 ? 2 : 1; // while a stripe's vertices are in the processor's cache
-    for (uint64_t pass = 0; pass < passes; pass += at_once) {
-        uint64_t pushed = 0;
-        for (push.odd = 0; push.odd < 2 && plan->stripe_count > 0; push.odd++)
-            pool_for(pool, (int)(plan->stripe_count + 1 - (uint32_t)push.odd) / 2, 1, push_stripes, &push);
-        for (uint32_t s = 0; s < plan->stripe_count; s++) pushed += plan->stripe_pushed[s];
-        for (uint32_t k = 0; k < count && plan->stripe_count == 0; k++)
-            pushed += repulsion_push(&push, &plan->repulsions[pass & 1 ? count - 1 - k : k]);
-        plan->counters.repulsions += pushed;
-        if (pushed == 0) break;
-    }
+    uint64_t pushed = 0;
 
+    // both passes over a stripe while its vertices are in the processor's cache
+    for (push.odd = 0; push.odd < 2 && plan->stripe_count > 0; push.odd++)
+        pool_for(pool, (int)(plan->stripe_count + 1 - (uint32_t)push.odd) / 2, 1, push_stripes, &push);
+    for (uint32_t s = 0; s < plan->stripe_count; s++) pushed += plan->stripe_pushed[s];
+
+    // or all in turn, back again in a crowd
+    const bool crowd = count > CROWD_FROM * (uint64_t)plan->cell_count;
+    for (uint32_t k = 0; k < count && plan->stripe_count == 0; k++)
+        pushed += repulsion_push(&push, &plan->repulsions[k]);
+    for (uint32_t k = count; crowd && plan->stripe_count == 0 && k-- > 0;)
+        pushed += repulsion_push(&push, &plan->repulsions[k]);
+
+    plan->counters.repulsions += pushed;
     plan->counters.push_seconds += clock_seconds() - start;
+    return pushed > 0;
 }

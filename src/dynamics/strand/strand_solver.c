@@ -264,7 +264,15 @@ static SingeResult strands_project(DynamicsPlan *plan, const Substep *substep) {
             substep->counters->seconds += clock_seconds() - start;
         }
     height_project(plan, shell, ablate, pool, dynamics);
-    if (plan->collision) repulsion_apply(plan->collision, shell, pool, (const float(*)[4])plan->predicted, h, dynamics);
+
+    // what contact has strained in a turn, sides give to the layers behind before the next
+    const float(*predicted)[4] = (const float(*)[4])plan->predicted;
+    const int turns = plan->collision ? repulsion_turns(plan->collision) : 0;
+    for (int turn = 0; turn < turns; turn++) {
+        if (turn > 0) strand_project(plan, SINGE_BLUE, pool, h, dynamics, substep->counters);
+        if (!repulsion_apply(plan->collision, shell, pool, predicted, h, dynamics)) break;
+    }
+
     contact_centroids(plan, shell, ablate, substep->collider_count, pool, h, dynamics);
     return SINGE_OK;
 }
