@@ -13,7 +13,7 @@ useful=(ffmpeg python3-numpy python3-openvdb valgrind locales libsdl2-dev)
 only_list=false
 for argument in "$@"; do
     case $argument in
-    --check) needed+=(clang libclang-rt-dev) useful+=(assimp-testmodels 'clang-format-14|clang-format') ;; # for fuzzing; models to burn
+    --check) needed+=(clang libclang-rt-dev) useful+=(assimp-testmodels 'clang-format-14|clang-format' mingw-w64-x86-64-dev) ;; # for fuzzing; models to burn; Windows
     --list) only_list=true ;;
     *) echo "usage: setup.sh [--check] [--list]" >&2; exit 2 ;;
     esac

@@ -177,7 +177,7 @@ static void draw_all(Preview *preview, void (*draw)(Preview *, Block *)) {
 }
 
 SingeResult preview_draw(Preview *preview, const SingeSurface *surface, double time, uint8_t *rgb, SingeError *error) {
-    return preview_draw_layers(preview, surface, time, rgb, &(PreviewLayers){NULL}, error);
+    return preview_draw_layers(preview, surface, time, rgb, &(PreviewLayers){.glow = NULL}, error);
 }
 
 SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, double time, uint8_t *rgb,
