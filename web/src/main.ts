@@ -201,6 +201,7 @@ function hear(message: FromWorker): void {
     busy = false;
     motion = message.steps * TIME_STEP;
     sound?.fire.hear(message.burning, message.tears, motion);
+    made += message.steps;
     if (message.steps) costOfStep += 0.2 * (message.ms / message.steps - costOfStep);
     if (!stepping) {
         renderer.show(message);
@@ -240,10 +241,11 @@ function tick(now: number): void {
     if (moved || stale) draw();
 }
 
-let slow = 0, stale = false;
+let slow = 0, stale = false, drawings = 0, made = 0;
 function draw(): void {
     if (!renderer) return;
     stale = false;
+    drawings++;
     const at = applying && tool === "match" ? target() : keyHeld && tool === "match" ? keyAt : frame?.match ?? null;
     renderer.setMatch(at);
     const before = performance.now();
@@ -719,6 +721,14 @@ Object.assign(globalThis, { page: {
         new FireSound(context).hear(burning, 0, 1);
         const heard = (await context.startRendering()).getChannelData(0);
         return Math.sqrt(heard.reduce((sum, x) => sum + x * x, 0) / heard.length);
+    },
+    /** Lets the clock run for some seconds of the wall; how often the page was drawn then, and how many steps were made. */
+    async run(seconds: number): Promise<{ drawings: number; steps: number }> {
+        const [drawnBefore, madeBefore] = [drawings, made];
+        pause(false);
+        await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+        pause(true);
+        return { drawings: drawings - drawnBefore, steps: made - madeBefore };
     },
     /** ms to draw what is seen: of the page's thread, and until the card has done it. */
     drawn(times: number): [number, number] {
