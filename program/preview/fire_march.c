@@ -8,6 +8,7 @@
 #include <string.h>
 
 #define FIRE_SHORT 0.35f  ///< step near an edge, relative to the usual one: longer ones miss thin sheets
+#define FIRE_NEAR 4.0f    ///< short steps from an edge, in usual ones: with 2, arcs are seen inside of tongues
 #define SMOKE_STEP 0.010f ///< m, distance at most between the places of a ray where its smoke is looked up
 #define FIRE_EVEN 0.020f  ///< difference of light, as l / (1 + l), that may be interpolated
 
@@ -85,7 +86,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
         known = true;
         bool seek = dark && flame;
         const float away = here.depth > FIRE_OUTSIDE ? 2 * fine : 3 * fine;
-        float length = dark ? away : fabsf(here.depth) < 2 * fine ? FIRE_SHORT * fine : fine;
+        float length = dark ? away : fabsf(here.depth) < FIRE_NEAR * fine ? FIRE_SHORT * fine : fine;
         float step = maxf(flame ? length : fire->cell, min);
         float next = maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step);
         step = next - t;
