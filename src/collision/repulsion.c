@@ -12,10 +12,10 @@
 //
 // One pass carries a push from a layer to the next. In a crowd, where layers lie on many others, there are several turns of
 // two passes, forwards and backwards: what they leave is work for CCD, which costs many times more. Between turns the
-// dynamics shorten the sides that pushes have stretched. A crowd's pairs are sorted into
-// stripes across its longest axis, each wider than twice what a pair's corners reach from its first corner. So stripes
-// that are not beside each other share no vertex: threads take the even ones, then the odd ones. Stripes follow from the
-// positions alone, not from the number of threads.
+// dynamics shorten the sides that pushes have stretched. A crowd's pairs are sorted into stripes across its longest axis,
+// each wider than twice what a pair's corners reach from its first corner. So stripes that are not beside each other share
+// no vertex: threads take the even ones, then the odd ones. Stripes follow from the positions alone, not from the number of
+// threads.
 #include "common/clock.h"
 #include "common/real.h"
 #include "collision/collision_plan.h"
