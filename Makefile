@@ -127,7 +127,7 @@ web-package:
 web-serve: web
 	cd web && node serve.mjs
 
-# tests the page in Chromium and measures its speed; views a burn by `singe view` in Chromium and Firefox, and in a notebook
+# tests the page in Chromium and measures its speed; views a burn by `singe view` in Chromium and Firefox, and in JupyterLab
 check-web: web
 	cmake --preset release
 	cmake --build --preset release --target singe_program singe_python
@@ -140,6 +140,8 @@ check-web: web
 	cd web && SINGE_PROGRAM=$(CURDIR)/build/singe SINGE_USD=$(CURDIR)/build/usd/bin/python npm test
 	cd web && SINGE_PROGRAM=../build/singe SINGE_LIBRARY=$(CURDIR)/build/python/singe/libsinge.so \
 	    PYTHONPATH=../bindings/python node tests/notebook.mjs ../build/notebook/bin/python ../build/notebook/run
+	cd web && SINGE_PROGRAM=$(CURDIR)/build/singe SINGE_LIBRARY=$(CURDIR)/build/python/singe/libsinge.so \
+	    PYTHONPATH=$(CURDIR)/bindings/python node tests/jupyterlab.mjs ../build/notebook/bin/python ../build/notebook/run
 
 # the page's size, and its speed in Chromium
 web-speed: web

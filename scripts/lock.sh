@@ -33,7 +33,7 @@ lock zig 3.11 ziglang
 lock wasmtime 3.11 wasmtime
 lock gate 3.11 compas==2.15.1 pymeshfix==0.18.1 pyvista==0.49.1 --no-deps # the versions of tests/gate/gate.py
 lock rerun 3.11 rerun-sdk
-lock notebook 3.11 anywidget numpy
+lock notebook 3.11 anywidget jupyterlab numpy
 lock openjd 3.11 openjd-cli
 lock opencue 3.11 opencue-pyoutline packaging # which its module of the server imports
 lock site 3.11 sphinx myst-parser breathe furo sphinx-copybutton numpy
