@@ -267,7 +267,9 @@ static SingeResult quenching(const Lab *lab, const SingeMaterialDef *material, d
         if ((result = lab_build(lab, &grid, &sim, error))) return result;
 
         result = singe_sim_add_source(sim, &heater, &id);
-        while (!result && singe_sim_stats(sim).burnt_fraction < 0.1) result = lab_steps(sim, 1, error);
+        const int patience = (int)(60 / grid.time_step); // a sheet that does not ignite must not hang the page
+        for (int step = 0; !result && step < patience && singe_sim_stats(sim).burnt_fraction < 0.1; step++)
+            result = lab_steps(sim, 1, error);
         if (!result) result = singe_sim_remove_source(sim, id);
         if (!result) result = singe_sim_add_source(sim, &rain, &id);
 

@@ -333,8 +333,8 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
         for (uint32_t y = 0; y < gas->size[1]; y++)
             for (uint32_t x = 0; x < gas->size[0]; x++, from++) {
                 size_t to = fire_at(fire, (int)x + FIRE_BORDER, (int)y + FIRE_BORDER, (int)z + FIRE_BORDER);
-                float flame = thin * gas->flame[from], smoke = gas->smoke[from],
-                      up = maxf(gas->velocity[from][2], 0.1f);
+                const float flame = thin * gas->flame[from], smoke = gas->smoke[from];
+                const float up = maxf(gas->velocity[from][2], 0.1f);
                 fire->source[to][2] = flame > FLAME_LOW ? minf(logf(flame / FLAME_LOW) / range, 1) : 0;
                 fire->source[to][3] = up;
                 fire->cells[to].smoke = smoke > 0 ? GAS_EXTINCTION * smoke : 0;

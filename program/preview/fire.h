@@ -53,8 +53,9 @@ typedef struct Fire {
     uint8_t *seen;      ///< [bricks] FIRE_FLAME and FIRE_SMOKE that eddies may bring there
     float (*source)[4]; ///< [cells] displacement of the gas along x and y as it rises by one; its flame; its rise, m/s
     float (*roots)[2];  ///< [cells] rate at which paper burns there, and its height times that
-    float (*sway)[4];   ///< [cells] m, how far eddies move a flame along x and y; its height above the paper; 0
-    uint8_t *burns;     ///< [cells] whether flame may be within reach of the small eddies
+    float (*sway)[4]; ///< [cells] m, how far eddies move a flame along x and y; its height above the paper; 1 where it
+                      ///< burns, one more for each cell from there, 0 beyond
+    uint8_t *burns;   ///< [cells] whether flame may be within reach of the small eddies
     size_t brick_capacity;
     float fading;      ///< m/s: what flames lose as they rise by a cell, times their speed
     float scale;       ///< of flames, 1 where cells are small: what burns over a wide cell has larger tongues

@@ -12,7 +12,7 @@ ld -V | grep -q i386pep || skip "linker for Windows"
 
 mkdir -p "$folder/libraries"
 cd "$folder"
-place=$(dirname "$(find /usr/include -name jconfig.h)")
+place=$(dirname "$(find /usr/include -name jconfig.h -print -quit)")
 cp /usr/include/{libpng16/png,libpng16/pngconf,jpeglib,jmorecfg,jerror,libfyaml}.h /usr/include/pnglibconf.h "$place/jconfig.h" libraries
 for name in libpng libjpeg libfyaml; do
     printf 'Name: %s\nDescription: %s\nVersion: 1\nCflags: -I%s\nLibs:\n' $name $name "$PWD/libraries" > libraries/$name.pc
