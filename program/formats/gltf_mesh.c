@@ -19,8 +19,16 @@ typedef struct Instance {
     Transform at;
 } Instance;
 
+/// The nodes of a list that are not yet walked. Hostile files nest them deep, and stacks are small: none is used.
+typedef struct Level {
+    int64_t at;    ///< the next value
+    uint32_t left; ///< how many there are
+    Transform parent;
+} Level;
+
 typedef struct Walk {
     Gltf *gltf;
+    Level *levels; ///< [NODE_DEPTH + 1]
     Instance *instances;
     size_t count, capacity;
     uint8_t *seen; ///< [node_count]
@@ -84,10 +92,21 @@ static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at
 
 // ---- the walk
 
-static SingeResult walk_nodes(Walk *walk, int64_t list, const Transform *parent, int depth) {
+static SingeResult walk_nodes(Walk *walk, int64_t roots) {
     const Gltf *gltf = walk->gltf;
-    uint32_t count = json_items(&gltf->json, list);
-    for (int64_t i = 0, at = list + 1; i < count; i++, at = gltf->json.values[at].after) {
+    walk->levels[0] = (Level){roots + 1, json_items(&gltf->json, roots), {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
+
+    for (uint32_t depth = 1; depth > 0;) {
+        Level *level = &walk->levels[depth - 1];
+        if (level->left == 0) {
+            depth--;
+            continue;
+        }
+
+        const int64_t at = level->at;
+        level->at = gltf->json.values[at].after;
+        level->left--;
+
         uint64_t number;
         if (!json_count(&gltf->json, at, &number) || number >= gltf->node_count)
             return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "byte %u of its JSON: there are only %u nodes",
@@ -106,7 +125,7 @@ static SingeResult walk_nodes(Walk *walk, int64_t list, const Transform *parent,
 
         Transform own, here;
         TRY(node_transform(gltf, node, &own));
-        here = chain(parent, &own);
+        here = chain(&level->parent, &own);
         TRY(gltf_index(gltf, object, "mesh", gltf->mesh_count, &mesh));
 
         if (mesh >= 0) {
@@ -137,7 +156,8 @@ static SingeResult walk_nodes(Walk *walk, int64_t list, const Transform *parent,
             walk->instances[walk->count++] = (Instance){(uint32_t)mesh, here};
         }
 
-        TRY(walk_nodes(walk, json_member(&gltf->json, object, "children"), &here, depth + 1));
+        const int64_t children = json_member(&gltf->json, object, "children");
+        walk->levels[depth++] = (Level){children + 1, json_items(&gltf->json, children), here};
     }
 
     return SINGE_OK;
@@ -292,18 +312,20 @@ static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
 
 SingeResult gltf_make(Gltf *gltf, uint64_t max, Polygons *polygons) {
     Walk walk = {.gltf = gltf, .max = max};
-    static const Transform unit = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     int64_t scenes = json_member(&gltf->json, 0, "scenes"), wanted, at = scenes + 1;
 
     TRY(gltf_index(gltf, 0, "scene", json_items(&gltf->json, scenes), &wanted));
     if (!json_items(&gltf->json, scenes)) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "it has no scene");
     for (; wanted > 0; wanted--) at = gltf->json.values[at].after;
+    walk.levels = store_new(gltf->allocator, NODE_DEPTH + 1, sizeof *walk.levels);
     walk.seen = store_new(gltf->allocator, gltf->node_count, 1);
-    if (!walk.seen) return refuse_memory(gltf->error, "gltf", gltf->name);
-    memset(walk.seen, 0, gltf->node_count);
 
-    SingeResult result = walk_nodes(&walk, json_member(&gltf->json, at, "nodes"), &unit, 1);
+    const bool room = walk.levels && walk.seen;
+    if (room) memset(walk.seen, 0, gltf->node_count);
+    SingeResult result = room ? walk_nodes(&walk, json_member(&gltf->json, at, "nodes"))
+                              : refuse_memory(gltf->error, "gltf", gltf->name);
     if (!result) result = make_polygons(&walk, polygons);
+    store_free(gltf->allocator, walk.levels, NODE_DEPTH + 1, sizeof *walk.levels);
     store_free(gltf->allocator, walk.seen, gltf->node_count, 1);
     store_free(gltf->allocator, walk.instances, walk.capacity, sizeof *walk.instances);
     return result;

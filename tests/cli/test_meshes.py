@@ -14,6 +14,7 @@ OWN = (".obj", ".ply", ".stl", ".gltf", ".glb")
 SANITIZED = os.environ["SINGE_SANITIZED"] == "1"
 SECONDS = 30
 STACK = 256 << 10  # the least with which a command runs (test_failure.py); sanitizers need more
+ENVIRONMENT = 32 << 10  # bytes of a long one: it lies on the stack
 MEGABYTES = 4000 if SANITIZED else 750
 
 
@@ -33,7 +34,7 @@ class Meshes(Case):
         with open(self.path("printed"), "w+") as printed:
             begin = time.monotonic()
             singe = subprocess.Popen([SINGE, "check", scene], stdout=printed, stderr=printed,
-                                     preexec_fn=limit_stack)
+                                     preexec_fn=limit_stack, env={**os.environ, "LONG": ENVIRONMENT * "x"})
             _, status, usage = os.wait4(singe.pid, 0)  # children's memory, too
             singe.returncode = os.waitstatus_to_exitcode(status)
             seconds = time.monotonic() - begin
