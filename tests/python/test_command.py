@@ -166,14 +166,14 @@ class Command(Case):
             if done >= 2:
                 raise Enough
 
-        scene = self.scene(SCENE.replace("frames: 6", "frames: 40").replace("steps: 2", "steps: 20"))
+        scene = self.scene(SCENE.replace("frames: 6", "frames: 10000").replace("steps: 2", "steps: 20"))
         with self.assertRaises(Enough):
             singe.run(scene, self.dir / "out", preview=False, progress=stop)
         self.assertEqual(singe.read_cache(self.dir / "out").record["result"], "interrupted")
         cut = len(singe.read_cache(self.dir / "out"))
-        self.assertTrue(2 <= cut < 40)
-        cache = singe.run(scene, self.dir / "out", frames=40, preview=False, resume=True)
-        whole = singe.run(scene, self.dir / "whole", preview=False)
+        self.assertTrue(2 <= cut < 10000)
+        cache = singe.run(scene, self.dir / "out", frames=cut + 8, preview=False, resume=True)
+        whole = singe.run(scene, self.dir / "whole", frames=cut + 8, preview=False)
         self.assertEqual([frame.path.read_bytes() for frame in cache], [frame.path.read_bytes() for frame in whole])
 
     def test_ctrl_c_reaches_the_command_once(self):
