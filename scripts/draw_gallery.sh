@@ -15,6 +15,8 @@ order=(note letter macro letter-hanging hot-sphere page-hot newspaper curtain st
 [ $# -gt 0 ] && order=("$@")
 mkdir -p docs/gallery
 jpeg() { ffmpeg -loglevel error -y -i "$1" -qscale:v 3 -update 1 "$2"; }
+# half as large again as the scene's picture
+large() { ffprobe -v error -show_entries stream=width,height -of csv=p=0 "$1" | awk -F, '{ print int(1.5 * $1) "," int(1.5 * $2) }'; }
 for name in "${order[@]}"; do
     frame=${best[$name]} out=out/gallery/$name
     begun=$EPOCHREALTIME
@@ -23,7 +25,9 @@ for name in "${order[@]}"; do
     build/singe render "$out" --frames "$((10#$frame))" --quiet
     drawn=$EPOCHREALTIME
     build/singe render "$out" --sheet 4x2 --only-sheet --quiet
-    jpeg "$out/frames/$name.$frame.png" "docs/gallery/$name.jpg"
+    build/singe render "$out" --frames "$((10#$frame))" --quiet -o "$out/large" \
+        --set "preview.size=[$(large "$out/frames/$name.$frame.png")]" --set preview.samples=64
+    jpeg "$out/large/frames/$name.$frame.png" "docs/gallery/$name.jpg"
     ffmpeg -loglevel error -y -i "$out/sheet.png" -qscale:v 7 -update 1 "docs/gallery/$name-sheet.jpg"
     build/singe measure "$out" --frames "${measured[$name]}" > "docs/gallery/$name.txt"
     awk -v name="$name" -v a="$begun" -v b="$burnt" -v c="$drawn" -v frames="$(ls "$out/ply" | wc -l)" -v n="$(nproc)" \
