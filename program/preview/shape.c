@@ -117,10 +117,13 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
 
 // ---- appearance
 
-// Balls, boxes, capsules and solids: matt when cold; hot, they glow like metal, with cooler and darker scale, and a
-// slightly dimmer limb because rough oxide emits less at grazing angles.
+// Balls, boxes, capsules and solids: matt when cold; hot, they glow like metal with patches of darker scale. Air that
+// rises along them cools them most below, and a limb shows only the scale's peaks, which are cooler. A glow is wide, so
+// a film that is set for what it lights would show it as a white disc: it is drawn as bright as lets its colours differ.
 
-#define SHAPE_GAIN 1.1f
+#define SHAPE_GAIN 0.38f
+#define SHAPE_LIMB 190.0f ///< K, by which the limb is cooler than the middle
+#define SHAPE_BELOW 45.0f ///< K, by which what faces down is cooler than the middle
 
 void shape_shade(const Preview *preview, const PreviewShape *shape, float moment, Point *point) {
     point->albedo = float3_load(shape->colour);
@@ -136,10 +139,12 @@ void shape_shade(const Preview *preview, const PreviewShape *shape, float moment
     Float3 p = float3_scale(local, 3.5f / maxf(size, 1e-6f));
     float scale =
         0.6f * noise3(p, 41) + 0.3f * noise3(float3_scale(p, 2.7f), 42) + 0.2f * noise3(float3_scale(p, 7.1f), 43);
-    float facing = clampf(float3_dot(point->normal, point->view), 0, 1), limb = 0.52f + 0.48f * sqrtf(facing);
-    float temperature = shape->temperature * (1 + 0.04f * scale) - 90 * (1 - facing) * (1 - facing);
+    const float facing = clampf(float3_dot(point->normal, point->view), 0, 1), aside = 1 - facing;
+    const float temperature = shape->temperature * (1 + 0.025f * scale) - SHAPE_LIMB * aside * sqrtf(aside) +
+                              SHAPE_BELOW * minf(point->normal.z, 0.5f);
+    const float limb = 0.25f + 0.75f * facing;
     Float3 glow = blackbody_glow(preview->blackbody, temperature);
-    point->glow = float3_scale(glow, SHAPE_GAIN * limb * (1 + 0.25f * scale));
+    point->glow = float3_scale(glow, SHAPE_GAIN * limb * (1 + 0.3f * scale));
     point->albedo = float3_scale(point->albedo, 0.45f);
     point->mirror = 0.15f;
 }

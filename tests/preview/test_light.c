@@ -117,7 +117,7 @@ TEST(a_glossy_ground_mirrors_embers) {
     static float beauty[W * H][3];
     PreviewDef def = at_night();
     PreviewShape ball = {
-        .kind = SINGE_COLLIDER_SPHERE, .position = {0, 0, 0.08f}, .radius = 0.025f, .temperature = 1250};
+        .kind = SINGE_COLLIDER_SPHERE, .position = {0, 0, 0.08f}, .radius = 0.025f, .temperature = 1450};
     SingeSurface nothing = {0};
     float seen[3];
     def.shapes = &ball, def.shape_count = 1;

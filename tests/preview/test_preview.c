@@ -204,14 +204,14 @@ TEST(a_hot_ball_glows) {
                          .position = {0, 0, 0.03f},
                          .radius = 0.025f,
                          .colour = {0.2f, 0.2f, 0.2f},
-                         .temperature = 1250};
+                         .temperature = 1350};
 
     def.shapes = &ball, def.shape_count = 1;
     draw(&def, &nothing, 0, hot);
     ball.temperature = 600;
     draw(&def, &nothing, 0, cold);
     const uint8_t *p = pixel(hot, W / 2, H / 2);
-    print_message("a ball of 1250 K: %d %d %d\n", p[0], p[1], p[2]);
+    print_message("a ball of 1350 K: %d %d %d\n", p[0], p[1], p[2]);
     assert_true(p[0] > 230 && p[0] > p[1] + 15 && p[1] > p[2] + 40); // orange to yellow
     // its light reaches the table beside it
     assert_true(pixel(hot, W / 2 + 9, H / 2)[0] > pixel(cold, W / 2 + 9, H / 2)[0] + 8);
@@ -219,10 +219,35 @@ TEST(a_hot_ball_glows) {
     // with no table to light, only the halo is left
     def.ground_height = -INFINITY;
     draw(&def, &nothing, 0, cold);
-    ball.temperature = 1250;
+    ball.temperature = 1350;
     draw(&def, &nothing, 0, hot);
     assert_true(pixel(hot, W / 2 + 7, H / 2)[0] > pixel(cold, W / 2 + 7, H / 2)[0] + 5);
     assert_true(abs(pixel(hot, 3, 3)[0] - pixel(cold, 3, 3)[0]) <= 2);
+}
+
+/// In the dark, exposed for what it lights, a hot ball is no white disc: its limb is darker than its middle, and what faces
+/// down is darker than what faces up.
+TEST(a_hot_ball_is_graded) {
+    static uint8_t rgb[BYTES];
+    SingeSurface nothing = {0};
+    PreviewDef def = small();
+    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .radius = 0.1f, .temperature = 1300};
+    def.shapes = &ball, def.shape_count = 1;
+    def.camera = (PreviewCamera){.eye = {0, -0.6f, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}, .fov = 0.5f};
+    def.ground_height = -INFINITY;
+    def.exposure = 1.6f;
+    memset(def.sun_colour, 0, sizeof def.sun_colour);
+    draw(&def, &nothing, 0, rgb);
+
+    int white = 0, sum[3] = {0, 0, 0}; // green around the middle, above and below
+    for (int i = 0; i < W * H; i++) white += rgb[3 * i + 2] > 200;
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 25; i++)
+            sum[k] += pixel(rgb, W / 2 - 2 + i % 5, H / 2 + (k == 1 ? -21 : k == 2 ? 17 : -2) + i / 5)[1];
+    print_message("%d white; green %d in the middle, %d above, %d below\n", white, sum[0] / 25, sum[1] / 25,
+                  sum[2] / 25);
+    assert_true(white < 10); // 1285 where all of it was as bright as the film shows
+    assert_true(sum[0] > sum[1] + 25 * 20 && sum[1] > sum[2] + 25 * 10);
 }
 
 /// A sheet over the table darkens it, softly.
