@@ -127,7 +127,9 @@ float fire_flicker(const Fire *fire, Float3 p);
 
 /// sway[0] and [1]: how far the widest eddies move a flame along x and y, m, at a height above the paper.
 void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]);
-FirePoint fire_at_point(const Fire *fire, Float3 p);
+
+/// blur: m, over which the picture resolves no edge.
+FirePoint fire_at_point(const Fire *fire, Float3 p, float blur);
 
 /// Adds the mean of the flame over a step between two points.
 void fire_between(const FirePoint *a, const FirePoint *b, float step, Matter *matter);

@@ -10,6 +10,7 @@
 #define FIRE_SHORT 0.35f  ///< step near an edge, relative to the usual one: longer ones miss thin sheets
 #define FIRE_NEAR 4.0f    ///< short steps from an edge, in usual ones: with 2, arcs are seen inside of tongues
 #define SMOKE_STEP 0.010f ///< m, distance at most between the places of a ray where its smoke is looked up
+#define FIRE_SOFT 6.0f    ///< pixels, over which the edges of flames begin: rays are two apart, depths rough
 #define FIRE_EVEN 0.020f  ///< difference of light, as l / (1 + l), that may be interpolated
 
 /// Smoke has no detail as fine as a flame's steps: it is looked up at multiples of a length, and linear between them.
@@ -57,6 +58,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
     bool dark = true;   // long steps until there is flame, longer far from it, and short ones at its edges
     bool known = false; // whether `here` is the point at t
     FirePoint here;
+    const float blur = FIRE_SOFT * preview->camera.pixel;
     SmokeLine line = {.length = maxf(minf(fire->cell, SMOKE_STEP), min), .first = -2};
 
     while (t < far && clear > 0.02f) {
@@ -82,7 +84,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
         // steps begin at multiples of their length: neighbouring rays then look at neighbouring positions
         const FirePoint outside = {.depth = FIRE_OUTSIDE};
         const bool flame = what & FIRE_FLAME;
-        if (!known) here = flame ? fire_at_point(fire, float3_mad(eye, d, t)) : outside;
+        if (!known) here = flame ? fire_at_point(fire, float3_mad(eye, d, t), blur * t) : outside;
         known = true;
         bool seek = dark && flame;
         const float away = here.depth > FIRE_OUTSIDE ? 2 * fine : 3 * fine;
@@ -90,7 +92,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
         float step = maxf(flame ? length : fire->cell, min);
         float next = maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step);
         step = next - t;
-        const FirePoint there = flame ? fire_at_point(fire, float3_mad(eye, d, next)) : outside;
+        const FirePoint there = flame ? fire_at_point(fire, float3_mad(eye, d, next), blur * next) : outside;
         dark = there.depth < -2 * fine;
         if (seek && !dark) continue; // the same distance again in short steps
         Matter m = {{0, 0, 0}, 0};

@@ -17,13 +17,14 @@
 // are as tall as their fire is strong. The depth inside of the edge is d = e/|grad e|, in metres, whatever the size of
 // the cells. Light comes from the shell's profile
 //
-//     P(d) = 0 outside, d/w in the first w = SHELL_RISE, then fill + (1 - fill) exp(-(d - w)/SHELL)
+//     P(d) = 0 outside, d/w in the first w, then fill + (1 - fill) exp(-(d - w)/SHELL)
 //
 // and a step of a ray takes its mean between the depths of its ends, by the integral of P: the shell is thinner than a
-// step. It begins at the paper, is faint and blue in the first millimetres, where there is no soot yet, yellow above,
-// orange at its tips. Soot glows as a black body between FLAME_COOL and FLAME_HOT; it hides almost nothing behind it. It
-// is the hotter the more heat is released around it (core) and the further it is from the edge (strong): so a flame of one
-// or two sheets has a pale core, too.
+// step. w is SHELL_RISE, or more where rays are further apart, as edges would have steps; the light of a flame stays. It
+// begins at the paper, is faint and blue in the first millimetres, where there is no soot yet, yellow above, orange at its
+// tips. Soot glows as a black body between FLAME_COOL and FLAME_HOT, and hides as much as it glows. It is the hotter the
+// more heat is released around it (core) and the further it is from the edge (strong): so a flame of one or two sheets has
+// a pale core, too.
 
 #include "preview/internal.h"
 
@@ -43,19 +44,19 @@
 #define FLAME_COOL 1400.0f ///< K
 #define FLAME_HOT 2050.0f
 #define FLAME_DIM 0.3f ///< radiance of a thick flame at its coolest and its hottest
-#define FLAME_BRIGHT 9.5f
-#define FLAME_BAKED 5.2f    ///< radiance of what is 1 where gas is baked
-#define SOOT_DENSE 42.0f    ///< 1/m: radiance per metre relative to that of a thick flame
-#define SOOT_OPAQUE 14.0f   ///< 1/m, extinction
-#define BLUE_DENSE 1.3f     ///< 1/m: radiance of the root per metre
-#define BLUE_ENDS 0.005f    ///< m
-#define SHELL_RISE 0.0005f  ///< m, w
-#define SHELL 0.0018f       ///< m
-#define EDGE 0.42f          ///< f at a flame's edge
-#define TAPER 0.55f         ///< what is added to it above a flame's height
-#define STAND_OFF 0.0006f   ///< m above the paper, below which nothing is visible
-#define SOOT_BEGINS 0.0038f ///< m
-#define SOOT_FULL 0.0105f
+#define FLAME_BRIGHT 6.8f
+#define FLAME_BAKED 3.7f        ///< radiance of what is 1 where gas is baked
+#define SOOT_DENSE 110.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
+#define BLUE_DENSE 1.3f         ///< 1/m: radiance of the root per metre
+#define BLUE_ENDS 0.005f        ///< m
+#define SHELL_RISE 0.0005f      ///< m, w
+#define SHELL_RISE_MOST 0.0016f ///< more would dim thin tongues
+#define SHELL 0.0018f           ///< m
+#define EDGE 0.42f              ///< f at a flame's edge
+#define TAPER 0.55f             ///< what is added to it above a flame's height
+#define STAND_OFF 0.0006f       ///< m above the paper, below which nothing is visible
+#define SOOT_BEGINS 0.0045f     ///< m
+#define SOOT_FULL 0.0120f
 
 // ---- looking up
 
@@ -124,7 +125,7 @@ static Float3 flame_colour(const Fire *fire, float hot) {
     return float3_mix(fire->colours[i], fire->colours[i + 1], x - (float)i);
 }
 
-Float3 fire_emission(const Preview *preview) { return float3_scale(flame_colour(&preview->fire, 1), 44.5f); }
+Float3 fire_emission(const Preview *preview) { return float3_scale(flame_colour(&preview->fire, 1), 62.0f); }
 
 float fire_share(const Fire *fire, size_t at) {
     const FireCell *cell = &fire->cells[at];
@@ -148,7 +149,8 @@ void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]) {
 }
 
 /// The flame at a position, from its cell, the gradient of its share in 1/m, and the noises.
-static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noise wide, Noise fine, FirePoint *point) {
+static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noise wide, Noise fine, float blur,
+                        FirePoint *point) {
     float rise = maxf(cell->rise / cell->flame, 0), torn = stepf(0, 0.02f, rise);
     float tall = rise / (fire->scale * FLAME_HEIGHT);
     float coarse = 0.075f + 0.425f * torn, small = 0.025f + 0.225f * torn;
@@ -161,10 +163,11 @@ static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noi
 
     // the shell's profile, and its integral from the edge
     float tip = stepf(0.35f, 1.4f, tall), fill = mixf(0.02f, 0.12f, tip);
-    float outer = clampf(point->depth, 0, SHELL_RISE), inner = maxf(point->depth - SHELL_RISE, 0);
-    float fading = (1 - fill) * expf(-inner / SHELL);
-    point->profile = outer / SHELL_RISE * (fill + fading);
-    point->shell = 0.5f * outer * outer / SHELL_RISE + fill * inner + SHELL * (1 - fill - fading);
+    float first = clampf(blur, SHELL_RISE, SHELL_RISE_MOST * fire->scale), outer = clampf(point->depth, 0, first),
+          inner = maxf(point->depth - first, 0);
+    float fading = (1 - fill) * expf(-inner / SHELL), same = (0.5f * SHELL_RISE + SHELL) / (0.5f * first + SHELL);
+    point->profile = same * outer / first * (fill + fading);
+    point->shell = same * (0.5f * outer * outer / first + fill * inner + SHELL * (1 - fill - fading));
 
     float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001f * fine.d);
     float core = stepf(0.35f, 0.7f, cell->flame) * stepf(SOOT_BEGINS, SOOT_FULL, rise);
@@ -173,7 +176,7 @@ static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noi
     soot *= soot;
     float root = stepf(STAND_OFF, 3 * STAND_OFF, rise) * (1 - soot) * (1 - stepf(BLUE_ENDS / 3, BLUE_ENDS, rise));
     soot *= 0.3f + 1.2f * stepf(-0.5f, 0.5f, 0.7f * wide.d + 0.6f * fine.a);
-    point->opaque = SOOT_OPAQUE * soot;
+    point->opaque = SOOT_DENSE * soot;
     point->soot = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * soot);
     point->root = float3_scale(float3(0.12f, 0.42f, 1.25f), BLUE_DENSE * root);
 }
@@ -234,7 +237,7 @@ static FireCell cell_at(const Fire *fire, Float3 p, float *slope) {
     return (FireCell){sum[0], sum[1], sum[2], sum[3]};
 }
 
-FirePoint fire_at_point(const Fire *fire, Float3 p) {
+FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
     FirePoint point = {.depth = FIRE_OUTSIDE};
 
     // how far the widest eddies move the flame there, and its height above the paper, linear between the cells
@@ -268,7 +271,7 @@ FirePoint fire_at_point(const Fire *fire, Float3 p) {
     Noise fine = eddies(fire, shifted, passed, sqrtf(scale) * EDDY_FINE, 1.6f * sqrtf(scale));
     const FireCell cell =
         cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), sqrtf(scale) * 0.7f * FIRE_WARP_FINE), &slope);
-    if (cell.flame > 0.02f) shade_flame(fire, &cell, slope, wide, fine, &point);
+    if (cell.flame > 0.02f) shade_flame(fire, &cell, slope, wide, fine, blur, &point);
     return point;
 }
 
@@ -316,7 +319,7 @@ SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, doub
         for (int y = 0; y < size[1]; y++)
             for (int x = 0; x < size[0]; x++, i++) {
                 const Float3 p = float3_mad(origin, float3((float)x, (float)y, (float)z), side);
-                const FirePoint point = fire_at_point(fire, p);
+                const FirePoint point = fire_at_point(fire, p, 0);
                 Matter burning = {{0, 0, 0}, 0};
                 fire_between(&point, &point, side, &burning);
                 smoke[i] = fire_smoke_at(fire, p).dense;

@@ -59,7 +59,7 @@ TEST(still_air_changes_no_pixel) {
     synthetic_free(&surface);
 }
 
-/// In front of dark and of bright, a flame glows orange to yellow, not white, and hides almost nothing.
+/// In front of dark and of bright, a flame glows orange to yellow, not white.
 TEST(a_flame_glows_orange) {
     static uint8_t rgb[BYTES], plain[BYTES];
     static Ball ball;
@@ -330,7 +330,8 @@ TEST(thin_tongues_are_not_cut) {
             lit += fmaxf(a, b);
         }
     print_message("from two pixels aside %.3f of the light differs\n", (double)(differ / lit));
-    assert_true(differ < 0.02f * lit); // .064 where it did
+    assert_true(differ <
+                0.008f * lit); // .064 where they were cut, .010 with edges that are sharper than rays are apart
 }
 
 /// The burning rim is visible through the base of its flames. The bar, a tenth of white paper's light and a twentieth
@@ -586,7 +587,8 @@ TEST(the_fire_layer_is_what_fire_adds) {
     for (int i = 0; i < W * H; i++) brightest = fire[i][0] > brightest[0] ? fire[i] : brightest;
     print_message("brightest: %.2f %.2f %.2f, %.2f hidden\n", (double)brightest[0], (double)brightest[1],
                   (double)brightest[2], (double)brightest[3]);
-    assert_true(brightest[0] > 1 && brightest[0] > 3 * brightest[2] && brightest[3] > 0.05f && brightest[3] < 0.5f);
+    assert_true(brightest[0] > 1 && brightest[0] > 3 * brightest[2]);
+    assert_true(brightest[3] > 0.6f); // .29, and the edges of sheets were seen through the brightest flames
     assert_true(fire[0][0] == 0 && fire[0][3] == 0);
     preview_destroy(preview);
 }
