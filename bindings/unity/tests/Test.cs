@@ -1,4 +1,5 @@
-// The script of the plug-in without Unity: Engine.cs stands for it. A sheet of 10,000 springs burns for four seconds.
+// The script of the plug-in without Unity: Engine.cs stands for it. A sheet that keeps 10,000 springs burns for four
+// seconds.
 using System;
 using UnityEngine;
 
@@ -24,12 +25,11 @@ static class Test
         sheet.cells = new Vector2Int(0, 4);
         Expect("no cells do not start", !sheet.Begin());
         Expect("each with a reason", Debug.errors.Count == 3 && Debug.errors[1].Contains("there is no material"));
-        sheet.cells = new Vector2Int(32, 32);
+        sheet.cells = new Vector2Int(36, 36);
         sheet.size = new Vector2(0.2f, 0.2f);
         Expect("it starts", sheet.Begin());
         var mesh = sheet.GetComponent<MeshFilter>().sharedMesh;
         Expect("fronts turn clockwise", mesh.backwards == 0);
-        Expect("it has 10,000 springs (" + sheet.Springs + ")", sheet.Springs >= 10000);
         Expect("corners are pinned", sheet.Pin(new Vector3(-0.1f, 0.1f, 0), 0.005f) &
                                      sheet.Pin(new Vector3(0.1f, 0.1f, 0), 0.005f));
         Expect("a match burns", sheet.Ignite(new Vector3(0, -0.09f, 0), 0.012f, 0.6f));
@@ -51,6 +51,7 @@ static class Test
         long after = GC.GetTotalMemory(false);
         Array.Sort(used);
         Expect(100 * sheet.Burnt + " % has burnt", sheet.Burnt > 0.05f);
+        Expect("it still has 10,000 springs (" + sheet.Springs + ")", sheet.Springs >= 10000);
         Expect("wind along z bends it along z (" + 1e3 * mesh.high.z + " mm)", mesh.high.z > 0.005f);
         Expect(mesh.triangles + " triangles are drawn", mesh.triangles > 1000 && mesh.triangles == sheet.Triangles);
         Expect(sheet.Allocations - allocations + " allocations in " + Frames + " frames", sheet.Allocations == allocations);

@@ -1,5 +1,5 @@
-// The component for Unreal without Unreal: the headers of `engine` stand for it. A sheet of 10,000 springs burns for four
-// seconds.
+// The component for Unreal without Unreal: the headers of `engine` stand for it. A sheet that keeps 10,000 springs burns
+// for four seconds.
 #include "SingeSheetComponent.h"
 
 #include <algorithm>
@@ -26,13 +26,12 @@ int main() {
     Sheet.Cells = FIntPoint(0, 4);
     Expect("no cells do not start", !Sheet.Begin());
     Expect("each with a reason", Errors.size() == 3 && Errors[1].find("there is no material") != std::string::npos);
-    Sheet.Cells = FIntPoint(32, 32);
+    Sheet.Cells = FIntPoint(36, 36);
     Sheet.Size = FVector2D(20, 20);
     Expect("it starts", Sheet.Begin());
     Expect("it stands upright, 20 cm wide and high",
            std::abs(Sheet.High.X - 10) < 1e-3 && std::abs(Sheet.Low.Z + 10) < 1e-3 && Sheet.High.Y < 0.1);
     Expect("fronts turn as normals say", Sheet.Backwards == 0 && Sheet.Bad == 0);
-    Expect("it has 10,000 springs (" + std::to_string(Sheet.GetSprings()) + ")", Sheet.GetSprings() >= 10000);
     Expect("corners are pinned", Sheet.Pin(FVector(-10, 0, 10), 0.5f) && Sheet.Pin(FVector(10, 0, 10), 0.5f));
     Expect("a match burns", Sheet.Ignite(FVector(0, 0, -9), 1.2f, 0.6f));
     Expect("wind blows", Sheet.Blow(FVector(0, 50, 0), 10));
@@ -51,6 +50,7 @@ int main() {
     }
     std::sort(Used, Used + Frames);
     Expect(std::to_string(100 * Sheet.GetBurnt()) + " % has burnt", Sheet.GetBurnt() > 0.05f);
+    Expect("it still has 10,000 springs (" + std::to_string(Sheet.GetSprings()) + ")", Sheet.GetSprings() >= 10000);
     Expect("wind along y bends it along y (" + std::to_string(Aside) + " cm)", Aside > 0.5);
     Expect(std::to_string(Sheet.Triangles) + " triangles are drawn", Sheet.Triangles > 1000);
     Expect(std::to_string(Sheet.GetAllocations() - Allocations) + " allocations", Sheet.GetAllocations() == Allocations);
