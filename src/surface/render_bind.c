@@ -1,33 +1,23 @@
 // Finds the position of a sheet at rest that is nearest to each vertex of a render mesh, and what the vertex keeps from
-// there. Cells lie in a hashed grid by their centroids; its cubes have sides of the reach and the largest cell's radius,
-// so the 27 cubes around a position hold all cells within reach. By uv it is the same in the plane of uv, where the reach
-// is the largest cell's radius. In the same way it finds what is near a sheet where it is now, and leaves little room for a
+// there. Cells lie in a grid by their centroids; its cubes have sides of the reach and the largest cell's radius. By uv it
+// is the same in the plane of uv, where the reach is the largest cell's radius. In the same way it finds what is near a sheet where it is now, and leaves little room for a
 // mesh.
+#include "common/cube_grid.h"
 #include "common/real.h"
 #include "surface/render_parts.h"
 
 typedef struct Binding {
     const Fine *fine;
     RenderMesh *mesh;
-    bool by_uv;             ///< below, uv are in place of m
-    bool now;               ///< cells are where they are drawn, not at rest
-    float reach, cube;      ///< m
-    float (*centroid)[4];   ///< [cells] and the radius, m
-    uint32_t *first, *list; ///< [mask + 2], [cells] the cells of a slot
-    uint32_t mask;
+    bool by_uv;           ///< below, uv are in place of m
+    bool now;             ///< cells are where they are drawn, not at rest
+    float reach;          ///< m
+    float (*centroid)[4]; ///< [cells] and the radius, m
+    CubeGrid grid;        ///< of the cells, by their centroids
     uint32_t begin;
     float *distance; ///< [vertices of the mesh from `begin` on, or of the sheets] m, INFINITY where no cell is near
     uint32_t *near;  ///< [vertices of the sheets] the nearest cell, or SHELL_NONE
 } Binding;
-
-static uint32_t slot_of(const Binding *binding, int x, int y, int z) {
-    uint32_t hash = ((uint32_t)x * 0x9e3779b1u) ^ ((uint32_t)y * 0x85ebca77u) ^ ((uint32_t)z * 0xc2b2ae3du);
-    return (hash ^ hash >> 15) & binding->mask;
-}
-
-static int cube_of(const Binding *binding, float x) {
-    return (int)floorf(float_min(float_max(x / binding->cube, -1e9f), 1e9f));
-}
 
 static Float3 corner_of(const Binding *binding, uint32_t cell, int i) {
     const Shell *shell = binding->fine->shell;
@@ -79,12 +69,11 @@ static float nearest(Float3 p, const Float3 corner[3], float weight[3]) {
 
 /// The nearest position of the sheet, among the cells within a cube of p's; its distance.
 static float find_foot(const Binding *binding, Float3 p, FineLocation *foot) {
-    const int x = cube_of(binding, p.x), y = cube_of(binding, p.y), z = cube_of(binding, p.z);
+    uint32_t first[27];
+    cube_grid_around(&binding->grid, p, first);
     float min = INFINITY;
     for (int k = 0; k < 27; k++) {
-        const uint32_t slot = slot_of(binding, x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1);
-        for (uint32_t i = binding->first[slot]; i < binding->first[slot + 1]; i++) {
-            const uint32_t cell = binding->list[i];
+        for (uint32_t cell = first[k]; cell != CUBE_GRID_END; cell = binding->grid.next[cell]) {
             const Float3 centroid = float3_load(binding->centroid[cell]);
             if (float3_length(float3_sub(p, centroid)) - binding->centroid[cell][3] > sqrtf(min)) continue;
 
@@ -158,31 +147,20 @@ static void fill_grid(Binding *binding) {
         radius = float_max(radius, binding->centroid[c][3]);
     }
 
-    // counted, then listed from the end of each slot
     if (binding->by_uv) binding->reach = radius;
-    binding->cube = float_max(binding->reach + radius, 1e-5f);
-    for (int pass = 0; pass < 2; pass++) {
-        for (uint32_t c = 0; c < shell->cell_count; c++) {
-            if (flags && !(flags[c] & SINGE_ALIVE)) continue;
-            const float *at = binding->centroid[c];
-            const uint32_t slot =
-                slot_of(binding, cube_of(binding, at[0]), cube_of(binding, at[1]), cube_of(binding, at[2]));
-            if (pass == 0) binding->first[slot]++;
-            else binding->list[--binding->first[slot]] = c;
-        }
-        for (uint32_t s = 0; s <= binding->mask && pass == 0; s++) binding->first[s + 1] += binding->first[s];
-    }
+    cube_grid_clear(&binding->grid, float_max(binding->reach + radius, 1e-5f));
+    for (uint32_t c = 0; c < shell->cell_count; c++)
+        if (!flags || flags[c] & SINGE_ALIVE) cube_grid_add(&binding->grid, c, binding->centroid[c]);
 }
 
 SingeResult render_find_feet(const Fine *fine, bool by_uv, float reach, uint32_t first, RenderMesh *mesh,
                              SingeError *error) {
     Memory *memory = fine->memory;
     const uint32_t cells = fine->shell->cell_count, count = mesh->vertex_count - first;
-    Binding binding = {.fine = fine, .mesh = mesh, .by_uv = by_uv, .reach = reach, .mask = 7, .begin = first};
-    while (binding.mask < cells) binding.mask = 2 * binding.mask + 1;
+    Binding binding = {.fine = fine, .mesh = mesh, .by_uv = by_uv, .reach = reach, .begin = first};
     SingeResult result = SINGE_OK;
-    if (NEW(memory, binding.centroid, cells) && NEW(memory, binding.list, cells) &&
-        NEW(memory, binding.first, (size_t)binding.mask + 2) && NEW(memory, binding.distance, count)) {
+    if (NEW(memory, binding.centroid, cells) && cube_grid_create(memory, cells, &binding.grid) &&
+        NEW(memory, binding.distance, count)) {
         fill_grid(&binding);
         pool_for(fine->pool, (int)count, 64, find_range, &binding);
 
@@ -215,8 +193,7 @@ SingeResult render_find_feet(const Fine *fine, bool by_uv, float reach, uint32_t
     }
 
     FREE(memory, binding.centroid, cells);
-    FREE(memory, binding.list, cells);
-    FREE(memory, binding.first, (size_t)binding.mask + 2);
+    cube_grid_free(memory, &binding.grid);
     FREE(memory, binding.distance, count);
     return result;
 }
@@ -234,12 +211,12 @@ static void room_range(void *context, int begin, int end) {
     const uint16_t *sheet = shell->matter.sheet;
     for (int v = begin; v < end; v++) {
         const Float3 p = float3_load(binding->fine->corner[v]), rest = float3_load(shell->rest_position[v]);
-        const int x = cube_of(binding, p.x), y = cube_of(binding, p.y), z = cube_of(binding, p.z);
+        uint32_t first[27];
+        cube_grid_around(&binding->grid, p, first);
         float min = binding->reach * binding->reach;
         for (int k = 0; k < 27; k++) {
-            const uint32_t slot = slot_of(binding, x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1);
-            for (uint32_t i = binding->first[slot]; i < binding->first[slot + 1]; i++) {
-                const uint32_t cell = binding->list[i], centre = shell_centre(shell, cell);
+            for (uint32_t cell = first[k]; cell != CUBE_GRID_END; cell = binding->grid.next[cell]) {
+                const uint32_t centre = shell_centre(shell, cell);
                 const Float3 centroid = float3_load(binding->centroid[cell]);
                 if (float3_length(float3_sub(p, centroid)) - binding->centroid[cell][3] > sqrtf(min)) continue;
 
@@ -266,11 +243,9 @@ SingeResult render_rooms(Fine *fine, float reach, SingeError *error) {
     Memory *memory = fine->memory;
     const Shell *shell = fine->shell;
     const uint32_t cells = shell->cell_count, count = shell->vertex_count;
-    Binding binding = {.fine = fine, .now = true, .reach = reach, .mask = 7};
-    while (binding.mask < cells) binding.mask = 2 * binding.mask + 1;
-    const bool ok = NEW(memory, binding.centroid, cells) && NEW(memory, binding.list, cells) &&
-                    NEW(memory, binding.first, (size_t)binding.mask + 2) && NEW(memory, binding.distance, count) &&
-                    NEW(memory, binding.near, count);
+    Binding binding = {.fine = fine, .now = true, .reach = reach};
+    const bool ok = NEW(memory, binding.centroid, cells) && cube_grid_create(memory, cells, &binding.grid) &&
+                    NEW(memory, binding.distance, count) && NEW(memory, binding.near, count);
     if (ok) {
         fill_grid(&binding);
         for (uint32_t v = 0; v < count; v++) binding.near[v] = SHELL_NONE;
@@ -287,8 +262,7 @@ SingeResult render_rooms(Fine *fine, float reach, SingeError *error) {
     }
 
     FREE(memory, binding.centroid, cells);
-    FREE(memory, binding.list, cells);
-    FREE(memory, binding.first, (size_t)binding.mask + 2);
+    cube_grid_free(memory, &binding.grid);
     FREE(memory, binding.distance, count);
     FREE(memory, binding.near, count);
     return ok ? SINGE_OK : error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the render mesh");

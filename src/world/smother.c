@@ -1,21 +1,11 @@
 // Sheets that keep air from others: what burns within d of a live cell of another sheet, and a thickness more for the layer
 // behind, gets no air, with that cell's `smother_distance` d.
 //
-// Cells with d > 0 lie in a hashed grid by their centroids, filled in each step that asks. Its cubes are as
-// large as the farthest that any of them reaches, so the 27 cubes about a particle hold all cells that reach it.
+// Cells with d > 0 lie in a grid by their centroids, filled in each step that asks.
 #include "world/smother.h"
 
 #include "common/real.h"
 #include "world/triangle.h"
-
-static uint32_t smother_slot(const Smother *smother, int x, int y, int z) {
-    uint32_t hash = ((uint32_t)x * 0x9e3779b1u) ^ ((uint32_t)y * 0x85ebca77u) ^ ((uint32_t)z * 0xc2b2ae3du);
-    return (hash ^ hash >> 15) & smother->mask;
-}
-
-static int smother_cube(const Smother *smother, float x) {
-    return (int)floorf(float_min(float_max(x / smother->cube, -1e9f), 1e9f));
-}
 
 SingeResult smother_create(Memory *memory, const Shell *shell, Smother *smother) {
     const Matter *matter = &shell->matter;
@@ -25,10 +15,8 @@ SingeResult smother_create(Memory *memory, const Shell *shell, Smother *smother)
 
     for (uint32_t i = 0; i < shell->particle_count; i++)
         smother->thickness = float_max(smother->thickness, field_at(matter->thickness, i));
-    smother->mask = 7;
-    while (smother->mask < smother->count) smother->mask = 2 * smother->mask + 1;
     if (!NEW(memory, smother->cells, smother->count) || !NEW(memory, smother->balls, smother->count) ||
-        !NEW(memory, smother->next, smother->count) || !NEW(memory, smother->first, (size_t)smother->mask + 1))
+        !cube_grid_create(memory, smother->count, &smother->grid))
         return SINGE_ERROR_MEMORY;
     for (uint32_t c = 0, k = 0; c < shell->cell_count; c++)
         if (field_at(matter->smother_distance, shell_centre(shell, c)) > 0) smother->cells[k++] = c;
@@ -38,8 +26,7 @@ SingeResult smother_create(Memory *memory, const Shell *shell, Smother *smother)
 void smother_free(Memory *memory, Smother *smother) {
     FREE(memory, smother->cells, smother->count);
     FREE(memory, smother->balls, smother->count);
-    FREE(memory, smother->next, smother->count);
-    FREE(memory, smother->first, (size_t)smother->mask + 1);
+    cube_grid_free(memory, &smother->grid);
 }
 
 typedef struct SmotherJob {
@@ -72,20 +59,13 @@ bool smother_place(Smother *smother, const Shell *shell, const StateInput *state
     if (smother->count == 0) return false;
     SmotherJob job = {smother, shell, state};
     pool_for(pool, (int)smother->count, POOL_BLOCK, smother_balls, &job);
-    smother->cube = 0;
-    for (uint32_t k = 0; k < smother->count; k++) smother->cube = float_max(smother->cube, smother->balls[k][3]);
-    if (!(smother->cube > 0)) return false;
+    float reach = 0;
+    for (uint32_t k = 0; k < smother->count; k++) reach = float_max(reach, smother->balls[k][3]);
+    if (!(reach > 0)) return false;
 
-    // each slot is a list; in which order does not matter
-    for (uint32_t s = 0; s <= smother->mask; s++) smother->first[s] = SHELL_NONE;
-    for (uint32_t k = 0; k < smother->count; k++) {
-        const float *ball = smother->balls[k];
-        if (!(ball[3] > 0)) continue;
-        const uint32_t slot = smother_slot(smother, smother_cube(smother, ball[0]), smother_cube(smother, ball[1]),
-                                           smother_cube(smother, ball[2]));
-        smother->next[k] = smother->first[slot];
-        smother->first[slot] = k;
-    }
+    cube_grid_clear(&smother->grid, reach);
+    for (uint32_t k = 0; k < smother->count; k++)
+        if (smother->balls[k][3] > 0) cube_grid_add(&smother->grid, k, smother->balls[k]);
     return true;
 }
 
@@ -107,10 +87,10 @@ static bool smother_reaches(const Shell *shell, const StateInput *state, uint32_
 bool smother_covers(const Smother *smother, const Shell *shell, const StateInput *state, uint32_t particle) {
     const uint16_t *sheet = shell->matter.sheet;
     const Float3 p = float3_load(((const float(*)[4])state->dynamics->position)[particle]);
-    const int x = smother_cube(smother, p.x), y = smother_cube(smother, p.y), z = smother_cube(smother, p.z);
+    uint32_t first[27];
+    cube_grid_around(&smother->grid, p, first);
     for (int n = 0; n < 27; n++) {
-        uint32_t k = smother->first[smother_slot(smother, x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1)];
-        for (; k != SHELL_NONE; k = smother->next[k]) {
+        for (uint32_t k = first[n]; k != CUBE_GRID_END; k = smother->grid.next[k]) {
             const Float3 centroid = float3_load(smother->balls[k]);
             const uint32_t cell = smother->cells[k];
             if (sheet[shell_centre(shell, cell)] == sheet[particle]) continue;

@@ -2,18 +2,17 @@
 #ifndef WORLD_SMOTHER_H
 #define WORLD_SMOTHER_H
 
+#include "common/cube_grid.h"
 #include "common/pool.h"
 #include "shell/shell.h"
 
 /// Cells that keep air from other sheets, in a grid.
 typedef struct Smother {
-    uint32_t count, mask; ///< count 0: none, and no arrays
-    uint32_t *cells;      ///< [count]
-    float (*balls)[4];    ///< [count] centroid, and how far about it the cell reaches, m
-    uint32_t *first;      ///< [mask + 1] one of a slot's cells, or SHELL_NONE
-    uint32_t *next;       ///< [count] the next of its slot, or SHELL_NONE
-    float cube;           ///< m
-    float thickness;      ///< m, the largest of any sheet
+    uint32_t count;    ///< 0: none, and no arrays
+    uint32_t *cells;   ///< [count]
+    float (*balls)[4]; ///< [count] centroid, and how far about it the cell reaches, m
+    CubeGrid grid;     ///< of those that are left
+    float thickness;   ///< m, the largest of any sheet
 } Smother;
 
 /// Lists the cells that keep air from other sheets. SINGE_ERROR_MEMORY; then smother_free is still to be called.
