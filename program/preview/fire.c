@@ -81,8 +81,8 @@ static void raise_cells(Preview *preview) {
 
 // ---- the widest eddies
 
-/// How far eddies move the flame of each cell. The height of a flame's gas is known in its own cells; it is spread over
-/// those around them, as far as eddies reach.
+/// How far eddies move the flame of each cell, and how much they feed it. The height of a flame's gas is known in its own
+/// cells; it is spread over those around them, as far as eddies reach.
 static void sway_cells(Fire *fire) {
     const size_t over[3] = {1, (size_t)fire->size[0], (size_t)fire->size[0] * (size_t)fire->size[1]};
 
@@ -122,6 +122,11 @@ static void sway_cells(Fire *fire) {
                 if (!(sway[3] > 0)) continue;
                 const Float3 p = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);
                 fire_sway(fire, p, sway[2], sway);
+                FireCell *cell = &fire->cells[fire_at(fire, x, y, z)];
+                if (!(cell->flame > 0)) continue;
+                const float lick = 1 + fire_lick(fire, p, sway[2]);
+                cell->flame *= lick;
+                cell->rise *= lick;
             }
 }
 

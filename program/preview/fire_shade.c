@@ -5,7 +5,7 @@
 // grows longer as the gas accelerates, so flames have tongues and streaks and flicker.
 //
 // The widest eddies bend whole tongues and the streaks in them: they move the position first, by an amount that grows from
-// nothing at the paper and is known in each cell (fire.c).
+// nothing at the paper and is known in each cell (fire.c). Others, half as wide, feed some tongues and starve others there.
 //
 // A flame over paper is a thin shell of glowing soot around clear, hot vapour. With f the flame (fire.c), r the height
 // above the paper and N, n noises of the width of a tongue and of a streak, its edge lies where
@@ -38,6 +38,9 @@
 #define EDDY_FINE 0.006f
 #define SWAY_WIDE 0.1f   ///< m, of the eddies that bend whole tongues
 #define SWAY_SLOPE 0.35f ///< m aside per m above the paper
+#define LICK_WIDE 0.045f ///< m, of the eddies that feed and starve whole tongues
+#define LICK_FULL 0.05f  ///< m above the paper, where they do so fully
+#define LICK 0.6f
 #define SMOKE_EDDY 0.028f
 #define SMOKE_SPEED 0.5f ///< m/s, at which they rise
 
@@ -146,6 +149,12 @@ void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]) {
     const Noise n = eddies(fire, p, passed, scale * SWAY_WIDE, 1);
     sway[0] = most * n.a;
     sway[1] = most * n.b;
+}
+
+float fire_lick(const Fire *fire, Float3 p, float height) {
+    const float scale = fire->scale, passed = EDDY_RATE * (fire->moment / sqrtf(scale) - p.z / (scale * RISE_MOST));
+    const Noise n = eddies(fire, p, passed, scale * LICK_WIDE, 1.2f);
+    return LICK * n.c * stepf(0, LICK_FULL * scale, height);
 }
 
 /// The flame at a position, from its cell, the gradient of its share in 1/m, and the noises.
