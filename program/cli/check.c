@@ -56,7 +56,7 @@ static const double mesh_growth = 4, gas_bytes = 3.5, pixel_bytes = 1.2;
 /// The whole of 16,384 x 16,384 pixels takes 21 GB, which checking a scene must not need.
 static const double check_rays = 16e6, check_pixels = 4e6;
 
-static double pixels_of(const ScenePreview *preview) { return (double)preview->size[0] * (double)preview->size[1]; }
+static double pixels_of(const PreviewDef *preview) { return (double)preview->width * (double)preview->height; }
 
 /// Times what run computes for its first frame, except the files, and then some steps.
 static SingeResult time_frame(const Job *job, SingeSim *sim, CheckTimes *times, SingeError *error) {
@@ -71,10 +71,12 @@ static SingeResult time_frame(const Job *job, SingeSim *sim, CheckTimes *times, 
     if (!result) {
         Pictures *pictures = NULL;
         const uint8_t *rgb;
-        ScenePreview *preview = &job->scene->preview;
-        const ScenePreview wanted = *preview;
-        while (pixels_of(preview) > check_pixels)
-            for (int k = 0; k < 2; k++) preview->size[k] = (preview->size[k] + 1) / 2;
+        PreviewDef *preview = &job->scene->preview.def;
+        const PreviewDef wanted = *preview;
+        while (pixels_of(preview) > check_pixels) {
+            preview->width = (preview->width + 1) / 2;
+            preview->height = (preview->height + 1) / 2;
+        }
         while (preview->samples > 1 && pixels_of(preview) * preview->samples > check_rays) preview->samples /= 2;
         const double rays = pixels_of(preview) * preview->samples;
         result = pictures_open(job, &pictures, error);
@@ -202,7 +204,7 @@ static SingeResult report_materials(const Scene *scene, float thickening, SingeE
 
 /// What a run writes, with pictures and without other formats.
 static void report_disk(const Scene *scene, const CheckTimes *times) {
-    const double frames = scene->frames, pictures = pixel_bytes * pixels_of(&scene->preview);
+    const double frames = scene->frames, pictures = pixel_bytes * pixels_of(&scene->preview.def);
     const SceneCheckpoints *keep = &scene->checkpoints;
     const double most = keep->megabytes > 0 ? 1e6 * (double)keep->megabytes : INFINITY;
     const double kept = fmin(floor(frames / (keep->every ? keep->every : 10)) * times->checkpoint, most);
@@ -249,7 +251,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
     job_note_long(&job, console, "burning a strip of each material");
     SingeResult result = report_materials(job.scene, thickening, &error);
     if (!result) job_note_long(&job, console, "timing steps");
-    if (!result && pixels_of(&job.scene->preview) > check_pixels) console_note(console, "drawing");
+    if (!result && pixels_of(&job.scene->preview.def) > check_pixels) console_note(console, "drawing");
     if (!result) result = time_frame(&job, sim, &times, &error);
     if (result) {
         fflush(stdout);

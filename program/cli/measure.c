@@ -443,9 +443,10 @@ int command_measure(int argc, char **argv) {
     measure.folder = folder_name(options.path, measure.job.scene->name);
     code = folder_span(&measure.folder, &measure.console, &measure.first, &measure.last);
     SingeError error = {0};
-    const int *size = measure.job.scene->preview.size;
+    const PreviewDef *preview = &measure.job.scene->preview.def;
     int scale = EMBER_SCALE; // embers are thinner than a pixel, unless the pictures are large
-    while (scale > 1 && scale * (size[0] > size[1] ? size[0] : size[1]) > EMBER_WIDE) scale--;
+    while (scale > 1 && scale * (preview->width > preview->height ? preview->width : preview->height) > EMBER_WIDE)
+        scale--;
     if (!code && !options.no_preview && pictures_open_sharp(&measure.job, scale, &measure.pictures, &error)) {
         console_result(&measure.console, &error);
         code = EXIT_FAILED;

@@ -76,7 +76,7 @@ SingeResult outputs_open(Outputs *outputs, const Job *job, const Folder *folder,
         wet |= moisture.value > 0 || (moisture.field && moisture.to > 0);
     }
 
-    const ScenePreview *preview = &scene->preview;
+    const PreviewDef *preview = &scene->preview.def;
     OutputScene *s = &outputs->scene;
     *s = (OutputScene){.name = scene->name,
                        .fps = scene->fps,
@@ -86,17 +86,17 @@ SingeResult outputs_open(Outputs *outputs, const Job *job, const Folder *folder,
                        .sheet_count = scene->sheet_count,
                        .sheets = outputs->sheets,
                        .fov = preview->camera.fov,
-                       .aspect = (float)preview->size[0] / (float)preview->size[1],
+                       .aspect = (float)preview->width / (float)preview->height,
                        .aperture = preview->camera.aperture,
                        .focus = preview->camera.focus,
-                       .light_angle = preview->light_angle,
+                       .light_angle = preview->sun_angle,
                        .ground_height = preview->ground_height};
     memcpy(s->eye, preview->camera.eye, sizeof s->eye);
     memcpy(s->target, preview->camera.target, sizeof s->target);
     memcpy(s->up, preview->camera.up, sizeof s->up);
-    memcpy(s->light_direction, preview->light_direction, sizeof s->light_direction);
-    memcpy(s->light_colour, preview->light_colour, sizeof s->light_colour);
-    memcpy(s->sky, preview->sky, sizeof s->sky);
+    memcpy(s->light_direction, preview->sun_direction, sizeof s->light_direction);
+    memcpy(s->light_colour, preview->sun_colour, sizeof s->light_colour);
+    memcpy(s->sky, preview->sky_colour, sizeof s->sky);
     memcpy(s->ground_colour, preview->ground_colour, sizeof s->ground_colour);
     return SINGE_OK;
 }

@@ -6,25 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-PreviewDef preview_default(void) {
-#define DEGREE (3.14159265358979323846 / 180)
-#define BRACED(...) \
-    { __VA_ARGS__ }
-#define PREVIEW_MAIN(TYPE, key, member, target, length, dimension, standard, range, text) .target = standard,
-#define PREVIEW_CAMERA PREVIEW_MAIN
-#define PREVIEW_LIGHT PREVIEW_MAIN
-#define PREVIEW_LAMP PREVIEW_MAIN
-#define PREVIEW_ENVIRONMENT PREVIEW_MAIN
-#define PREVIEW_GROUND PREVIEW_MAIN
-    return (PreviewDef){
-        .width = 960,
-        .height = 540,
-        .thread_count = 1,
-        .pace = 1,
-#include "preview/preview.def"
-    };
-}
-
 static bool all_between(const float *values, int count, float low, float high) {
     for (int i = 0; i < count; i++)
         if (!(values[i] >= low && values[i] <= high)) return false;
@@ -44,7 +25,7 @@ static SingeResult check_rows(const PreviewDef *def, SingeError *error) {
 #define INT(place) \
     &(const float) { (float)(place) }
 #define PREVIEW_APART(TYPE, target, range) {#target, TYPE(def->target), 1, range},
-#define PREVIEW_MAIN(TYPE, key, member, target, length, dimension, standard, range, text) \
+#define PREVIEW_MAIN(TYPE, key, target, length, dimension, standard, range, text) \
     {#target, TYPE(def->target), length, range},
 #define PREVIEW_CAMERA PREVIEW_MAIN
 #define PREVIEW_LIGHT PREVIEW_MAIN

@@ -108,7 +108,7 @@ void finish_output(Reader *reader, const YamlNode *map, void *object) {
 static bool camera_given(const YamlNode *map) { return node_find(map, "eye") || node_find(map, "target"); }
 
 void finish_camera(Reader *reader, const YamlNode *map, void *object) {
-    const PreviewCamera *camera = object;
+    const PreviewCamera *camera = &((const ScenePreview *)object)->def.camera;
     double view[3], cross[3], length = 0, across = 0;
     for (int i = 0; i < 3; i++) {
         view[i] = (double)camera->target[i] - (double)camera->eye[i];
@@ -138,14 +138,14 @@ void finish_preview(Reader *reader, const YamlNode *map, void *object) {
     const YamlNode *place = preview->camera_key_count ? node_find(map, "camera_path") : NULL;
     place = place && place->kind == NODE_LIST ? place->first : NULL;
     for (uint32_t i = 0; place && i < preview->camera_key_count; i++, place = place->next) {
-        PreviewCamera camera = preview->camera;
-        memcpy(camera.eye, preview->camera_keys[i].eye, sizeof camera.eye);
-        memcpy(camera.target, preview->camera_keys[i].target, sizeof camera.target);
-        finish_camera(reader, place, &camera);
+        ScenePreview then = *preview;
+        memcpy(then.def.camera.eye, preview->camera_keys[i].eye, sizeof then.def.camera.eye);
+        memcpy(then.def.camera.target, preview->camera_keys[i].target, sizeof then.def.camera.target);
+        finish_camera(reader, place, &then);
     }
     preview->camera_given = preview->camera_given || preview->camera_key_count > 0;
     const YamlNode *light = node_find(map, "light"), *direction = node_find(light, "direction");
-    const float *d = preview->light_direction;
+    const float *d = preview->def.sun_direction;
     if (direction && (double)d[0] * (double)d[0] + (double)d[1] * (double)d[1] + (double)d[2] * (double)d[2] < 1e-18)
         complain(reader, direction->location, "the light's direction must be longer than 1e-9");
 }

@@ -4,19 +4,12 @@
 #include <math.h>
 #include <string.h>
 
-#define DEGREE (3.14159265358979323846f / 180)
-
 static void set3(float v[3], float x, float y, float z) {
     v[0] = x;
     v[1] = y;
     v[2] = z;
 }
 
-#define BRACED(...) \
-    { __VA_ARGS__ }
-#define SET_FLOAT(place, standard) place = standard;
-#define SET_INT SET_FLOAT
-#define SET_VECTOR(place, ...) memcpy(place, (const float[])__VA_ARGS__, sizeof place);
 bool default_scene(SceneArena *arena, void *object) {
     (void)arena;
     Scene *scene = object;
@@ -32,21 +25,10 @@ bool default_scene(SceneArena *arena, void *object) {
     scene->output.texture_size = 1024;
     scene->gas_detail = 1;
 
-    ScenePreview *preview = &scene->preview;
-    preview->size[0] = 960;
-    preview->size[1] = 540;
-    preview->shutter = 0.5f;
-    preview->environment = PREVIEW_SKY_STUDIO;
-    preview->ground_height = -INFINITY;
-#define PREVIEW_CAMERA(TYPE, key, member, target, length, dimension, standard, range, text) \
-    SET_##TYPE(preview->camera.member, standard)
-#define PREVIEW_LIGHT(TYPE, key, member, target, length, dimension, standard, range, text) \
-    SET_##TYPE(preview->member, standard)
-#define PREVIEW_LAMP PREVIEW_LIGHT
-#define PREVIEW_ENVIRONMENT PREVIEW_LIGHT
-#define PREVIEW_GROUND PREVIEW_LIGHT
-#define PREVIEW_MAIN PREVIEW_LIGHT
-#include "preview/preview.def"
+    scene->preview.def = preview_default();
+    scene->preview.def.sky = PREVIEW_SKY_STUDIO;
+    scene->preview.def.ground_height = -INFINITY;
+    scene->preview.shutter = 0.5f;
     return true;
 }
 

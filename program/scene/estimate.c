@@ -120,7 +120,7 @@ SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
 }
 
 double scene_picture_memory(const Scene *scene, bool layers) {
-    const double pixels = (double)scene->preview.size[0] * (double)scene->preview.size[1];
+    const double pixels = (double)scene->preview.def.width * (double)scene->preview.def.height;
     double memory = (pixel_bytes + (layers ? layer_bytes : 0)) * pixels;
     for (uint32_t i = 0; i < scene->collider_count; i++)
         if (scene->colliders[i].visible) memory += drawn_height_bytes * height_pixels(&scene->colliders[i]);
@@ -157,12 +157,12 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
         return false;
     }
 
-    const int *size = scene->preview.size;
+    const PreviewDef *preview = &scene->preview.def;
     if (wanted > 2 * scene_size(scene, assets).memory) {
         message_add(messages, scene->text, (SceneLocation){0},
                     "the scene needs about %s of memory, and there are %s: give its pictures fewer pixels than %d x %d "
                     "(preview.size), or leave out --exr, or all pictures (--no-preview)",
-                    bytes_text(wanted, needs), bytes_text(room, has), size[0], size[1]);
+                    bytes_text(wanted, needs), bytes_text(room, has), preview->width, preview->height);
         return false;
     }
 

@@ -210,27 +210,12 @@ typedef struct SceneCameraKey {
 } SceneCameraKey;
 
 typedef struct ScenePreview {
-    int size[2]; ///< pixels
-    int samples;
-    PreviewCamera camera;
+    PreviewDef def;            ///< as scenes give it: scene_preview fills in the rest
     uint32_t camera_key_count; ///< 0: the camera stands still
     SceneCameraKey *camera_keys;
-    bool camera_given; ///< its eye or target; otherwise scene_frame places it
-    float light_direction[3], light_angle, light_colour[3];
-    float lamp_position[3], lamp_radius, lamp_colour[3];
-    float sky[3];
-    PreviewSky environment; ///< of the sky, if it has no picture
-    SceneFile environment_picture;
-    float environment_turn; ///< radians
-    PreviewGround ground;
-    float ground_height; ///< -INFINITY for none
-    float ground_colour[3], ground_gloss, ground_stain;
-    float background[3];
-    float exposure;
-    float sparks, flakes, wisps;
-    float hottest; ///< K
-    bool plain;
-    float shutter; ///< share of a frame's time
+    bool camera_given;             ///< its eye or target; otherwise scene_frame places it
+    SceneFile environment_picture; ///< in place of def.sky
+    float shutter;                 ///< share of a frame's time
 } ScenePreview;
 
 /// The files that a run writes for other programs.

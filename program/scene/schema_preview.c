@@ -1,18 +1,21 @@
 // The table of the preview.
 #include "scene/schema_rows.h"
 
+#include <stddef.h>
+
 static const char *const sky_names[] = {
     [PREVIEW_SKY_EVEN] = "even", [PREVIEW_SKY_STUDIO] = "studio", [PREVIEW_SKY_OPEN] = "open", NULL};
 static const char *const ground_names[] = {
     [PREVIEW_GROUND_WOOD] = "wood", [PREVIEW_GROUND_STONE] = "stone", [PREVIEW_GROUND_PLAIN] = "plain", NULL};
 
-#define OF PreviewCamera
-#define PREVIEW_CAMERA(TYPE, key, member, target, length, dimension, standard, range, text) \
-    AS_ROW_AT(#key, TYPE, member, length, dimension, ALWAYS, text, range)
+#define OF ScenePreview
+#define PREVIEW_ROW(TYPE, key, target, length, dimension, standard, range, text) \
+    AS_ROW_AT(#key, TYPE, def.target, length, dimension, ALWAYS, text, range)
+
+#define PREVIEW_CAMERA PREVIEW_ROW
 static const SchemaRow camera_rows[] = {
 #include "preview/preview.def"
 };
-#undef OF
 static const SchemaRow camera_key_rows[] = {
     {"time", ROW_FLOAT, DIM_TIME, AT(SceneCameraKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED, .doc = "when"},
     {"eye", ROW_VECTOR, DIM_LENGTH, AT(SceneCameraKey, eye), .length = 3, LOCATION, .flags = ROW_REQUIRED,
@@ -32,28 +35,22 @@ static const Schema schema_camera_key = {
            "entries, and stands still before the first and after the last. Times must increase."};
 
 static const Schema schema_camera = {.title = "the camera",
-                                     .size = sizeof(PreviewCamera),
+                                     .size = sizeof(ScenePreview),
                                      ROWS(camera_rows),
                                      .finish = finish_camera,
                                      .doc = "The camera of the preview."};
 
-#define OF ScenePreview
-#define PREVIEW_LIGHT(TYPE, key, member, target, length, dimension, standard, range, text) \
-    AS_ROW_AT(#key, TYPE, member, length, dimension, ALWAYS, text, range)
+#define PREVIEW_LIGHT PREVIEW_ROW
 static const SchemaRow light_rows[] = {
 #include "preview/preview.def"
 };
-#undef OF
 static const Schema schema_light = {
     .title = "the light", .size = sizeof(ScenePreview), ROWS(light_rows), .doc = "One distant light."};
 
-#define OF ScenePreview
-#define PREVIEW_LAMP(TYPE, key, member, target, length, dimension, standard, range, text) \
-    AS_ROW_AT(#key, TYPE, member, length, dimension, ALWAYS, text, range)
+#define PREVIEW_LAMP PREVIEW_ROW
 static const SchemaRow lamp_rows[] = {
 #include "preview/preview.def"
 };
-#undef OF
 static const Schema schema_lamp = {
     .title = "the lamp",
     .size = sizeof(ScenePreview),
@@ -61,11 +58,9 @@ static const Schema schema_lamp = {
     .doc =
         "A lamp near the sheets, with soft shadows; its light falls with the square of the distance. It is not drawn."};
 
-#define OF ScenePreview
-#define PREVIEW_ENVIRONMENT(TYPE, key, member, target, length, dimension, standard, range, text) \
-    AS_ROW_AT(#key, TYPE, member, length, dimension, ALWAYS, text, range)
+#define PREVIEW_ENVIRONMENT PREVIEW_ROW
 static const SchemaRow environment_rows[] = {
-    {"kind", ROW_ENUM, DIM_NONE, AT(ScenePreview, environment), .names = sky_names,
+    {"kind", ROW_ENUM, DIM_NONE, AT(ScenePreview, def.sky), .names = sky_names,
      .doc = "`even`: the same from everywhere above; `studio`: a dim room with a tall window across from the light and "
             "a lamp; `open`: a clear day"},
     {"picture", ROW_FILE, DIM_NONE, AT(ScenePreview, environment_picture),
@@ -73,7 +68,6 @@ static const SchemaRow environment_rows[] = {
          "PNG or JPEG of the whole surroundings, instead of a kind: twice as wide as high; its centre faces +y, its top is up"},
 #include "preview/preview.def"
 };
-#undef OF
 static const Schema schema_environment = {
     .title = "the environment",
     .size = sizeof(ScenePreview),
@@ -81,30 +75,25 @@ static const Schema schema_environment = {
     .doc = "Where the light of `sky` comes from, and what shiny surfaces mirror. It is scaled so that a surface that "
            "faces up gets as much light as from an even sky."};
 
-#define OF ScenePreview
-#define PREVIEW_GROUND(TYPE, key, member, target, length, dimension, standard, range, text) \
-    AS_ROW_AT(#key, TYPE, member, length, dimension, ALWAYS, text, range)
+#define PREVIEW_GROUND PREVIEW_ROW
 static const SchemaRow ground_rows[] = {
-    {"kind", ROW_ENUM, DIM_NONE, AT(ScenePreview, ground), .names = ground_names,
+    {"kind", ROW_ENUM, DIM_NONE, AT(ScenePreview, def.ground), .names = ground_names,
      .doc = "`wood`: planks along x; `stone`: a honed slab; `plain`: one colour"},
-    {"height", ROW_FLOAT, DIM_LENGTH, AT(ScenePreview, ground_height), .flags = ROW_NONE, WITHIN(-1e4, 1e4),
+    {"height", ROW_FLOAT, DIM_LENGTH, AT(ScenePreview, def.ground_height), .flags = ROW_NONE, WITHIN(-1e4, 1e4),
      .doc = "its z; `none`: no ground is drawn"},
 #include "preview/preview.def"
 };
-#undef OF
 static const Schema schema_ground = {
     .title = "the ground",
     .size = sizeof(ScenePreview),
     ROWS(ground_rows),
     .doc = "A floor that is drawn. To let sheets rest on it, add a plane to `colliders` as well."};
 
-#define OF ScenePreview
-#define PREVIEW_MAIN(TYPE, key, member, target, length, dimension, standard, range, text) \
-    AS_ROW_AT(#key, TYPE, member, length, dimension, ALWAYS, text, range)
+#define PREVIEW_MAIN PREVIEW_ROW
 static const SchemaRow preview_rows[] = {
-    {"size", ROW_INTS, DIM_NONE, AT(ScenePreview, size), .length = 2, WITHIN(16, 16384),
+    {"size", ROW_INTS, DIM_NONE, AT(ScenePreview, def.width), .length = 2, WITHIN(16, 16384),
      .doc = "width and height in pixels, even numbers for video"},
-    {"camera", ROW_MAP, DIM_NONE, AT(ScenePreview, camera), .sub = &schema_camera, .doc = "the camera"},
+    {"camera", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_camera, .doc = "the camera"},
     {"camera_path", ROW_LIST, DIM_NONE, AT(ScenePreview, camera_keys), EXTRA(ScenePreview, camera_key_count),
      .sub = &schema_camera_key, .doc = "positions, targets and focus of the camera over time; empty: it stands still"},
     {"light", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_light, .doc = "the distant light"},
@@ -114,11 +103,13 @@ static const SchemaRow preview_rows[] = {
     {"ground", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_ground, .doc = "the floor"},
     {"shutter", ROW_FLOAT, DIM_FRACTION, AT(ScenePreview, shutter), WITHIN(0, 1),
      .doc = "share of a frame's time during which the shutter is open; film has 0.5; 0: no motion blur"},
-    {"plain", ROW_BOOL, DIM_NONE, AT(ScenePreview, plain),
+    {"plain", ROW_BOOL, DIM_NONE, AT(ScenePreview, def.plain),
      .doc = "yes: sheets are drawn as if nothing had burnt, to show their shapes"},
 #include "preview/preview.def"
 };
-#undef OF
+// `size` is both
+_Static_assert(offsetof(PreviewDef, height) == offsetof(PreviewDef, width) + sizeof(int), "height follows width");
+
 const Schema schema_preview = {.title = "the preview",
                                .size = sizeof(ScenePreview),
                                ROWS(preview_rows),

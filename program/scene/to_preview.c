@@ -9,44 +9,20 @@
 
 void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *def) {
     const ScenePreview *preview = &scene->preview;
-    *def = (PreviewDef){
-        .width = preview->size[0],
-        .height = preview->size[1],
-        .samples = preview->samples,
-        .thread_count = 1,
-        .camera = preview->camera,
-        .sun_angle = preview->light_angle,
-        .lamp_radius = preview->lamp_radius,
-        .ground_height = preview->ground_height,
-        .exposure = preview->exposure,
-        .hottest = preview->hottest,
-        .sparks = preview->sparks,
-        .flakes = preview->flakes,
-        .wisps = preview->wisps,
-        .plain = preview->plain,
-        .shutter = preview->shutter / scene->fps,
-        .pace = (float)scene->sim.pace,
-        .sky = assets->sky.rgb ? PREVIEW_SKY_PICTURE : preview->environment,
-        .sky_picture = assets->sky.rgb ? &assets->sky : NULL,
-        .sky_turn = preview->environment_turn,
-        .ground = preview->ground,
-        .ground_gloss = preview->ground_gloss,
-        .ground_stain = preview->ground_stain,
-        .seed = (uint32_t)scene->sim.seed,
-        .pictures = assets->pictures,
-        .colours = (const float(*)[3])assets->colours,
-        .transmittances = assets->transmittances,
-        .looks = assets->looks,
-        .sheet_count = assets->sheet_count,
-    };
+    *def = preview->def;
+    def->shutter = preview->shutter / scene->fps;
+    def->pace = (float)scene->sim.pace;
+    def->seed = (uint32_t)scene->sim.seed;
+    if (assets->sky.rgb) {
+        def->sky = PREVIEW_SKY_PICTURE;
+        def->sky_picture = &assets->sky;
+    }
+    def->pictures = assets->pictures;
+    def->colours = (const float(*)[3])assets->colours;
+    def->transmittances = assets->transmittances;
+    def->looks = assets->looks;
+    def->sheet_count = assets->sheet_count;
     scene_camera(scene, 0, &def->camera);
-    memcpy(def->sun_direction, preview->light_direction, sizeof def->sun_direction);
-    memcpy(def->sun_colour, preview->light_colour, sizeof def->sun_colour);
-    memcpy(def->lamp_position, preview->lamp_position, sizeof def->lamp_position);
-    memcpy(def->lamp_colour, preview->lamp_colour, sizeof def->lamp_colour);
-    memcpy(def->sky_colour, preview->sky, sizeof def->sky_colour);
-    memcpy(def->ground_colour, preview->ground_colour, sizeof def->ground_colour);
-    memcpy(def->background, preview->background, sizeof def->background);
 }
 
 // ---- a camera that moves
@@ -68,7 +44,7 @@ void scene_camera(const Scene *scene, double time, PreviewCamera *camera) {
     const ScenePreview *preview = &scene->preview;
     const SceneCameraKey *keys = preview->camera_keys;
     const uint32_t count = preview->camera_key_count;
-    *camera = preview->camera;
+    *camera = preview->def.camera;
     if (!count) return;
 
     // the two keys before the time and the two after it; at the ends the last one again
@@ -88,7 +64,7 @@ void scene_camera(const Scene *scene, double time, PreviewCamera *camera) {
             float p[4];
             for (int k = 0; k < 4; k++) {
                 memcpy(&p[k], (const char *)&keys[at[k]] + members[m] + (size_t)c * sizeof(float), sizeof(float));
-                if (m == 2 && !(p[k] > 0)) p[k] = preview->camera.fov;
+                if (m == 2 && !(p[k] > 0)) p[k] = preview->def.camera.fov;
                 if (m == 3 && !(p[k] > 0)) // the target's distance
                     p[k] = float3_length(float3_sub(float3_load(keys[at[k]].target), float3_load(keys[at[k]].eye)));
             }
@@ -137,7 +113,7 @@ static void camera_look(const Box *box, const float up[3], double back[3], doubl
 }
 
 void scene_frame(Scene *scene, const SceneAssets *assets) {
-    PreviewCamera *camera = &scene->preview.camera;
+    PreviewCamera *camera = &scene->preview.def.camera;
     if (scene->preview.camera_given) return;
 
     Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
@@ -161,7 +137,7 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
     if (scene->source_count) box.high[2] += 0.3 * longest; // for flames
 
     // as far back as the corners of the box need, with a margin of 15 %
-    double half = tan(0.5 * (double)camera->fov), aspect = (double)scene->preview.size[0] / scene->preview.size[1];
+    double half = tan(0.5 * (double)camera->fov), aspect = (double)scene->preview.def.width / scene->preview.def.height;
 
     for (int corner = 0; corner < 8; corner++) {
         double d[3]; // from the centre to the corner

@@ -589,7 +589,7 @@ TEST(the_examples_build) {
 
 /// How far from the picture's middle the sheets reach at most, 1 being its border; infinite when behind the camera.
 static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
-    const PreviewCamera *c = &scene->preview.camera;
+    const PreviewCamera *c = &scene->preview.def.camera;
     double view[3], right[3], top[3], max = 0, lengths[2] = {0, 0};
     for (int i = 0; i < 3; i++) view[i] = (double)c->target[i] - (double)c->eye[i];
     for (int i = 0; i < 3; i++)
@@ -597,7 +597,7 @@ static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
     for (int i = 0; i < 3; i++)
         top[i] = right[(i + 1) % 3] * view[(i + 2) % 3] - right[(i + 2) % 3] * view[(i + 1) % 3];
     for (int i = 0; i < 3; i++) lengths[0] += view[i] * view[i], lengths[1] += right[i] * right[i];
-    double half = tan(0.5 * (double)c->fov), aspect = (double)scene->preview.size[0] / scene->preview.size[1];
+    double half = tan(0.5 * (double)c->fov), aspect = (double)scene->preview.def.width / scene->preview.def.height;
     for (uint32_t s = 0; s < assets->sheet_count; s++)
         for (uint32_t v = 0; v < assets->meshes[s].vertex_count; v++) {
             double along = 0, x = 0, y = 0;
@@ -683,7 +683,7 @@ static double half_shown(const char *more) {
     snprintf(text, sizeof text, "{sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}, rotate: [90, 0, 0]}]%s}", more);
     Loaded at = load(text, NULL);
     scene_frame(at.scene, &at.assets);
-    const PreviewCamera *camera = &at.scene->preview.camera;
+    const PreviewCamera *camera = &at.scene->preview.def.camera;
     double square = 0;
     for (int k = 0; k < 3; k++) square += pow((double)camera->eye[k] - (double)camera->target[k], 2);
     const double half = sqrt(square) * tan(0.5 * (double)camera->fov);
@@ -713,7 +713,7 @@ TEST(the_camera_finds_the_sheets) {
                                : scenes[i],
                          NULL);
         scene_frame(at.scene, &at.assets);
-        const PreviewCamera *camera = &at.scene->preview.camera;
+        const PreviewCamera *camera = &at.scene->preview.def.camera;
         const double reach = reach_in_picture(at.scene, &at.assets);
         if (given) assert_true(camera->eye[0] == 5 && camera->target[0] == 0);
         else assert_true(reach > 0.55 && reach < 1);
@@ -728,7 +728,7 @@ TEST(the_camera_finds_the_sheets) {
     for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
         Loaded at = load(points[i], NULL);
         scene_frame(at.scene, &at.assets);
-        const PreviewCamera *camera = &at.scene->preview.camera;
+        const PreviewCamera *camera = &at.scene->preview.def.camera;
         double square = 0;
         for (int k = 0; k < 3; k++) square += pow((double)camera->eye[k] - (double)camera->target[k], 2);
         print_message("%g m from the sheet\n", sqrt(square));
@@ -738,9 +738,9 @@ TEST(the_camera_finds_the_sheets) {
 
     // too far for a camera: the default one stays
     Loaded at = load("sheets: [{grid: {size: [9000, 9000], cells: [2, 2]}}]", NULL);
-    PreviewCamera before = at.scene->preview.camera;
+    PreviewCamera before = at.scene->preview.def.camera;
     scene_frame(at.scene, &at.assets);
-    assert_memory_equal(&at.scene->preview.camera, &before, sizeof before);
+    assert_memory_equal(&at.scene->preview.def.camera, &before, sizeof before);
     unload(&at);
 
     // an up along the default line of sight is good where that is not used

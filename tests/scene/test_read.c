@@ -99,7 +99,7 @@ static void check_objects(const Scene *scene) {
     assert_true(scene->sim.gas.enabled && scene->sim.gas.radiated == 0.25f && scene->gas_detail == 4);
     assert_int_equal(scene->sim.solver.order[0], SINGE_YELLOW);
     assert_true(scene->sim.solver.regularisation[SINGE_RED] == 0.5f);
-    assert_true(scene->preview.ground_height == -0.5f && scene->preview.light_colour[0] == 3);
+    assert_true(scene->preview.def.ground_height == -0.5f && scene->preview.def.sun_colour[0] == 3);
 }
 
 TEST(values_are_read) {
@@ -167,7 +167,7 @@ TEST(missing_keys_take_defaults) {
     assert_memory_equal(&scene->sim.solver, &solver, offsetof(SingeSolverDef, height_gain) + sizeof solver.height_gain);
     assert_int_equal(scene->steps, 20);
     assert_true(scene->sim.time_step == 1.0f / 480);
-    assert_true(isinf(scene->preview.ground_height) && scene->preview.ground_height < 0);
+    assert_true(isinf(scene->preview.def.ground_height) && scene->preview.def.ground_height < 0);
     scene_free(scene);
 }
 
@@ -265,7 +265,7 @@ TEST(set_overrides_values) {
     assert_true(scene->sheets[0].material.def.weight[SINGE_RED].value == 0.25f);
     assert_int_equal(scene->frames, 4); // the last one counts
     assert_true(scene->sources[0].def.start == 2);
-    assert_true(scene->preview.camera.eye[1] == -1);
+    assert_true(scene->preview.def.camera.eye[1] == -1);
     assert_int_equal(scene->sheets[0].grid.cells[1], 31);
     assert_int_equal(scene->sim.solver.substeps, 9);
     assert_true(scene->sources[0].keys[0].position[2] == 0.007f);
