@@ -189,6 +189,9 @@ void mask_fill(Preview *preview);
 /// Whether a sheet or a shape may be seen in the block of this pixel.
 bool mask_covers(const Preview *preview, int x, int y);
 
+/// And whether lens or shutter may blur it there.
+bool mask_blurs(const Preview *preview, int x, int y);
+
 // stain.c
 SingeResult stain_create(Preview *preview, SingeError *error);
 void stain_free(Preview *preview);

@@ -1,12 +1,16 @@
 // Which blocks of the picture a sheet or a shape may touch: the rest needs no rays from the camera.
 //
 // A triangle marks the rectangle around its three corners in the picture, a shape the rectangle of the sphere around
-// it, widened by the reach of a pixel's samples. Anything that reaches behind the camera marks all blocks.
+// it, widened by the reach of a pixel's samples. Anything that reaches behind the camera marks all blocks. What lens or
+// shutter blur marks blocks as blurred.
 
 #include "preview/internal.h"
 
 #include <string.h>
 
+enum { MASK_SHARP = 1, MASK_BLURRED = 2 };
+
+/// In pixels.
 typedef struct Rectangle {
     float low[2], high[2];
 } Rectangle;
@@ -19,7 +23,7 @@ static int blocks_down(const Preview *preview) { return (preview->def.height + B
 
 size_t mask_size(const Preview *preview) { return (size_t)blocks_across(preview) * (size_t)blocks_down(preview); }
 
-/// Widens the rectangle, in pixels, to hold a point as the lens spreads it. Behind the camera or too near: everything.
+/// Widens the rectangle to hold a point as the lens spreads it. Behind the camera or too near: everything.
 static void include(const Preview *preview, Float3 p, Rectangle *r) {
     const Camera *camera = &preview->camera;
     Float3 d = float3_sub(p, camera->eye);
@@ -40,15 +44,30 @@ static void include(const Preview *preview, Float3 p, Rectangle *r) {
     }
 }
 
-static void mark(Preview *preview, const Rectangle *r) {
+/// Widens the rectangle to hold another; returns the longer side of that.
+static float join(const Rectangle *other, Rectangle *r) {
+    for (int c = 0; c < 2; c++) {
+        r->low[c] = minf(r->low[c], other->low[c]);
+        r->high[c] = maxf(r->high[c], other->high[c]);
+    }
+
+    return maxf(other->high[0] - other->low[0], other->high[1] - other->low[1]);
+}
+
+/// `blur`: pixels over which lens and shutter spread a point of what is in the rectangle.
+static void mark(Preview *preview, const Rectangle *r, float blur) {
     const float reach = 1.5f; // pixels; a sample lies up to 0.9 from the centre of its pixel
+    const uint8_t kind = blur > 4 ? MASK_BLURRED : MASK_SHARP;
     int across = blocks_across(preview), down = blocks_down(preview);
     int x0 = (int)clampf((r->low[0] - reach) / BLOCK, 0, (float)across);
     int y0 = (int)clampf((r->low[1] - reach) / BLOCK, 0, (float)down);
     int x1 = (int)clampf((r->high[0] + reach) / BLOCK, -1, (float)(across - 1));
     int y1 = (int)clampf((r->high[1] + reach) / BLOCK, -1, (float)(down - 1));
     for (int y = y0; y <= y1; y++)
-        for (int x = x0; x <= x1; x++) preview->mask[(size_t)y * (size_t)across + (size_t)x] = 1;
+        for (int x = x0; x <= x1; x++) {
+            uint8_t *block = &preview->mask[(size_t)y * (size_t)across + (size_t)x];
+            if (*block < kind) *block = kind;
+        }
 }
 
 void mask_fill(Preview *preview) {
@@ -58,28 +77,38 @@ void mask_fill(Preview *preview) {
 
     for (uint32_t t = 0; t < scene->triangle_count; t++) {
         Rectangle r = nowhere;
+        float blur = 0;
         for (int k = 0; k < 3; k++) {
+            Rectangle point = nowhere;
             uint32_t v = scene->triangles[t][k];
-            for (int end = 0; moves && end < 2; end++) include(preview, float3_load(scene->moved[end][v]), &r);
-            if (!moves) include(preview, float3_load(scene->positions[v]), &r);
+            for (int end = 0; moves && end < 2; end++) include(preview, float3_load(scene->moved[end][v]), &point);
+            if (!moves) include(preview, float3_load(scene->positions[v]), &point);
+            blur = maxf(blur, join(&point, &r));
         }
 
-        mark(preview, &r);
+        mark(preview, &r, blur);
     }
 
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         Float3 centre = shape_centre(&preview->shapes[k]);
         float extent = shape_extent(&preview->shapes[k], preview->def.shutter);
         Rectangle r = nowhere;
-        for (int corner = 0; corner < 8; corner++)
+        float blur = extent > shape_extent(&preview->shapes[k], 0) ? INFINITY : 0; // it moves
+        for (int corner = 0; corner < 8; corner++) {
+            Rectangle point = nowhere;
             include(preview,
                     float3(centre.x + (corner & 1 ? extent : -extent), centre.y + (corner & 2 ? extent : -extent),
                            centre.z + (corner & 4 ? extent : -extent)),
-                    &r);
-        mark(preview, &r);
+                    &point);
+            blur = maxf(blur, join(&point, &r));
+        }
+        mark(preview, &r, blur);
     }
 }
 
-bool mask_covers(const Preview *preview, int x, int y) {
-    return preview->mask[(size_t)(y / BLOCK) * (size_t)blocks_across(preview) + (size_t)(x / BLOCK)] != 0;
+static int mask_at(const Preview *preview, int x, int y) {
+    return preview->mask[(size_t)(y / BLOCK) * (size_t)blocks_across(preview) + (size_t)(x / BLOCK)];
 }
+
+bool mask_covers(const Preview *preview, int x, int y) { return mask_at(preview, x, y) != 0; }
+bool mask_blurs(const Preview *preview, int x, int y) { return mask_at(preview, x, y) == MASK_BLURRED; }

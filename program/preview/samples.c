@@ -154,16 +154,21 @@ static bool is_beside_edge(const Block *block, int lane) {
 
 /// The lanes whose first samples differ by more than `calm`, or from their neighbours'. Returns how many.
 static int find_restless(const Block *block, const int *active, float calm, int *more) {
-    int count = 0;
+    int count = 0, hits = 0, samples = 0;
     float low = INFINITY, high = -INFINITY;
     for (int i = 0; i < LANES; i++) {
         low = minf(low, block->low[i]);
         high = maxf(high, block->high[i]);
+        hits += block->layer[i].hits;
+        samples += block->layer[i].samples;
     }
+
+    // where what is blurred ends, few samples agree by chance
+    const bool ends = block->spread > 2 && hits > 0 && hits < samples;
 
     for (int i = 0; i < LANES; i++) {
         bool rests = !is_edge(&block->layer[i]) && block->high[i] - block->low[i] < calm;
-        if (block->spread > 1) rests = rests && block->high[i] - block->low[i] < 0.7f * calm;
+        if (block->spread > 1) rests = rests && !ends && block->high[i] - block->low[i] < 0.7f * calm;
         else rests = rests && !is_beside_edge(block, i) && high - low < 0.15f;
         more[i] = active[i] && !rests ? -1 : 0;
         count += more[i] != 0;
@@ -175,12 +180,13 @@ static int find_restless(const Block *block, const int *active, float calm, int 
 /// Takes SAMPLES_FIRST samples of every pixel, and the rest of pixels that need it. Bare blocks get the first only. Where
 /// nothing blocks the light two are enough, in bare blocks and in those that are evenly lit.
 static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
+    const bool blurs = mask_blurs(preview, block->x[0], block->y[0]); // even if the first samples miss what is blurred
     int more[LANES], samples = preview->def.samples, first = SAMPLES_FIRST;
     if (samples < first || is_still(preview)) first = samples;
     for (int s = 0; s < first; s++) {
         add_sample(preview, block, active, bare, s, active);
         if (s != 1 || block->hidden || is_still(preview)) continue;
-        if (bare || (block->spread <= 1 && !find_restless(block, active, 0.5f * CALM, more))) first = s + 1;
+        if (bare || (!blurs && block->spread <= 1 && !find_restless(block, active, 0.5f * CALM, more))) first = s + 1;
     }
 
     bool on = first < samples && !bare && first > 2 && find_restless(block, active, CALM, more);

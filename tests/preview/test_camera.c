@@ -126,6 +126,37 @@ TEST(a_shutter_blurs_motion) {
     assert_true(sharpness(moving, 1, 0) > 0.9f * sharpness(still, 1, 0));
 }
 
+/// The blurred edge of a bright sheet that moves before the dark is no comb: its pixels get as many samples where the first
+/// few have missed the sheet, or hit it, by chance.
+TEST(a_moving_edge_is_smooth) {
+    static uint8_t exact[BYTES], few[BYTES];
+    static float velocity[4][3];
+    Float4 q;
+    quad_make(&q, 0.06f, 0);
+    q.surface.velocity = velocity;
+    for (int i = 0; i < 4; i++) velocity[i][0] = 2, velocity[i][1] = 1;
+    PreviewDef def = above();
+    def.ground_height = -INFINITY, def.shutter = 0.02f; // 4.5 cm of way, 8 pixels
+    for (int c = 0; c < 3; c++) def.background[c] = 0;
+    def.samples = 256;
+    draw(&def, &q.surface, 0, exact);
+    def.samples = 16;
+    draw(&def, &q.surface, 0, few);
+
+    const int inside = pixel(exact, W / 2, H / 2)[0];
+    float squares = 0;
+    int edge = 0;
+    for (int i = 0; i < W * H; i++) {
+        if (exact[3 * i] < 0.1f * (float)inside || exact[3 * i] > 0.9f * (float)inside) continue;
+        const float wrong = (float)(few[3 * i] - exact[3 * i]);
+        squares += wrong * wrong;
+        edge++;
+    }
+    const float rms = sqrtf(squares / (float)edge);
+    print_message("a moving edge of %d pixels: rms %.1f of 255\n", edge, (double)rms);
+    assert_true(edge > 200 && rms < 20); // 28 if blocks go by what their first samples meet
+}
+
 TEST(a_moving_ball_is_blurred) {
     static uint8_t rgb[BYTES];
     SingeSurface nothing = {0};
