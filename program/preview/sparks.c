@@ -18,7 +18,7 @@ enum { SPARKS_A_SLOT = 4 }; ///< that a site may throw in a slot
 #define SPARK_COLD 900.0f   ///< K
 #define COOLING 1.7f
 #define SPARK_OPEN (1 / 120.0f) ///< s, the shortest exposure of a spark: eye and film keep it
-#define SPARKS_A_METRE 420.0f   ///< 1/(m s), of sites that glow along a few cm
+#define SPARKS_A_METRE 900.0f   ///< 1/(m s), of sites that glow along a few cm
 #define SPARKS_CROWD 0.25f      ///< m of glowing line above which sparks become rarer
 
 /// A spark's flight.
@@ -53,9 +53,10 @@ static void spark_draw(Preview *preview, const Spark *spark, float begin, float 
     }
     airborne_sight(preview, points, SIGHT_POINTS, seen);
 
-    const float blur = camera_blur(&preview->camera, depth), radius = maxf(1.15f, blur);
+    const float pixel = preview->camera.pixel * depth;
+    const float radius = maxf(maxf(1.15f, 1.2f * spark->size / pixel), camera_blur(&preview->camera, depth));
     const int dots = 1 + (int)minf(streak / (0.45f * radius), 400);
-    const float wide = maxf(spark->size / (preview->camera.pixel * depth), 0.6f); // a lens spreads any point
+    const float wide = maxf(spark->size / pixel, 0.6f); // a lens spreads any point
     for (int k = 0; k < dots; k++) {
         float part = ((float)k + 0.5f) / (float)dots, age = mixf(begin, end, part);
         float temperature = SPARK_COLD + (spark->hot - SPARK_COLD) * expf(-COOLING * age / spark->life);
@@ -65,7 +66,7 @@ static void spark_draw(Preview *preview, const Spark *spark, float begin, float 
 
         // a shutter opens and closes gradually, so that streaks end in points
         const float lets = 1.5f * (1 - (2 * part - 1) * (2 * part - 1));
-        const float flicker = 1 + 0.6f * sinf(90 * age + 7 * spark->turn[1]);
+        const float flicker = 1 + 0.7f * sinf((60 + 90 * spark->turn[0]) * age + 7 * spark->turn[1]);
         float light = EMBER_GAIN * strength * flicker * left * open * lets * 0.25f * PI_F * wide * wide / (float)dots;
         airborne_dot(preview, at, radius, float3_scale(glow, light), 0);
     }
@@ -101,16 +102,18 @@ void sparks_draw(Preview *preview) {
                 float r[10];
                 for (uint32_t n = 0; n < 10; n++) r[n] = hash_unit(key + 1 + n);
                 const float turn = 2 * PI_F * r[0], up = 0.15f + 0.85f * r[1], out = sqrtf(1 - up * up);
-                const float speed = (burst ? 0.5f : 0.15f) + 0.9f * r[2] * r[2] * r[2];
+                const float fast = r[2] * r[2] * r[2] * r[2], large = r[5] * r[5] * r[5] * r[5];
+                const float speed = (burst ? 0.5f : 0.1f) + 1.6f * fast;
 
-                // the air leans as the eddies of the moment do; large crumbs fall through it
+                // the air leans as the eddies of the moment do; large crumbs fall through it. Most are small and
+                // dull, slow and soon out: sparks of one size and speed look like dashes
                 const Spark spark = {.from = float3_mad(sites[i].position, float3(r[6] - 0.5f, r[7] - 0.5f, 0), 0.006f),
                                      .launch = float3_scale(float3(out * cosf(turn), out * sinf(turn), up), speed),
                                      .air = float3(0.28f * (r[8] - 0.5f), 0.28f * (r[9] - 0.5f),
-                                                   updraft * (0.55f + 0.7f * r[9]) - 0.5f * r[5]),
-                                     .life = LIFE * (0.3f + 0.7f * r[3]),
-                                     .hot = 1330 + 560 * r[4] * r[4], // few are bright
-                                     .size = 0.00030f + 0.0006f * r[5] * r[5] * r[5],
+                                                   updraft * (0.3f + 1.1f * r[9]) - 0.7f * large),
+                                     .life = LIFE * (0.2f + 0.8f * r[3] * r[3]),
+                                     .hot = 1300 + 700 * r[4] * r[4] * r[4],
+                                     .size = 0.00022f + 0.0012f * large,
                                      .wander = 0.02f + 0.10f * r[6],
                                      .turn = {2 * PI_F * r[7], 2 * PI_F * r[8]}};
                 float age = now - ((float)slot + hash_unit(key ^ 0x5bd1e995u)) * SLOT;

@@ -424,6 +424,48 @@ TEST(embers_throw_sparks_and_smoke) {
     }
 }
 
+/// Adds up the light of a spark, which touches pixel `at`, and takes it away.
+static float take_spark(float (*fire)[4], int at) {
+    if (at < 0 || at >= W * (H - 10) || fire[at][0] < 0.02f) return 0;
+    float light = fire[at][0];
+    fire[at][0] = 0;
+    for (int k = 0; k < 9; k++) light += take_spark(fire, at + W * (k / 3 - 1) + k % 3 - 1);
+    return light;
+}
+
+/// Of many sparks most are faint, and few give most of the light. Sparks that were alike looked like dashes.
+TEST(sparks_differ) {
+    enum { FRAMES = 24 };
+    static float fire[W * H][4];
+    static Burning paper;
+    burning_make(&paper);
+    for (int v = 0; v < 4 * WIDE; v++) {
+        paper.burn[v] = paper.position[v][1] > 0.004f ? 0.9f : 0.3f;
+        paper.temperature[v] = 1050, paper.rate[v] = 1;
+    }
+    PreviewDef def = aside(0);
+    def.camera = (PreviewCamera){.eye = {0, -1, 0.1f}, .target = {0, 0, 0.1f}, .up = {0, 0, 1}, .fov = 0.2f};
+    def.flakes = def.wisps = 0;
+    Preview *preview = NULL;
+    SingeError error;
+    PreviewLayers layers = {.fire = fire};
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    int sparks = 0;
+    float sum = 0, squares = 0;
+    for (int k = 0; k < FRAMES; k++) {
+        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, &error), SINGE_OK);
+        for (int i = 0; i < W * (H - 10); i++) {
+            const float light = take_spark(fire, i);
+            sparks += light > 0, sum += light, squares += light * light;
+        }
+    }
+    preview_destroy(preview);
+    const float mean = sum / (float)sparks, varies = sqrtf(squares / (float)sparks - mean * mean) / mean;
+    print_message("the light of %d sparks varies by %.2f of the mean\n", sparks, (double)varies);
+    assert_true(sparks > 3 * FRAMES);
+    assert_true(varies > 1.7f); // 1.48
+}
+
 /// Flicker continues over time and stays where the gas is.
 TEST(flicker_continues_over_time) {
     static uint8_t a[BYTES], b[BYTES];
