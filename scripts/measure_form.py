@@ -18,7 +18,7 @@ import re
 import sys
 
 # the bars: static functions that are named once, in % of all, and assignments that are joined by commas
-ONCE, JOINED = 40.0, 30
+ONCE, JOINED = 40.0, 20
 
 DEFINITION = re.compile(r"^static (?!inline\b)(?:[\w]+[ *]+)+?\**(\w+)\(", re.MULTILINE)
 WORD = r"[\w\]\[.>)(*-]"
@@ -51,6 +51,12 @@ def pieces(statement):
     yield statement[begin:]
 
 
+def without_brackets(text):
+    """The text without what brackets hold."""
+    inner = re.sub(r"\([^()\[\]{}]*\)|\[[^()\[\]{}]*\]|\{[^()\[\]{}]*\}", "", text)
+    return text if inner == text else without_brackets(inner)
+
+
 def commas(text):
     """(line, statement) of each statement that joins assignments by commas."""
     for match in re.finditer(r"[^;{}]+;", text):
@@ -58,12 +64,14 @@ def commas(text):
         number = text.count("\n", 0, match.start() + len(match.group()) - len(match.group().lstrip())) + 1
         statement = re.sub(r"^(?:(?:else|do)\s+|(?:if|for|while|switch)\s*\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)\s*|case [^:]*:\s*)+",
                            "", statement)
-        if re.match(r"(for|if|while)\b|#|return\b|typedef\b|static\b|const\b|enum\b|struct\b", statement):
+        if re.match(r"(for|if|while)\b|#|\\|,\s*\w+ =|return\b|typedef\b|static\b|const\b|enum\b|struct\b", statement):
             continue
+        if re.match(r"\w+ ?\*restrict\b|\w+ ?\(\*\w+\)\[", statement):
+            continue  # a declaration, as the next
         if re.match(r"[A-Za-z_]\w*(?: \w+)* ?\**(?:const )?\**[A-Za-z_]\w*\s*(?:\[[^]]*\]\s*)*(=|,)", statement) and re.match(
                 r"[A-Za-z_]\w*[ *]+[*A-Za-z_]", statement):
             continue  # a declaration
-        count = sum(1 for piece in pieces(statement) if ASSIGNMENT.search(re.sub(r"[(\[{].*[)\]}]", "", piece)))
+        count = sum(1 for piece in pieces(statement) if ASSIGNMENT.search(without_brackets(piece)))
         if count > 1:
             yield number, " ".join(statement.split())
 

@@ -44,19 +44,25 @@ static void output_fill(OutputBench *b) {
         const float x = (float)(v % SIDE), y = (float)(v / SIDE), hot = y > 0.5f * SIDE ? y / SIDE : 0;
         const float flat[3] = {1e-3f * x, 1e-3f * y, 0}, noise = output_noise(&seed);
         for (int c = 0; c < 3; c++) {
-            b->rest[v][c] = flat[c], b->position[v][c] = flat[c] + 1e-4f * output_noise(&seed);
-            b->velocity[v][c] = output_noise(&seed) - 0.5f,
+            b->rest[v][c] = flat[c];
+            b->position[v][c] = flat[c] + 1e-4f * output_noise(&seed);
+            b->velocity[v][c] = output_noise(&seed) - 0.5f;
             b->normal[v][c] = (float)(c == 2) + 0.01f * output_noise(&seed);
         }
 
-        b->uv[v][0] = x / (SIDE - 1), b->uv[v][1] = y / (SIDE - 1);
-        b->temperature[v] = hot > 0 ? 400 + 800 * noise * hot : 293.15f, b->peak[v] = b->temperature[v] + hot;
+        b->uv[v][0] = x / (SIDE - 1);
+        b->uv[v][1] = y / (SIDE - 1);
+        b->temperature[v] = hot > 0 ? 400 + 800 * noise * hot : 293.15f;
+        b->peak[v] = b->temperature[v] + hot;
         b->mass[v] = 1 - 0.5f * hot * noise;
         b->rate[v] = hot * noise;
         b->coal[v] = 0.3f * hot;
         b->ash[v] = 0.1f * hot * noise;
-        b->burn[v] = 1 - b->mass[v], b->ignited[v] = hot > 0 ? 0.5f + noise : -1;
-        b->piece[v] = hot > 0.9f ? 1 + (int32_t)(v % 7) : 0, b->source[v] = v % 5 ? (int32_t)v : -1, b->sheet[v] = 0;
+        b->burn[v] = 1 - b->mass[v];
+        b->ignited[v] = hot > 0 ? 0.5f + noise : -1;
+        b->piece[v] = hot > 0.9f ? 1 + (int32_t)(v % 7) : 0;
+        b->source[v] = v % 5 ? (int32_t)v : -1;
+        b->sheet[v] = 0;
     }
 
     for (uint32_t y = 0; y + 1 < SIDE; y++)

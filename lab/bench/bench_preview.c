@@ -82,7 +82,8 @@ static void *make_surface(SingeSurface *s) {
         s->velocity[i][1] = 0.1f * z / 0.01f;
         s->velocity[i][2] = 0;
         s->temperature[i] = s->temperature_peak[i] = 293 + 830 * expf(-ahead);
-        s->burn[i] = burn, s->burn_rate[i] = 0.9f * expf(-powf((edge - 0.001f) / 0.005f, 2));
+        s->burn[i] = burn;
+        s->burn_rate[i] = 0.9f * expf(-powf((edge - 0.001f) / 0.005f, 2));
         s->time_ignited[i] = burn > 0 ? fmaxf(0, 1 - 40 * (front - edge)) : -1;
         s->piece[i] = s->sheet[i] = 0;
     }

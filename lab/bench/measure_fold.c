@@ -99,7 +99,8 @@ static SingeResult fold_fill(SingeSim *sim, Fold *fold) {
     for (uint32_t v = 0; v < view.vertex_count; v++) {
         double x = (double)view.rest_position[v][0] - 0.75 * length;
         if (fabs(x) > 0.2 * length) continue;
-        along[0] += x * (double)view.position[v][0], along[1] += x * (double)view.position[v][2];
+        along[0] += x * (double)view.position[v][0];
+        along[1] += x * (double)view.position[v][2];
     }
 
     double turned = atan2(along[1], along[0]);

@@ -94,9 +94,14 @@ static SingeResult front_material(const BenchOptions *options, const BenchMateri
         setup.pace = cases->pace;
         setup.gas = direction != FRONT_STILL;
         setup.gas_cell = it->gas_cell;
-        if (it->wide) setup.length = 0.15f, setup.width = 0.05f;
-        if (direction == FRONT_UP) setup.gravity[0] = setup.gravity[2], setup.gravity[2] = 0;
-        if (direction == FRONT_DOWN) setup.gravity[0] = -setup.gravity[2], setup.gravity[2] = 0;
+        if (it->wide) {
+            setup.length = 0.15f;
+            setup.width = 0.05f;
+        }
+        if (direction == FRONT_UP || direction == FRONT_DOWN) {
+            setup.gravity[0] = direction == FRONT_UP ? setup.gravity[2] : -setup.gravity[2];
+            setup.gravity[2] = 0;
+        }
 
         StripResult result = {0};
         SingeResult code = strip_burn(&setup, &result, error);

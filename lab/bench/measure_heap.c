@@ -70,7 +70,8 @@ static SingeResult add_ball(SingeSim *sim, int cells_a_side) {
             for (uint32_t k = 0; k < 4; k++) {
                 uint32_t at[3], turn = upper ? k : 3 - k;
                 at[axis] = upper * n;
-                at[(axis + 1) % 3] = i + (turn == 1 || turn == 2), at[(axis + 2) % 3] = j + turn / 2;
+                at[(axis + 1) % 3] = i + (turn == 1 || turn == 2);
+                at[(axis + 2) % 3] = j + turn / 2;
                 uint32_t v = cells[4 * c + k] = ball_vertex(at, n);
                 float square = 0, *p = x + 3 * (size_t)v;
                 for (int d = 0; d < 3; d++) {

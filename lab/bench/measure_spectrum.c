@@ -94,7 +94,8 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
     if (positions && hot && cells) {
         for (uint32_t v = 0; v < row * rows; v++) {
             double z = v / row * strip->cell;
-            positions[3 * v] = (float)(v % row * strip->cell), positions[3 * v + 1] = 0;
+            positions[3 * v] = (float)(v % row * strip->cell);
+            positions[3 * v + 1] = 0;
             positions[3 * v + 2] = (float)z;
             hot[v] = (float)fmax(0, 1 - z / 0.004); // K above ignition at the edge, falling to 0 within 4 mm
         }

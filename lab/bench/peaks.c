@@ -84,7 +84,8 @@ bool peaks_measure(Peaks *peaks, int threads, double seconds) {
         size_t elements = (size_t)(smallest * pow(4, i)) / 12 / 16 * 16;
         double rate = run_threads(threads, elements, trial);
         if (rate == 0) break;
-        peaks->bytes[i] = 12.0 * (double)elements, peaks->gb_s[i] = 1e-9 * rate;
+        peaks->bytes[i] = 12.0 * (double)elements;
+        peaks->gb_s[i] = 1e-9 * rate;
         peaks->count = i + 1;
     }
 

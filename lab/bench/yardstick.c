@@ -44,7 +44,10 @@ double yardstick_run(Yardstick *yardstick) {
     // the same positions before every run: the same work, and no denormal numbers
     for (uint32_t i = 0; i < PARTICLES; i++) {
         float *x = yardstick->position[i];
-        x[0] = (float)(i % SIDE), x[1] = (float)(i / SIDE), x[2] = 0.1f * (float)(i * 7 % 11), x[3] = 1;
+        x[0] = (float)(i % SIDE);
+        x[1] = (float)(i / SIDE);
+        x[2] = 0.1f * (float)(i * 7 % 11);
+        x[3] = 1;
     }
 
     for (int pass = 0; pass < PASSES; pass++)

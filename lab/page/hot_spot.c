@@ -41,7 +41,9 @@ SingeResult spot_spread(Lab *lab, const SpotMesh *mesh, SingeHeatOperator operat
                         SingeError *error) {
     const double centre[3] = {(double)mesh->sides[0] / 2, (double)mesh->sides[1] / 2, 0.008}, seconds = 0.4;
     LabGrid grid = warm_grid(mesh->cells[0], mesh->cells[1], 1, operator);
-    grid.sides[0] = mesh->sides[0], grid.sides[1] = mesh->sides[1], grid.jitter = mesh->jitter;
+    grid.sides[0] = mesh->sides[0];
+    grid.sides[1] = mesh->sides[1];
+    grid.jitter = mesh->jitter;
     grid.field = spot;
     grid.context = centre;
     grid.time_step = 0.004f;

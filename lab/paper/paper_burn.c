@@ -359,8 +359,10 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
     play_close(&play);
     if (result) return result;
     double max = 0, hottest = 0;
-    for (int k = 0; k < RIVAL_LOOKS; k++)
-        max = fmax(max, fabs(curvature[k])), hottest = fmax(hottest, fabs(difference[k]));
+    for (int k = 0; k < RIVAL_LOOKS; k++) {
+        max = fmax(max, fabs(curvature[k]));
+        hottest = fmax(hottest, fabs(difference[k]));
+    }
     report_text(lab->report,
                 "A strip of card is heated from below for a second and cools. The lower side is up to %.0f K hotter, "
                 "and chars and shrinks more; the strip curls to %.0f /m. A model that bends by the temperature "

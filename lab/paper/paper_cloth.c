@@ -98,7 +98,8 @@ static SingeResult shrink_run(Lab *lab, int i, int n, bool drawn, Wrinkling *out
         for (int b = 0; b < SHAPE_BANDS; b++)
             if (!isnan(spectrum.height[b]) && spectrum.wave[b] >= 4 * cell && spectrum.wave[b] <= 0.05)
                 power += spectrum.height[b] * spectrum.height[b];
-        out->height[k] = sqrt(power), out->bend[k] = shape_bend(&view);
+        out->height[k] = sqrt(power);
+        out->bend[k] = shape_bend(&view);
         if (result || !drawn || (k != 3 && k != 6 && k != 9 && k != MOMENTS - 1)) continue;
         char caption[80];
         snprintf(caption, sizeof caption, "%s, %.1f s, blue %.0f %% shorter", shrink_cases[i].name, 0.1 * (k + 1),

@@ -54,7 +54,8 @@ static SingeResult strip_network(const SingeView *view, bool by_triangles, Singe
         for (uint32_t s = 0; s < view->spring_count[c]; s++, def.spring_count++) {
             const uint32_t *pair = view->springs[c][s], k = def.spring_count;
             const bool in_triangles = c == SINGE_BLUE || c == SINGE_RED;
-            ends[k][0] = pair[0], ends[k][1] = pair[1];
+            ends[k][0] = pair[0];
+            ends[k][1] = pair[1];
             lengths[k] = (double)view->spring_length[c][s];
             weights[k] = by_triangles && in_triangles && triangles_gone(view, pair) ? 0 : 1;
             sets[k] = c;

@@ -167,7 +167,8 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
         if (!result) {
             view = singe_sim_view(play.sim);
             measured[i] = curl_measure(&view);
-            exact[i] = curl_exact(curl_shrink[i], 0.5), beam[i] = curl_beam(curl_shrink[i]);
+            exact[i] = curl_exact(curl_shrink[i], 0.5);
+            beam[i] = curl_beam(curl_shrink[i]);
             percent[i] = 100 * curl_shrink[i];
             worst = fmax(worst, fabs(measured[i] / exact[i] - 1));
             off = fmax(off, fabs(measured[i] / beam[i] - 1));

@@ -117,7 +117,8 @@ SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, d
 
         for (uint32_t c = 0, k = 0; c < SINGE_COLOUR_COUNT; c++)
             for (uint32_t i = 0; i < view.spring_count[c]; i++, k++) {
-                ends[k][0] = view.springs[c][i][0], ends[k][1] = view.springs[c][i][1];
+                ends[k][0] = view.springs[c][i][0];
+                ends[k][1] = view.springs[c][i][1];
                 lengths[k] = (double)view.spring_length[c][i];
                 sets[k] = one_set ? 0 : c;
             }

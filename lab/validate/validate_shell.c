@@ -26,9 +26,13 @@ static SingeResult hold(SingeSim *sim, const double from[2], const double to[2],
     for (double x = from[0]; x <= to[0] + 1e-6; x += cell / 2)
         for (double y = from[1]; y <= to[1] + 1e-6 && pin.point_count < 1024; y += cell / 2) {
             float *p = points + 3 * pin.point_count++;
-            p[0] = (float)x, p[1] = (float)y, p[2] = 0;
+            p[0] = (float)x;
+            p[1] = (float)y;
+            p[2] = 0;
         }
-    pin.sheet = (SingeSheetId){0, 1}, pin.points = points, pin.radius = 0.3f * (float)cell;
+    pin.sheet = (SingeSheetId){0, 1};
+    pin.points = points;
+    pin.radius = 0.3f * (float)cell;
     pin.path_count = keys;
     pin.path = path;
     SingeResult result = singe_sim_add_pin(sim, &pin, &id);

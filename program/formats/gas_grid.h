@@ -16,7 +16,8 @@ enum { GAS_BLOCK = 8 }; ///< cells along a block's side: an OpenVDB leaf
 /// The box of cells [low, high) of a block, clipped to the gas.
 static inline void gas_block_box(const SingeGas *gas, const uint32_t block[3], uint32_t low[3], uint32_t high[3]) {
     for (int c = 0; c < 3; c++) {
-        low[c] = block[c] * GAS_BLOCK, high[c] = low[c] + GAS_BLOCK;
+        low[c] = block[c] * GAS_BLOCK;
+        high[c] = low[c] + GAS_BLOCK;
         if (high[c] > gas->size[c]) high[c] = gas->size[c];
     }
 }

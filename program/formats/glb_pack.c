@@ -38,7 +38,8 @@ static void *arena_take(size_t size) {
     const size_t rounded = (size + 63) & ~(size_t)63;
     if (rounded > arena.left) abort(); // see `most`
     uint8_t *taken = arena.next;
-    arena.next += rounded, arena.left -= rounded;
+    arena.next += rounded;
+    arena.left -= rounded;
     return taken;
 }
 
@@ -50,7 +51,8 @@ void glb_sort_triangles(GlbFile *f, uint32_t *corners, size_t count, uint32_t ve
     f->scratch.size = 0;
     uint8_t *room = sink_room(&f->scratch, most + 64);
     if (!room) return;
-    arena.next = room + (64 - (uintptr_t)room % 64), arena.left = most;
+    arena.next = room + (64 - (uintptr_t)room % 64);
+    arena.left = most;
     meshopt_setAllocator(arena_take, arena_give);
     meshopt_optimizeVertexCacheStrip(corners, corners, count, vertices);
 }

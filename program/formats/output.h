@@ -33,7 +33,8 @@ static inline bool output_mesh_has_uv(const OutputMesh *mesh) { return mesh->uv 
 static inline void output_mesh_uv(const OutputMesh *mesh, uint32_t cell, int corner, float uv[2]) {
     const size_t at = 4 * (size_t)cell + (size_t)corner;
     const float *from = mesh->corner_uv ? mesh->corner_uv + 2 * at : mesh->uv + 2 * (size_t)mesh->cells[at];
-    uv[0] = from[0], uv[1] = from[1];
+    uv[0] = from[0];
+    uv[1] = from[1];
 }
 
 /// The appearance of a sheet besides its surface.

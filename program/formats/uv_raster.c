@@ -18,7 +18,8 @@ static void uv_span(double low, double high, int size, int *first, int *last) {
 void uv_triangle(int size, const float uv[3][2], UvPixel *draw, void *context) {
     double p[3][2], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int i = 0; i < 3; i++) {
-        p[i][0] = (double)uv[i][0] * size, p[i][1] = (1 - (double)uv[i][1]) * size;
+        p[i][0] = (double)uv[i][0] * size;
+        p[i][1] = (1 - (double)uv[i][1]) * size;
         for (int k = 0; k < 2; k++) low[k] = fmin(low[k], p[i][k]), high[k] = fmax(high[k], p[i][k]);
     }
 

@@ -90,8 +90,10 @@ static inline float float4_dot(Float4 a, Float4 b) {
 static inline void float4_transpose(Float4 q[4]) {
     Float4 xy01 = FLOAT4_SHUFFLE(q[0], q[1], 0, 4, 1, 5), zw01 = FLOAT4_SHUFFLE(q[0], q[1], 2, 6, 3, 7);
     Float4 xy23 = FLOAT4_SHUFFLE(q[2], q[3], 0, 4, 1, 5), zw23 = FLOAT4_SHUFFLE(q[2], q[3], 2, 6, 3, 7);
-    q[0] = FLOAT4_SHUFFLE(xy01, xy23, 0, 1, 4, 5), q[1] = FLOAT4_SHUFFLE(xy01, xy23, 2, 3, 6, 7);
-    q[2] = FLOAT4_SHUFFLE(zw01, zw23, 0, 1, 4, 5), q[3] = FLOAT4_SHUFFLE(zw01, zw23, 2, 3, 6, 7);
+    q[0] = FLOAT4_SHUFFLE(xy01, xy23, 0, 1, 4, 5);
+    q[1] = FLOAT4_SHUFFLE(xy01, xy23, 2, 3, 6, 7);
+    q[2] = FLOAT4_SHUFFLE(zw01, zw23, 0, 1, 4, 5);
+    q[3] = FLOAT4_SHUFFLE(zw01, zw23, 2, 3, 6, 7);
 }
 
 #endif

@@ -67,7 +67,8 @@ static bool pool_watch(const atomic_uint *word, unsigned value, bool leaves) {
 static bool pool_take(Pool *pool, bool back, uint32_t *first, uint32_t *last) {
     uint64_t left = atomic_load_explicit(&pool->left, memory_order_relaxed);
     for (;;) {
-        *first = (uint32_t)(left >> 32), *last = (uint32_t)left;
+        *first = (uint32_t)(left >> 32);
+        *last = (uint32_t)left;
         if (*first >= *last) return false;
         const uint32_t share = (*last - *first) / (2 * (uint32_t)pool->thread_count), taken = share > 1 ? share : 1;
         const uint64_t rest = back ? left - taken : left + ((uint64_t)taken << 32);

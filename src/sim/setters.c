@@ -153,7 +153,8 @@ static void material_swap(SheetSource *source, MaterialValues *with) {
         if (material_stays(p)) continue;
         const float value = source->value[p];
         float *values = source->values[p];
-        source->value[p] = with->value[p], source->values[p] = with->values[p];
+        source->value[p] = with->value[p];
+        source->values[p] = with->values[p];
         with->value[p] = value;
         with->values[p] = values;
     }

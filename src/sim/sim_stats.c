@@ -30,7 +30,8 @@ static float stats_select(float *values, size_t n, size_t k) {
             while (values[j] > pivot) j--;
             if (i > j) break;
             float swap = values[i];
-            values[i++] = values[j], values[j] = swap;
+            values[i++] = values[j];
+            values[j] = swap;
             if (j-- == 0) break;
         }
         if (k <= j && j != SIZE_MAX) high = j;
