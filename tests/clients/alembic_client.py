@@ -5,14 +5,12 @@ usage: alembic_client.py SINGE FOLDER    FOLDER is emptied; burn.abc and gone.ab
 """
 
 import os
-import shutil
-import sys
 
 import imath
 import numpy as np
 from alembic3d import Abc, AbcGeom
 
-from burn import FRAMES, Frame, make, make_gone, same
+from burn import FRAMES, Frame, make, make_gone, same, with_package
 
 
 def array(values, width, kind):
@@ -42,11 +40,7 @@ def read(path, sheet_names, frames):
 
 
 def main():
-    singe, folder = (os.path.abspath(path) for path in sys.argv[1:3])
-    shutil.rmtree(folder, ignore_errors=True)
-    os.environ["SINGE_LIBRARY"] = os.path.join(os.path.dirname(singe), "python", "singe", "libsinge.so")
-    sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bindings", "python"))
-    import singe as package
+    singe, folder, package = with_package()
     out = make(singe, folder, [], "--no-preview", "--set", "gas=no")
     path = package.read_cache(out).write_alembic(os.path.join(folder, "burn.abc"))
     names = ("leaf", "strip")

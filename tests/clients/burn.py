@@ -2,7 +2,9 @@
 
 import os
 import re
+import shutil
 import subprocess
+import sys
 
 import numpy as np
 
@@ -104,6 +106,16 @@ def write_body(folder):
                        "element face 8\nproperty list uchar int vertex_indices\nend_header\n")
             file.writelines("%.9g %.9g %.9g\n" % tuple(corner) for corner in corners)
             file.writelines("3 %d %d %d\n" % face for face in faces)
+
+
+def with_package():
+    """The arguments SINGE and FOLDER, which is emptied, and the Python package over the library beside SINGE."""
+    singe, folder = (os.path.abspath(path) for path in sys.argv[1:3])
+    shutil.rmtree(folder, ignore_errors=True)
+    os.environ["SINGE_LIBRARY"] = os.path.join(os.path.dirname(singe), "python", "singe", "libsinge.so")
+    sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bindings", "python"))
+    import singe as package
+    return singe, folder, package
 
 
 def make(singe, folder, formats, *extra):

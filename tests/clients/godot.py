@@ -11,7 +11,8 @@ import shutil
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+from plugin import ROOT, build, run
+
 SINGE, FOLDER = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
 SCENE = """\
 frames: 3
@@ -21,14 +22,6 @@ sheets:
 sources:
   - {kind: spot, position: [-3 cm, 0, 0], temperature: 1200 K, conductance: 300, radius: 1 cm, falloff: 1 cm}
 """
-
-
-def run(*command, **options):
-    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          **options)
-    if done.returncode:
-        sys.exit(f"{' '.join(map(str, command))}: {done.returncode}\n{done.stdout[-4000:]}")
-    return done.stdout
 
 
 def unpack():
@@ -94,12 +87,9 @@ def main():
              *(engine.place.parent.parent).glob("gdextension_interface.h")]
     if not found:
         sys.exit("Godot wrote no gdextension_interface.h")
-    build = FOLDER / "build"
-    run("cmake", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Release", f"-DSINGE_GODOT={found[0].parent}",
-        *(f"-DSINGE_{part}=OFF" for part in ("PROGRAM", "TESTS", "PYTHON")))
-    run("cmake", "--build", build, "--target", "singe_godot", "-j2")
+    library = build(FOLDER, "godot", found[0].parent) / "libsinge_godot.so"
     (demo / "bin").mkdir(exist_ok=True)
-    shutil.copy(build / "godot/libsinge_godot.so", demo / "bin")
+    shutil.copy(library, demo / "bin")
     (demo / ".godot").mkdir(exist_ok=True)
     (demo / ".godot/extension_list.cfg").write_text("res://singe.gdextension\n")
     (FOLDER / "tiny.yaml").write_text(SCENE)

@@ -7,11 +7,8 @@ usage: newton_client.py SINGE FOLDER    FOLDER is emptied
 import contextlib
 import io
 import logging
-import os
 import pathlib
-import shutil
 import subprocess
-import sys
 import warnings
 
 import numpy as np
@@ -20,7 +17,7 @@ from pxr import Usd, UsdGeom
 import newton
 import warp
 
-from burn import make
+from burn import make, with_package
 
 STAGES_LEAST = 10
 
@@ -101,12 +98,9 @@ def come_back(package_usd, singe, folder):
 
 
 def main():
-    singe, folder = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
-    shutil.rmtree(folder, ignore_errors=True)
-    os.environ["SINGE_LIBRARY"] = os.path.join(os.path.dirname(singe), "python", "singe", "libsinge.so")
-    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bindings" / "python"))
+    singe, folder, package = with_package()
+    folder = pathlib.Path(folder)
     logging.disable(logging.WARNING)  # what is read otherwise than it looks; usd_in.py tests what is said
-    import singe as package
     from singe import usd, usd_bodies
     taken_on(package, usd_bodies, singe, folder)
     come_back(usd, singe, folder)

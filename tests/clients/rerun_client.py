@@ -5,14 +5,12 @@ usage: rerun_client.py SINGE FOLDER    FOLDER is emptied; burn.rrd and gone.rrd 
 """
 
 import os
-import shutil
-import sys
 
 import numpy as np
 import rerun
 from rerun.chunk import RrdReader
 
-from burn import FRAMES, make, make_gone, same
+from burn import FRAMES, make, make_gone, same, with_package
 
 
 def record(package, out, path):
@@ -39,11 +37,7 @@ def read(path):
 
 
 def main():
-    singe, folder = (os.path.abspath(path) for path in sys.argv[1:3])
-    shutil.rmtree(folder, ignore_errors=True)
-    os.environ["SINGE_LIBRARY"] = os.path.join(os.path.dirname(singe), "python", "singe", "libsinge.so")
-    sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bindings", "python"))
-    import singe as package
+    singe, folder, package = with_package()
     out = make(singe, folder, [], "--no-preview", "--set", "gas=no", "--set", "output.events=yes")
     record(package, out, os.path.join(folder, "burn.rrd"))
     found = read(os.path.join(folder, "burn.rrd"))
