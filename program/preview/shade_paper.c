@@ -214,6 +214,12 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 #define EMBER_HOT 1180.0f ///< K
 #define EMBER_MOST 6.0f   ///< radiance of the brightest channel, which none reaches
 
+/// Of a leaf's glow: what is neither thread nor speck, and these.
+#define LEAF_DULL 0.35f
+#define LEAF_THREADS 0.9f
+#define LEAF_SPECKS 0.35f
+#define LEAF_COOLER 120.0f ///< K, how much cooler it is than these
+
 static float seconds(const Preview *preview) { return (float)fmod(preview->time, 4096.0); }
 
 float ember_air(const Preview *preview, Float3 p) {
@@ -278,23 +284,40 @@ static Float3 border_glow(const Preview *preview, const PaperState *state, const
     return float3_scale(blackbody_glow(preview->blackbody, 1090 - 22 * state->age + 50 * bent->fine), 2.5f * strength);
 }
 
+/// A leaf of char that glows away, at its own temperature. The simulation spreads its heat over a cell or two, but real
+/// embers are threads that creep over black char, and specks: lines where noise that drifts in time changes sign, in octaves, where the leaf is alive, over a dull glow. A thread narrower than a pixel is a pixel wide, but paler.
+static Float3 leaf_glow(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
+    enum { SIZES = 3 };
+    static const float size[SIZES] = {9e-3f, 4e-3f, 1.7e-3f}, weight[SIZES] = {1, 0.9f, 0.6f}; // m
+    const float activity = ember_activity(state->glowing);
+    if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
+
+    const float life = line_life(preview, bent) * minf(air, 1.2f), t = seconds(preview);
+    Float3 bowed = float3_mad(bent->position, float3(bent->fine, bent->medium, bent->coarse), 0.7e-3f);
+    float thread = 0;
+    for (uint32_t k = 0; k < SIZES; k++) {
+        const float n = noise3(float3_mad(float3(0, 0, (0.35f + 0.2f * (float)k) * t), bowed, 1 / size[k]), 61 + k);
+        const float width = 0.16e-3f * (0.4f + 0.9f * life) / size[k], seen = maxf(width, 0.5f * footprint / size[k]);
+        thread += weight[k] * width / seen * ridge(n, 2 * seen);
+    }
+
+    const float border = near_border(state, bent, 0.8e-3f) * (0.25f + 0.75f * life);
+    const float speck = stepf(0.45f, 0.75f, bent->fine + 0.45f * bent->medium) * stepf(0.1f, 0.5f, life);
+    const float hot = maxf(border, life * LEAF_THREADS * thread + LEAF_SPECKS * speck);
+    const float temperature = ember_temperature(state->temperature) + 130 * (life - 0.5f) + 40 * bent->medium;
+    Float3 dull = blackbody_glow(preview->blackbody, ember_seen(temperature - LEAF_COOLER));
+    Float3 bright = blackbody_glow(preview->blackbody, ember_seen(temperature));
+    Float3 glow = float3_mad(float3_scale(dull, LEAF_DULL * (0.2f + 0.8f * life)), bright, hot);
+    return float3_scale(glow, EMBER_GAIN * activity * air);
+}
+
 static void ember_shade(const Preview *preview, const PaperState *state, const Bent *bent, Point *point) {
     if (state->burn < 0.2f || state->temperature < 420) return;
     float air = ember_air(preview, point->position);
     Float3 glow = float3_add(ember_line(preview, state, bent, air, point->footprint),
                              sparks(preview, state, bent, air, point->footprint));
     glow = float3_add(glow, border_glow(preview, state, bent, air));
-
-    // a leaf of char that glows away, at its own temperature where it burns. Its heat spreads over a cell or two, but
-    // real ember lines are thinner: they follow threads of noise, and break
-    const float activity = ember_activity(state->glowing);
-    if (activity >= 0.02f && ember_temperature(state->temperature) >= BLACKBODY_MIN) {
-        float life = line_life(preview, bent) * minf(air, 1.2f);
-        float temperature =
-            ember_temperature(state->temperature) + 130 * (life - 0.5f) + 70 * bent->fine + 40 * bent->medium;
-        float strength = activity * (0.15f + 0.85f * life) * air;
-        glow = float3_mad(glow, blackbody_glow(preview->blackbody, ember_seen(temperature)), EMBER_GAIN * strength);
-    }
+    glow = float3_add(glow, leaf_glow(preview, state, bent, air, point->footprint));
 
     // what film sees of it has the same colour and a bound: one hot sample does not fill a pixel at an edge
     point->glow = float3_scale(glow, 1 / (1 + maxf(glow.x, maxf(glow.y, glow.z)) / EMBER_MOST));
