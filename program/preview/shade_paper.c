@@ -401,6 +401,10 @@ static void coat(float coating, const Bent *bent, Point *point) {
     tilt(p, 1.2f, 0.7f * soft * stepf(-0.2f, 0.5f, bent->coarse), true, 42, point);
 }
 
+/// What is seen on char of a woven sheet's picture, over what would be of print: dyes burn with their threads, and have none
+/// of ink's minerals.
+#define DYE_LEFT 0.12f
+
 /// Char: browner where it is thin, bluer where complete; print (1) remains readable on it, as a dull grey.
 static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) {
     float black = stepf(0.12f, 0.46f, bent->burn);
@@ -453,7 +457,8 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
         above *= maxf(1 + 0.8f * paper_noise(bent.position, 9, point->footprint, 7) + 0.35f * bent.coarse, 0.3f);
     if (above > first) by_heat = 0.76f * minf(logf(above / first) / logf(last / first), 1);
     const float scorch = 1 - (1 - by_heat) * (1 - by_burn);
-    float ink = 1 - clampf(float3_luminance(point->albedo), 0, 1), print = stepf(0.3f, 0.75f, ink);
+    float ink = 1 - clampf(float3_luminance(point->albedo), 0, 1);
+    const float print = (weave ? DYE_LEFT : 1) * stepf(0.3f, 0.75f, ink);
     Float3 burnt = float3_mul(scorch_colour(scorch),
                               float3_mix(point->albedo, float3(0.80f, 0.80f, 0.80f), stepf(0.6f, 1.0f, scorch)));
     point->transmission *= 1 - stepf(0.1f, 0.7f, scorch);

@@ -37,6 +37,34 @@ TEST(threads_are_seen_from_near_alone) {
     assert_true(far < paper + 1 && farther < paper + 1);
 }
 
+/// How much brighter what was dark in a sheet's picture is once the sheet is char, of 255.
+static float print_on_char(float weave) {
+    uint8_t texels[2 * 1 * 3] = {255, 255, 255, 10, 10, 10};
+    const Image image = {.width = 2, .height = 1, .rgb = texels}, *pictures[1] = {&image};
+    static uint8_t rgb[BYTES];
+    Float4 q;
+    quad_make(&q, 0.1f, 0.01f);
+    for (int i = 0; i < 4; i++) q.burn[i] = 0.6f, q.peak[i] = 900;
+    const PreviewLook look = {.weave = weave};
+    const PreviewStart start = {4, 1, q.position[0], QUAD, q.uv[0], NULL};
+    PreviewDef def = above();
+    def.looks = &look, def.starts = &start, def.sheet_count = 1, def.pictures = pictures;
+    draw(&def, &q.surface, 0, rgb);
+
+    float difference = 0;
+    for (int y = H / 2 - 10; y < H / 2 + 10; y++)
+        for (int x = 10; x < 16; x++)
+            difference += (float)pixel(rgb, W / 2 + x, y)[1] - (float)pixel(rgb, W / 2 - x, y)[1];
+    return difference / (20 * 6);
+}
+
+/// Ink stays readable on the char of paper; dye does not on that of cloth.
+TEST(dye_burns_with_its_threads) {
+    const float ink = print_on_char(0), dye = print_on_char(5e-4f);
+    print_message("on char, print is brighter by %.1f on paper, %.1f on cloth\n", (double)ink, (double)dye);
+    assert_true(ink > 15 && fabsf(dye) < 0.3f * ink);
+}
+
 /// What is left of a burnt sheet, seen from straight above.
 typedef struct Remains {
     int covered, border; ///< pixels, and sides of pixels between what is covered and what is not
