@@ -132,7 +132,7 @@ enum { PREVIEW_BAKE_MAX = 4 };
 
 /// The current gas on cells `detail` times as fine along each side, with the tongues and streaks that pictures add by
 /// noise. `surface` is that of its frame. smoke and flame are [detail^3 * the gas's cells], x fastest: extinction in
-/// 1/m, and the flame's light as a share of a bright flame's (218 times that of white paper per metre); the palest cores
+/// 1/m, and the flame's light as a share of a bright flame's (407 times that of white paper per metre); the palest cores
 /// of flames reach 1.8.
 SINGE_NODISCARD SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, double time, int detail,
                                              float *smoke, float *flame, SingeError *error);
