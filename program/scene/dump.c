@@ -173,19 +173,6 @@ static void dump_line(const Dumper *dumper, int indent) { fprintf(dumper->file, 
 
 static void dump_map(const Dumper *dumper, const Schema *schema, const void *object, int indent, bool inline_first);
 
-static void dump_list(const Dumper *dumper, const SchemaRow *row, const void *object, int indent) {
-    const char *items = items_at(object, row);
-    uint32_t count = count_at(object, row);
-    for (uint32_t i = 0; i < count; i++) {
-        if (dumper->json) fputs(i ? "," : "[", dumper->file);
-        dump_line(dumper, indent);
-        if (!dumper->json) fputs("- ", dumper->file);
-        dump_map(dumper, row->sub, items + i * row->sub->size, dumper->json ? indent : indent + 2, true);
-    }
-
-    if (dumper->json) fputc(']', dumper->file);
-}
-
 static void dump_row(const Dumper *dumper, const SchemaRow *row, const void *object, int indent) {
     fprintf(dumper->file, dumper->json ? "\"%s\":" : "%s:", row->key);
     if (row->type == ROW_MAP) {
@@ -193,7 +180,16 @@ static void dump_row(const Dumper *dumper, const SchemaRow *row, const void *obj
         dump_map(dumper, row->sub, dump_at(object, row->offset), indent + 2, dumper->json);
     } else if (row->type == ROW_LIST || row->type == ROW_STRENGTH) {
         if (dumper->json) fputc(' ', dumper->file);
-        dump_list(dumper, row, object, indent + 2);
+        const char *items = items_at(object, row);
+        const uint32_t count = count_at(object, row);
+        for (uint32_t i = 0; i < count; i++) {
+            if (dumper->json) fputs(i ? "," : "[", dumper->file);
+            dump_line(dumper, indent + 2);
+            if (!dumper->json) fputs("- ", dumper->file);
+            dump_map(dumper, row->sub, items + i * row->sub->size, dumper->json ? indent + 2 : indent + 4, true);
+        }
+
+        if (dumper->json) fputc(']', dumper->file);
     } else {
         fputc(' ', dumper->file);
         dump_value(row, object, dumper->file);

@@ -193,15 +193,6 @@ void *row_begin(SceneArena *arena, const SchemaRow *row, void *object) {
     return begun && (!row->sub->defaults || row->sub->defaults(arena, begun)) ? begun : NULL;
 }
 
-static void read_submap(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
-    void *inner = row_begin(reader->arena, row, object); // a map with defaults of its own starts from these
-    if (!inner) return;
-    if (row->extra) *(bool *)read_at(object, row->extra) = true;
-    if (node->kind == NODE_MAP) schema_read(reader, row->sub, node, inner);
-    else if (row->sub->choice && node->kind == NODE_VALUE) read_choice(reader, row->sub, node, inner);
-    else value_wrong(reader, node, row);
-}
-
 static void read_row(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     void *field = read_at(object, row->offset);
     switch (row->type) {
@@ -232,7 +223,15 @@ static void read_row(Reader *reader, const SchemaRow *row, const YamlNode *node,
     case ROW_ORDER: value_order(reader, row, node, field); break;
     case ROW_FORMATS: value_formats(reader, row, node, field); break;
     case ROW_PARAM: read_param(reader, row, node, field, read_at(object, row->extra)); break;
-    case ROW_MAP: read_submap(reader, row, node, object); break;
+    case ROW_MAP: {
+        void *inner = row_begin(reader->arena, row, object); // a map with defaults of its own starts from these
+        if (!inner) break;
+        if (row->extra) *(bool *)read_at(object, row->extra) = true;
+        if (node->kind == NODE_MAP) schema_read(reader, row->sub, node, inner);
+        else if (row->sub->choice && node->kind == NODE_VALUE) read_choice(reader, row->sub, node, inner);
+        else value_wrong(reader, node, row);
+        break;
+    }
     case ROW_LIST: read_list(reader, row, node, object); break;
     case ROW_POINTS:
     case ROW_INDICES: read_elements(reader, row, node, object); break;

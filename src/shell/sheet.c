@@ -106,17 +106,6 @@ static SingeResult check_vertices(const SingeSheetDef *def, const char *name, Si
 
 static bool in_float(double x) { return x >= 1 / measure_max && x <= measure_max; }
 
-/// Why a cell with valid corners cannot be used, or NULL.
-static const char *shape_fault(const SingeSheetDef *def, const uint32_t *corners) {
-    const float *p[4];
-    for (int i = 0; i < 4; i++) p[i] = def->positions + 3 * (size_t)corners[i];
-    CellShape shape = cell_shape(p);
-    if (!(shape.shortest > thin * shape.longest)) return "has a side without length";
-    if (!(shape.vector_area > thin * shape.longest * shape.longest)) return "has no area";
-    if (!in_float(shape.area)) return "has an area outside 1e-30 to 1e30";
-    return NULL;
-}
-
 static SingeResult check_cells(const SingeSheetDef *def, const char *name, SingeError *error) {
     for (uint32_t c = 0; c < def->cell_count; c++) {
         const uint32_t *corners = def->cells + 4 * (size_t)c;
@@ -130,8 +119,14 @@ static SingeResult check_cells(const SingeSheetDef *def, const char *name, Singe
                                      name, c, corners[i]);
         }
 
-        const char *fault = shape_fault(def, corners);
-        if (fault) return element_fail(name, "cell", c, fault, error);
+        const float *p[4];
+        for (int i = 0; i < 4; i++) p[i] = def->positions + 3 * (size_t)corners[i];
+        const CellShape shape = cell_shape(p);
+        if (!(shape.shortest > thin * shape.longest))
+            return element_fail(name, "cell", c, "has a side without length", error);
+        if (!(shape.vector_area > thin * shape.longest * shape.longest))
+            return element_fail(name, "cell", c, "has no area", error);
+        if (!in_float(shape.area)) return element_fail(name, "cell", c, "has an area outside 1e-30 to 1e30", error);
     }
 
     return SINGE_OK;

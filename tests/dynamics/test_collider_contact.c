@@ -10,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "support/test.h"
 
@@ -465,12 +464,6 @@ TEST(of_many_colliders_none_is_missed) {
 
 // ---- cost
 
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /// ns a particle for one look at the collider, with the sheet there.
 static double look(Bench *bench, Float3 at, uint64_t *contacts) {
     const float none[4] = {0, 0, 0, 1};
@@ -484,9 +477,9 @@ static double look(Bench *bench, Float3 at, uint64_t *contacts) {
             memcpy(plan->predicted[i], bench->state.dynamics.position[i], sizeof plan->predicted[i]);
         }
         plan->colliders[0] = contact_collider(bench->colliders.items, 0, (double)STEP / 3);
-        double start = seconds();
+        double start = test_seconds();
         *contacts = contact_project(plan, 1, NULL, STEP / 3, &bench->state.dynamics);
-        best = fmin(best, seconds() - start);
+        best = fmin(best, test_seconds() - start);
     }
 
     return 1e9 * best / bench->shell.particle_count;

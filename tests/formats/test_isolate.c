@@ -1,4 +1,5 @@
 // A function in a child: its answer, its errors, its crashes, and what it may take of memory and time.
+#include "common/clock.h"
 #include "formats/isolate.h"
 #include "format_test.h"
 
@@ -23,12 +24,6 @@ static SingeResult run(IsolateWork *work, void *context, Bytes *answer, SingeErr
     }
 
     return result;
-}
-
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 // ---- answers
@@ -165,7 +160,7 @@ static SingeResult wait_long(void *context, IsolateAnswer *answer, SingeError *e
 TEST(time_is_limited) {
     Bytes answer;
     SingeError error;
-    double start = seconds();
+    double start = clock_seconds();
 
     assert_int_equal(run(spin, NULL, &answer, &error), SINGE_ERROR_LIMIT);
     assert_message(&error, "more than 1 s");
@@ -173,7 +168,7 @@ TEST(time_is_limited) {
     assert_int_equal(isolate_run("a.mesh", wait_long, NULL, short_time, (SingeAllocator){0}, &answer, &error),
                      SINGE_ERROR_LIMIT);
     assert_message(&error, "more than 0.1 s");
-    assert_true(seconds() - start < 8);
+    assert_true(clock_seconds() - start < 8);
 }
 
 static SingeResult take_slowly(void *context, IsolateAnswer *answer, SingeError *error) {

@@ -1,6 +1,7 @@
 // Draws the synthetic scenes into PNG files and prints how long each took: for looking at, and for timing.
 // Usage: preview_pictures FOLDER [PICTURE [THREADS]]
 
+#include "common/clock.h"
 #include "day.h"
 #include "preview/preview.h"
 #include "synthetic.h"
@@ -33,18 +34,12 @@ static const Shot shots[] = {
     {"flames-up", SYNTHETIC_HANGING, 0.07f, {0.16f, -0.75f, 0.42f}, {0, 0, 0.30f}, 0.60f, false, 16, true},
 };
 
-static double seconds(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static SingeResult time_frame(Preview *preview, const SingeSurface *surface, uint8_t *rgb, double *cpu, double *wall,
                               SingeError *error) {
-    double begun = seconds();
+    double begun = clock_seconds();
     clock_t start = clock();
     SingeResult result = preview_draw(preview, surface, 1.0, rgb, error);
-    *cpu = (double)(clock() - start) / CLOCKS_PER_SEC, *wall = seconds() - begun;
+    *cpu = (double)(clock() - start) / CLOCKS_PER_SEC, *wall = clock_seconds() - begun;
     return result;
 }
 

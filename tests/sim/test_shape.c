@@ -2,15 +2,8 @@
 #include "support/support.h"
 
 #include <math.h>
-#include <time.h>
 
 enum { SHAPES = 3, ROUNDS = 6, STEPS = 5, FALLEN = 60 };
-
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /// A sheet that falls, with contact, and is lit at its centre.
 static SingeSim *sheet(const uint32_t cells[2], const float size[2]) {
@@ -53,9 +46,9 @@ TEST(strips_cost_as_squares) {
     for (int round = 0; round < ROUNDS; round++)
         for (int k = 0; k < SHAPES; k++)
             for (int step = 0; step < STEPS; step++) {
-                double begun = seconds();
+                double begun = test_seconds();
                 test_steps(sims[k], 1);
-                cost[k] = fmin(cost[k], seconds() - begun);
+                cost[k] = fmin(cost[k], test_seconds() - begun);
             }
     for (int k = 0; k < SHAPES; k++) {
         print_message("%s: %.1f ms a step, %.2f times squares\n", shapes[k].name, 1e3 * cost[k], cost[k] / cost[0]);

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 enum { MOST_CASES = 64 };
 
@@ -24,6 +25,12 @@ void test_add(const char *name, CMUnitTestFunction run) {
 void test_around(void (*before)(int argc, char **argv), int (*after)(void)) {
     run_before = before;
     run_after = after;
+}
+
+double test_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 void test_float_equal(float value, float expected, float tolerance, const char *file, int line) {

@@ -21,6 +21,9 @@
 #define TEST_AROUND(before, after) \
     __attribute__((constructor)) static void add_around(void) { test_around(before, after); }
 
+/// s of processors' time of all threads of the program.
+double test_seconds(void);
+
 void test_add(const char *name, CMUnitTestFunction run);
 void test_around(void (*before)(int argc, char **argv), int (*after)(void));
 

@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 static uint32_t random_state = 1;
 static float any(float low, float high) {
@@ -302,12 +301,6 @@ TEST(bad_heights_are_refused) {
 
 // ---- cost
 
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /// Nanoseconds for a distance at points up to `off` from the surface, with a limit of 2 mm.
 static double cost(const Collider *collider, const Triangles *mesh, float off) {
     enum { COUNT = 10000 };
@@ -322,10 +315,10 @@ static double cost(const Collider *collider, const Triangles *mesh, float off) {
     float sum = 0;
     double best = INFINITY;
     for (int repeat = 0; repeat < 7; repeat++) {
-        double start = seconds();
+        double start = test_seconds();
         Float3 normal;
         for (int k = 0; k < COUNT; k++) sum += collider_distance(collider, points[k], 0.002f, &normal) + normal.x;
-        best = fmin(best, seconds() - start);
+        best = fmin(best, test_seconds() - start);
     }
 
     assert_true(isfinite(sum));
@@ -335,9 +328,9 @@ static double cost(const Collider *collider, const Triangles *mesh, float off) {
 TEST(ten_thousand_triangles_are_quick) {
     Memory memory = memory_make((SingeAllocator){0});
     Triangles mesh = triangles_torus(125, 40, 0.06f, 0.025f);
-    double start = seconds();
+    double start = test_seconds();
     Collider collider = make_mesh(&memory, &mesh);
-    start = seconds() - start;
+    start = test_seconds() - start;
     double touching = cost(&collider, &mesh, 0.0005f), near = cost(&collider, &mesh, 0.005f);
     double far = cost(&collider, &mesh, 0.05f);
     printf("%u triangles: %.0f ms to add, %.2f MB; ns a particle: %.0f within 0.5 mm, %.0f within 5 mm, %.0f within 50 "
