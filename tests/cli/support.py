@@ -6,9 +6,11 @@ import json
 import os
 import re
 import shutil
+import struct
 import subprocess
 import tempfile
 import unittest
+import zlib
 
 SINGE = os.environ["SINGE"]
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
@@ -43,6 +45,39 @@ COLUMNS = (
     "heat_of_combustion,heat_stored,ledger_error,strain_mean,strain_p99,strain_max,inverted_cells,ms_heat,ms_burn,"
     "ms_ablate,ms_dynamics,ms_gas,ms_output"
 ).split(",")
+
+
+class Ply:
+    """A frame of a cache: its time, columns of the vertices' values by name, and triangles."""
+
+    def __init__(self, path):
+        with open(path, "rb") as file:
+            header, body = file.read().split(b"end_header\n", 1)
+        self.header = header.decode()
+        self.time = re.search(r"^comment singe \S+ time (\S+)$", self.header, re.MULTILINE).group(1)
+        count, faces = (int(n) for n in re.findall(r"^element \w+ (\d+)$", self.header, re.MULTILINE))
+        columns = re.findall(r"^property (float|int) (\w+)$", self.header, re.MULTILINE)
+        self.names = [name for _, name in columns]
+        row = struct.Struct("<" + "".join(kind[0] for kind, _ in columns))
+        self.rows = list(row.iter_unpack(body[: row.size * count]))
+        self.triangles = [corners[1:] for corners in struct.iter_unpack("<B3i", body[row.size * count :])]
+        assert len(self.triangles) == faces
+
+    def columns(self):
+        return {name: [row[i] for row in self.rows] for i, name in enumerate(self.names)}
+
+    def vertices(self):
+        return [dict(zip(self.names, row)) for row in self.rows]
+
+
+def write_png(path, rows, channels=1):
+    """A picture of these rows of bytes, grey or of red, green and blue."""
+    header = struct.pack(">IIBBBBB", len(rows[0]) // channels, len(rows), 8, 0 if channels == 1 else 2, 0, 0, 0)
+    pixels = zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n")
+        for kind, data in ((b"IHDR", header), (b"IDAT", pixels), (b"IEND", b"")):
+            file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
 
 
 class Case(unittest.TestCase):

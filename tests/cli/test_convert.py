@@ -6,9 +6,8 @@ import re
 import struct
 import unittest
 import xml.etree.ElementTree as xml
-import zlib
 
-from support import Case, HAS_EXR
+from support import HAS_EXR, Case, Ply, write_png
 
 FORMATS = {"usd": ".usda", "vtp": ".pvd", "glb": None}  # and the ending of their roots; None: no root
 if HAS_EXR:
@@ -109,19 +108,10 @@ class Convert(Case):
             file.truncate(2000)
         self.assertIn("tiny.0002.ply", self.singe("convert", self.path("o"), "--to", "vtp", expect=2)[1])
 
-    def cache(self, out, frame):
-        """A PLY's header, number of vertices and columns by name."""
-        with open(self.path(out, "ply", "tiny.%04d.ply" % frame), "rb") as file:
-            header, body = file.read().split(b"end_header\n", 1)
-        names = re.findall(r"property (float|int) (\w+)", header.decode())
-        count = int(re.search(rb"element vertex (\d+)", header).group(1))
-        row = struct.Struct("<" + "".join(kind[0] for kind, _ in names))
-        rows = list(row.iter_unpack(body[: row.size * count]))
-        return header, count, {name: [row[i] for row in rows] for i, (_, name) in enumerate(names)}
-
     def test_glb_holds_the_cache(self):
         self.run_formats("o", "--frames", "6", "--set", "sheets.0.material.moisture=20 %")
-        _, count, column = self.cache("o", 6)
+        frame = Ply(self.path("o", "ply", "tiny.0006.ply"))
+        count, column = len(frame.rows), frame.columns()
         with open(self.path("o", "glb", "tiny.0006.glb"), "rb") as file:
             glb = file.read()
         magic, version, size, text_size, _ = struct.unpack_from("<4s4I", glb)
@@ -155,11 +145,7 @@ class Convert(Case):
 
     def test_a_single_glb_is_packed_unless_it_is_to_be_plain(self):
         """tests/clients/gltf.js decodes it, and compares the values."""
-        chunks = ((b"IHDR", struct.pack(">2I5B", 2, 2, 8, 2, 0, 0, 0)), (b"IDAT", zlib.compress(b"\0abcdef" * 2)), (b"IEND", b""))
-        with open(self.path("p.png"), "wb") as file:
-            file.write(b"\x89PNG\r\n\x1a\n")
-            for kind, data in chunks:
-                file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
+        write_png(self.path("p.png"), [b"abcdef"] * 2, channels=3)
         self.run_scene("o", "--quiet", "--frames", "3", "--set", "sheets.0.picture=" + self.path("p.png"))
         stages, sizes = [], []
         for plain in (["--plain"], []):
@@ -188,7 +174,8 @@ class Convert(Case):
                 self.check_vtp(moisture != "0")
 
     def check_vtp(self, wet):
-        header, count, column = self.cache("o", 6)
+        frame = Ply(self.path("o", "ply", "tiny.0006.ply"))
+        count, column = len(frame.rows), frame.columns()
         vtp = open(self.path("o", "vtp", "tiny.0006.vtp"), "rb").read()
         text, data = vtp.split(b'<AppendedData encoding="raw">\n_', 1)
         root = xml.fromstring(text.decode() + "</VTKFile>")
@@ -213,7 +200,7 @@ class Convert(Case):
         self.assertEqual("primvars:water" in open(self.path("o", "tiny.usda")).read(), wet)
         times = [float(item.get("timestep")) for item in xml.parse(self.path("o", "tiny.pvd")).iter("DataSet")]
         self.assertEqual(times, [frame / 24 for frame in range(6)])
-        self.assertEqual(root.find("PolyData/FieldData/DataArray").text, re.search(r"time (\S+)", header.decode()).group(1))
+        self.assertEqual(root.find("PolyData/FieldData/DataArray").text, frame.time)
 
 
 if __name__ == "__main__":

@@ -3,25 +3,12 @@
 import json
 import math
 import os
-import re
 import struct
 import unittest
 import zipfile
-import zlib
 
 import exr
-from support import Case, HAS_EXR
-
-
-def ply(path):
-    """Columns of the vertices by name, and the triangles."""
-    with open(path, "rb") as file:
-        header, body = file.read().split(b"end_header\n", 1)
-    names = re.findall(r"property (float|int) (\w+)", header.decode())
-    count = int(re.search(rb"element vertex (\d+)", header).group(1))
-    rows = list(struct.iter_unpack("<" + "".join(kind[0] for kind, _ in names), body[: 100 * count]))
-    triangles = [row[1:] for row in struct.iter_unpack("<B3i", body[100 * count :])]
-    return {name: [row[i] for row in rows] for i, (_, name) in enumerate(names)}, triangles
+from support import HAS_EXR, Case, Ply, write_png
 
 
 def glb(path):
@@ -60,7 +47,8 @@ class Delivery(Case):
         self.run_scene(out, "--quiet", *args)
 
     def frame(self, out, number):
-        return ply(self.path(out, "ply", "burn.%04d.ply" % number))
+        frame = Ply(self.path(out, "ply", "burn.%04d.ply" % number))
+        return frame.columns(), frame.triangles
 
     # ---- textures
 
@@ -290,12 +278,7 @@ class Delivery(Case):
                     self.assertEqual(archive.read(entry), file.read(), entry.filename)
 
     def test_usdz_has_pictures(self):
-        with open(self.path("print.png"), "wb") as file:
-            rows = b"".join(b"\0" + bytes([200, 128, 7] * 4) for _ in range(4))
-            file.write(b"\x89PNG\r\n\x1a\n")
-            for kind, data in ((b"IHDR", struct.pack(">IIBBBBB", 4, 4, 8, 2, 0, 0, 0)), (b"IDAT", zlib.compress(rows)),
-                               (b"IEND", b"")):
-                file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
+        write_png(self.path("print.png"), [bytes([200, 128, 7] * 4)] * 4, channels=3)
         self.scene = self.path("burn.yaml")
         with open(self.scene, "w") as file:
             file.write(BURNING + "sheets: [{grid: {size: [6 cm, 6 cm], cells: [4, 4]}, picture: print.png}]\n")

@@ -5,12 +5,10 @@ import os
 import re
 import shutil
 import signal
-import struct
 import time
 import unittest
-import zlib
 
-from support import HAS_EXR, SANITIZED, Case
+from support import HAS_EXR, SANITIZED, Case, write_png
 
 SCENE = """\
 frames: {frames}
@@ -30,15 +28,6 @@ gas: no
 """
 RATE = "sheets.0.material.mass_rate"
 RANGE = f"parameters:\n  {RATE}: {{from: 1e-3, to: 3e-2, logarithmic: yes}}\n"
-
-
-def gray_png(path, size, rows):
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, 8, 0, 0, 0, 0)) +
-                   chunk(b"IDAT", zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))) + chunk(b"IEND", b""))
 
 
 class Fit(Case):
@@ -102,7 +91,7 @@ class Fit(Case):
             flat = [255 if alpha < 0.5 or burn >= 0.5 else 0 for alpha, burn in zip(channels["A"], channels["G"])]
             burnt = [flat[i:i + size] for i in range(0, size * size, size)]
             self.assertGreater(sum(map(sum, burnt)), 0)
-            gray_png(self.path(f"mask{frame:02}.png"), 128, burnt)
+            write_png(self.path(f"mask{frame:02}.png"), burnt)
         shown, _ = self.fit("scene: tiny.yaml\ntarget: {masks: mask##.png}\nsearch: global\nevaluations: 15\n" + RANGE)
         self.assertAlmostEqual(self.found(shown), 9e-3, delta=0.25 * 9e-3)
         best = min(float(line["error"]) for line in self.lines())

@@ -3,29 +3,18 @@
 import csv
 import math
 import os
-import struct
 import unittest
 
-from support import SANITIZED, Case
+from support import SANITIZED, Case, Ply
 
 
 def read_ply(path):
-    """Time, and position, velocity and time of ignition by vertex of the input mesh."""
-    with open(path, "rb") as file:
-        header, _, data = file.read().partition(b"end_header\n")
-    lines = header.decode().splitlines()
-    time = float(next(line for line in lines if line.startswith("comment")).split()[-1])
-    count = int(next(line for line in lines if line.startswith("element vertex")).split()[2])
-    kept = lines[: next(i for i, line in enumerate(lines) if line.startswith("element face"))]
-    columns = [line.split()[1:3] for line in kept if line.startswith("property")]
-    names = [name for _, name in columns]
-    form = "<" + "".join("i" if kind == "int" else "f" for kind, _ in columns)
-    found = {}
-    for row in struct.iter_unpack(form, data[: struct.calcsize(form) * count]):
-        value = dict(zip(names, row))
+    """Time, and position and velocity, by vertex of the input mesh, of what has not ignited."""
+    frame, found = Ply(path), {}
+    for value in frame.vertices():
         if value["vertex_id"] >= 0 and value["time_ignited"] < 0:
             found[value["vertex_id"]] = ([value[k] for k in "xyz"], [value["v" + k] for k in "xyz"])
-    return time, found
+    return float(frame.time), found
 
 
 class Measure(Case):

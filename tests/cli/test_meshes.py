@@ -7,7 +7,7 @@ import time
 import unittest
 
 from hostile import GOOD, HOSTILE, SQUARE, TWO, gltf, struct
-from support import SINGE, Case
+from support import SINGE, Case, Ply
 
 HAS_ASSIMP = os.environ["SINGE_ASSIMP"] == "1"
 OWN = (".obj", ".ply", ".stl", ".gltf", ".glb")
@@ -161,13 +161,10 @@ class Meshes(Case):
         with open(scene, "w") as file:
             file.write(f"sheets: [{{mesh: {name}}}]\ngas: no\nframes: 1\n")
         self.singe("run", scene, "-o", self.path("area"), "--no-preview", "--quiet")
-        with open(self.path("area", "ply", "area.0001.ply"), "rb") as file:
-            header, body = file.read().split(b"end_header\n", 1)
-        count = int(header.split(b"element vertex ")[1].split()[0])
-        at = [struct.unpack_from("<3f", body, 100 * i) for i in range(count)]
+        frame = Ply(self.path("area", "ply", "area.0001.ply"))
         total = 0
-        for a, b, c in (struct.unpack_from("<3i", body, i + 1) for i in range(100 * count, len(body), 13)):
-            total += ((at[b][0] - at[a][0]) * (at[c][1] - at[a][1]) - (at[b][1] - at[a][1]) * (at[c][0] - at[a][0])) / 2
+        for a, b, c in ([frame.rows[v] for v in triangle] for triangle in frame.triangles):  # x and y come first
+            total += ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2
         return total
 
     def test_polygons_of_an_obj(self):

@@ -6,12 +6,10 @@ import re
 import resource
 import shutil
 import signal
-import struct
 import time
 import unittest
-import zlib
 
-from support import HAS_FFMPEG, SANITIZED, Case
+from support import HAS_FFMPEG, SANITIZED, Case, write_png
 
 
 class Resume(Case):
@@ -249,12 +247,7 @@ class Resume(Case):
 
     def picture(self, name, value):
         """A grey picture of 4 x 4 pixels."""
-        rows = b"".join(b"\0" + bytes([value, 128, 7, 200]) for _ in range(4))
-        with open(self.path(name), "wb") as file:
-            file.write(b"\x89PNG\r\n\x1a\n")
-            for kind, data in ((b"IHDR", struct.pack(">IIBBBBB", 4, 4, 8, 0, 0, 0, 0)), (b"IDAT", zlib.compress(rows)),
-                               (b"IEND", b"")):
-                file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
+        write_png(self.path(name), [bytes([value, 128, 7, 200])] * 4)
 
     def test_other_files_are_refused(self):
         """Every file that a scene reads, but for the preview's."""

@@ -12,7 +12,9 @@ import time
 import unittest
 import xml.etree.ElementTree
 
-from support import HAS_FFMPEG, SANITIZED, SINGE, Case
+from support import HAS_FFMPEG, SANITIZED, SINGE, Case, write_png
+
+GREY = (b"\x40\x80", b"\xa0\xc0")
 
 
 class Sweep(Case):
@@ -337,26 +339,12 @@ class Sweep(Case):
         with open(self.path("s", "unfinished", "0002", "log.txt")) as file:
             self.assertIn("m.png", file.read())
         self.assertEqual([r["state"] for r in self.table("report.csv")], ["complete", "missing", "complete"])
-        shutil.copy(self.make_png(), self.path("m.png"))
+        write_png(self.path("m.png"), GREY)
         self.assertIn("1 failed", self.sweep(expect=1)[1])  # it is not run again by itself
         before = os.stat(self.path("s", "rows", "0001", "stats.csv")).st_mtime_ns
         self.sweep("--retry")
         self.assertEqual(self.complete(), ["0001", "0002", "0003"])
         self.assertEqual(before, os.stat(self.path("s", "rows", "0001", "stats.csv")).st_mtime_ns)
-
-    def make_png(self):
-        """A picture of 2 x 2 grey pixels."""
-        import struct
-        import zlib
-
-        def chunk(kind, data):
-            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-        path = self.path("grey.png")
-        with open(path, "wb") as file:
-            file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 2, 2, 8, 0, 0, 0, 0)) +
-                       chunk(b"IDAT", zlib.compress(b"\0\x40\x80\0\xa0\xc0")) + chunk(b"IEND", b""))
-        return path
 
     def test_a_row_killed_by_the_system(self):
         """As for want of memory: it failed, with the signal."""
@@ -380,7 +368,8 @@ class Sweep(Case):
 
     def test_report(self):
         self.write_plan("parameters:\n  pace: [2, 9]\n  sheets.0.picture: [grey.png, 'a<b>&\"c.png']\n")
-        shutil.copy(self.make_png(), self.path('a<b>&"c.png'))
+        for name in 'grey.png', 'a<b>&"c.png':
+            write_png(self.path(name), GREY)
         self.sweep("--row", "1")
         self.sweep("--report")
         _, data = self.report()

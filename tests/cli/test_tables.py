@@ -2,13 +2,12 @@
 
 import csv
 import os
-import re
 import signal
 import struct
 import time
 import unittest
 
-from support import SANITIZED, Case
+from support import SANITIZED, Case, Ply
 
 PROBES = """\
 detail: 0
@@ -58,15 +57,8 @@ class Tables(Case):
 
     def vertex(self, out, frame, number):
         """A vertex of the input, as the cache has it."""
-        with open(self.path(out, "ply", "tiny.%04d.ply" % frame), "rb") as file:
-            header, body = file.read().split(b"end_header\n", 1)
-        names = re.findall(r"property (float|int) (\w+)", header.decode())
-        count = int(re.search(rb"element vertex (\d+)", header).group(1))
-        for row in struct.iter_unpack("<" + "".join(kind[0] for kind, _ in names), body[: 100 * count]):
-            values = {name: value for (_, name), value in zip(names, row)}
-            if values["vertex_id"] == number:
-                return values
-        return None
+        vertices = Ply(self.path(out, "ply", "tiny.%04d.ply" % frame)).vertices()
+        return next((vertex for vertex in vertices if vertex["vertex_id"] == number), None)
 
     def test_probes(self):
         self.run_scene("o", "--quiet", "--frames", "24", "--set", "pace=20")

@@ -10,7 +10,7 @@ import struct
 import unittest
 from fractions import Fraction
 
-from support import Case
+from support import Case, Ply
 
 FLOATS = ("x y z nx ny nz s t vx vy vz rest_x rest_y rest_z temperature temperature_peak mass burn_rate "
           "char_fraction ash_fraction burnt time_ignited").split()
@@ -41,16 +41,10 @@ class Surface:
         return "<" + "".join("i" if kind == "int" else "f" for kind, _ in self.columns)
 
     def read(self, path):
-        with open(path, "rb") as file:
-            header, _, data = file.read().partition(b"end_header\n")
-        lines = header.decode().splitlines()
-        self.time = next(line for line in lines if line.startswith("comment")).split()[-1]
-        count, faces = [int(line.split()[2]) for line in lines if line.startswith("element")]
-        names = [name for _, name in self.columns]
-        size = struct.calcsize(self.form())
-        self.vertices = [dict(zip(names, row)) for row in struct.iter_unpack(self.form(), data[: size * count])]
-        self.triangles = [list(row[1:]) for row in struct.iter_unpack("<B3i", data[size * count :])]
-        assert len(self.triangles) == faces
+        frame = Ply(path)
+        self.time = frame.time
+        self.vertices = frame.vertices()
+        self.triangles = [list(corners) for corners in frame.triangles]
 
     def write(self, path):
         lines = ["ply", "format binary_little_endian 1.0", f"comment singe 0.2.0 time {self.time}",

@@ -5,11 +5,10 @@ import math
 import os
 import random
 import statistics
-import struct
 import time
 import unittest
 
-from support import Case
+from support import Case, Ply
 
 EXAMPLES = os.path.join(os.path.dirname(__file__), "..", "..", "examples")
 ZERO_CELSIUS = 273.15
@@ -77,27 +76,12 @@ class Example(Case):
         self.assertEqual(max(row["inverted_cells"] for row in rows), 0)
         self.assertLessEqual(max(row["strain_mean"] for row in rows), 0.01)
 
+    def frame(self, number):
+        return Ply(self.path("whole", "ply", f"{self.NAME}.{number:04d}.ply"))
+
     def vertices(self, frame):
         """The values of a frame's vertices, by name."""
-        name = f"{self.NAME}.{frame:04d}.ply"
-        with open(self.path("whole", "ply", name), "rb") as file:
-            header, _, data = file.read().partition(b"end_header\n")
-        lines = header.decode().splitlines()
-        count = int(next(line for line in lines if line.startswith("element vertex")).split()[2])
-        kept = lines[: next(i for i, line in enumerate(lines) if line.startswith("element face"))]
-        properties = [line.split()[1:] for line in kept if line.startswith("property")]
-        names = [name for _, name in properties]
-        kinds = "".join("i" if kind == "int" else "f" for kind, _ in properties)
-        rows = struct.iter_unpack("<" + kinds, data[: 4 * len(names) * count])
-        return [dict(zip(names, row)) for row in rows]
-
-    def triangles(self, frame):
-        """The corners of a frame's triangles."""
-        with open(self.path("whole", "ply", f"{self.NAME}.{frame:04d}.ply"), "rb") as file:
-            data = file.read()
-        header = data[: data.index(b"end_header")].decode()
-        faces = int(next(line for line in header.splitlines() if line.startswith("element face")).split()[2])
-        return [row[1:] for row in struct.iter_unpack("<B3i", data[-13 * faces :])] if faces else []
+        return self.frame(frame).vertices()
 
     def ash_left(self):
         """Vertices of the last frame that have burnt to ash and are still there."""
@@ -164,7 +148,7 @@ class Example(Case):
         """m2 at rest of black char that has no fuel left, on the piece that has most of it."""
         vertices, areas = self.vertices(frame), {}
         black = [v["char_fraction"] > 0.1 and v["mass"] < v["char_fraction"] + v["ash_fraction"] + 0.02 for v in vertices]
-        for triangle in self.triangles(frame):
+        for triangle in self.frame(frame).triangles:
             if not all(black[i] for i in triangle):
                 continue
             a, b, c = ([vertices[i]["rest_" + axis] for axis in "xyz"] for i in triangle)
