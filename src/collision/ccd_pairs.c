@@ -46,7 +46,7 @@ void ccd_sweep_cells(const Ccd *ccd, const CollisionPair *pair, Swept *p, Swept 
 /// Nodes of p that cell c owns against triangles of q that do not contain them; bits of same[i] are the corners of q
 /// that are corner i of p. Returns how many are swept.
 static int sweep_all_nodes(const Ccd *ccd, CollisionPair *pair, uint32_t c, const Swept *p, const Swept *q,
-                           const unsigned same[4], int kind) {
+                           const unsigned same[4], int kind, Float4 *plane) {
     int count = 0;
     for (int i = 0; i < 5; i++) {
         if (!collision_owns_node(ccd->plan, c, i)) continue;
@@ -60,7 +60,8 @@ static int sweep_all_nodes(const Ccd *ccd, CollisionPair *pair, uint32_t c, cons
             FeatureSweep sweep = {
                 {p->position[i], q->position[k[0]], q->position[k[1]], q->position[k[2]]},
                 {p->displacement[i], q->displacement[k[0]], q->displacement[k[1]], q->displacement[k[2]]},
-                false};
+                false,
+                plane};
             note_hit(pair, feature_sweep(&sweep, ccd->plan->gap, ccd->plan->noise), kind, i, j);
             count++;
         }
@@ -75,6 +76,7 @@ static int sweep_pair(const Ccd *ccd, CollisionPair *pair) {
     const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
     unsigned of_b[4], of_a[4];
     int count = 0;
+    Float4 plane = {0}; // that keeps the last features apart is often one for the next
     Swept p, q;
     ccd_sweep_cells(ccd, pair, &p, &q);
     collision_same(a, b, of_b);
@@ -90,11 +92,11 @@ static int sweep_pair(const Ccd *ccd, CollisionPair *pair) {
                                   float4_cross(q.position[2] - q.position[0], q.position[3] - q.position[1])};
         for (int i = 0; i < 2; i++)
             if (feature_is_apart_along(&hulls, normal[i], margin)) return 0; // layers that lie on each other
-        if (feature_is_apart(&hulls, margin)) return 0;
+        if (feature_is_apart(&hulls, margin, NULL)) return 0;
     }
 
-    count += sweep_all_nodes(ccd, pair, pair->a, &p, &q, of_b, COLLISION_NODE_OF_A);
-    if (pair->a != pair->b) count += sweep_all_nodes(ccd, pair, pair->b, &q, &p, of_a, COLLISION_NODE_OF_B);
+    count += sweep_all_nodes(ccd, pair, pair->a, &p, &q, of_b, COLLISION_NODE_OF_A, &plane);
+    if (pair->a != pair->b) count += sweep_all_nodes(ccd, pair, pair->b, &q, &p, of_a, COLLISION_NODE_OF_B, &plane);
 
     // edges against edges
     const CollisionPlan *plan = ccd->plan;
@@ -118,7 +120,8 @@ static int sweep_pair(const Ccd *ccd, CollisionPair *pair) {
             FeatureSweep sweep = {
                 {p.position[k[0]], p.position[k[1]], q.position[l[0]], q.position[l[1]]},
                 {p.displacement[k[0]], p.displacement[k[1]], q.displacement[l[0]], q.displacement[l[1]]},
-                true};
+                true,
+                &plane};
             note_hit(pair, feature_sweep(&sweep, plan->gap, plan->noise), COLLISION_EDGES, i, j);
             count++;
         }

@@ -146,9 +146,10 @@ bool feature_is_apart_along(const FeatureHulls *hulls, Float4 normal, float marg
     return most > 0 && most < INFINITY && most * most > margin * margin * float4_dot(normal, normal);
 }
 
-bool feature_is_apart(const FeatureHulls *hulls, float margin) {
+bool feature_is_apart(const FeatureHulls *hulls, float margin, Float4 *normal) {
     enum { TRIALS = 10 };
     Float4 v = {0};
+    if (normal && feature_is_apart_along(hulls, *normal, margin)) return true;
     for (int trial = 0; trial <= TRIALS; trial++) {
         float reach = INFINITY, square = trial ? float4_dot(v, v) : 0;
         Float4 farthest[2];
@@ -169,7 +170,10 @@ bool feature_is_apart(const FeatureHulls *hulls, float margin) {
         }
 
         if (trial) {
-            if (reach > 0 && reach < INFINITY && reach * reach > margin * margin * square) return true;
+            if (reach > 0 && reach < INFINITY && reach * reach > margin * margin * square) {
+                if (normal) *normal = v;
+                return true;
+            }
             if (!(square > margin * margin)) return false;
             farthest[1] = v;
         }
@@ -216,7 +220,7 @@ static bool sweep_is_apart(const FeatureSweep *sweep, float margin) {
         }
     }
 
-    return feature_is_apart(&hulls, margin);
+    return feature_is_apart(&hulls, margin, sweep->normal);
 }
 
 float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {

@@ -23,13 +23,14 @@ typedef struct FeatureHulls {
 bool feature_is_apart_along(const FeatureHulls *hulls, Float4 normal, float margin);
 
 /// Whether a plane of one orientation keeps the convex hulls of the two bodies more than `margin` apart all the way.
-/// False if a few trials find none.
-bool feature_is_apart(const FeatureHulls *hulls, float margin);
+/// False if a few trials find none. Tries *normal first, if it is not NULL, and stores that of the plane it finds.
+bool feature_is_apart(const FeatureHulls *hulls, float margin, Float4 *normal);
 
 /// Four points and their displacements: a node and a triangle, or two edges.
 typedef struct FeatureSweep {
     Float4 position[4], displacement[4];
     bool edges;
+    Float4 *normal; ///< of a plane that has kept others of the two bodies apart, or NULL; replaced by what is found
 } FeatureSweep;
 
 /// The share of its displacement, 0 to 1, that is free before the two are about as near as `gap`, or 2 if all is.
