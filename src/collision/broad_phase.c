@@ -126,9 +126,9 @@ SingeResult broad_search(Memory *memory, CollisionPlan *plan, const Shell *shell
     // a step that is not finite, as with positions that overflow, gets the fewest
     plan->steps = step * COLLISION_STEPS < max ? COLLISION_STEPS : step * 2 <= max ? (uint32_t)(max / step) : 2;
 
-    // and at most twice as many as the last search has served: where layers land on each other, boxes for more list pairs
-    // that nothing comes of
-    if (plan->lasted < plan->steps / 2) plan->steps = plan->lasted > 0 ? 2 * plan->lasted : 1;
+    // and not many more than the last search has served: where layers land on each other, boxes for more list pairs that
+    // nothing comes of
+    if (plan->steps / 2 > plan->steps_most / 2) plan->steps = plan->steps_most;
     if (plan->h < plan->time_step) plan->steps = 1; // a part of a step
 
     // boxes; a vertex is owned by its lowest cell

@@ -27,9 +27,9 @@ enum { IMPACT_ROUNDS = 64, ZONE_ROUNDS = 64 };
 /// impacts do not separate a crowd in which each impact makes others, such as a hundred sheets around one line.
 enum { IMPACT_LOOKS = 4 };
 
-/// The fraction of all cells that may be outside their boxes before all are searched again; and the fraction from which
-/// on the next step begins with a search.
-enum { OUTSIDE_MAX = 8, OUTSIDE_PART = 32 };
+/// The fraction of all cells that may be outside their boxes before all are searched again, and the same in a crowd, where
+/// that costs more; and the fraction from which on the next step begins with a search.
+enum { OUTSIDE_MAX = 8, OUTSIDE_CROWD = 3, OUTSIDE_PART = 32 };
 
 // ---- how cells have moved
 
@@ -152,7 +152,8 @@ static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float
     uint32_t count = list_out_of_bounds(plan);
     if (count == 0) return SINGE_OK;
 
-    bool all = count > plan->cell_count / OUTSIDE_MAX || plan->edge <= 0;
+    const uint32_t max = plan->cell_count / (collision_is_crowded(plan) ? OUTSIDE_CROWD : OUTSIDE_MAX);
+    const bool all = count > max || plan->edge <= 0;
     if (all) {
         for (uint32_t v = 0; v < plan->vertex_count; v++) {
             Float4 start = float4_load(plan->start[v]), speed = (float4_load(ccd->dynamics->position[v]) - start) / h;

@@ -111,7 +111,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     plan->vertex_count = shell->vertex_count;
     plan->cell_count = shell->cell_count;
     plan->sizes = *sizes;
-    plan->lasted = COLLISION_STEPS;
+    plan->steps_most = COLLISION_STEPS;
     plan->pair_capacity = sizes->pairs;
     plan->repulsion_capacity = sizes->repulsions;
     plan->entry_capacity = COLLISION_ENTRIES * plan->cell_count + COLLISION_LIST_BEGIN;
@@ -193,7 +193,7 @@ SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const She
     if (stream->mode == STREAM_READ) plan->kept.current = false;
     STREAM(stream, plan->searched);
     STREAM(stream, plan->restless);
-    STREAM(stream, plan->lasted);
+    STREAM(stream, plan->steps_most);
     STREAM(stream, plan->narrowed);
     STREAM(stream, plan->step);
     stream_data(stream, plan->position, plan->vertex_count * sizeof *plan->position);
@@ -220,7 +220,7 @@ SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const She
     if (stream->mode != STREAM_READ) return SINGE_OK;
 
     // whether the data read back may be that of a search; cells that are alive now were alive then
-    if (plan->searched > 1 || plan->restless > 2 * COLLISION_PARTS || plan->lasted > COLLISION_STEPS ||
+    if (plan->searched > 1 || plan->restless > 2 * COLLISION_PARTS || plan->steps_most > COLLISION_STEPS ||
         plan->narrowed >= COLLISION_TRIALS)
         stream->failed = true;
     for (uint32_t v = 0; v < plan->vertex_count; v++)
@@ -258,7 +258,7 @@ void collision_plan_keep(CollisionPlan *plan) {
     plan->kept.current = true;
     plan->kept.searched = plan->searched;
     plan->kept.restless = plan->restless;
-    plan->kept.lasted = plan->lasted;
+    plan->kept.steps_most = plan->steps_most;
     plan->kept.narrowed = plan->narrowed;
     plan->kept.step = plan->step;
     plan->kept.counters = plan->counters;
@@ -268,7 +268,7 @@ void collision_plan_restore(Memory *memory, CollisionPlan *plan, const Shell *sh
     if (!plan->kept.current) copy_search(plan, true);
     plan->searched = plan->kept.searched;
     plan->restless = plan->kept.restless;
-    plan->lasted = plan->kept.lasted;
+    plan->steps_most = plan->kept.steps_most;
     plan->narrowed = plan->kept.narrowed;
     plan->step = plan->kept.step;
     plan->h = plan->time_step;

@@ -144,7 +144,7 @@ struct CollisionPlan {
     /// 1: many cells have left their boxes since: search as the next step opens. More, up to 2 COLLISION_PARTS: so too,
     /// by velocities, and that step has half as many parts at least
     uint32_t restless;
-    uint32_t lasted;      ///< steps for which the search before it has served, at most COLLISION_STEPS
+    uint32_t steps_most;  ///< max steps of it, from what the search before it has served: at most COLLISION_STEPS
     uint32_t narrowed;    ///< how often it has halved the slack, less than COLLISION_TRIALS
     uint64_t step;        ///< it was for displacements from this step's start
     float (*position)[4]; ///< [vertices] m
@@ -159,7 +159,7 @@ struct CollisionPlan {
     // the same as it was before the step, for one that fails; arrays are copied after a search alone
     struct {
         bool current; ///< the arrays are those of the last search
-        uint32_t searched, restless, lasted, narrowed;
+        uint32_t searched, restless, steps_most, narrowed;
         uint64_t step;
         float (*position)[4], (*speed)[4];
         uint8_t *alive;
@@ -227,12 +227,21 @@ struct CollisionPlan {
 /// goes.
 void repulsion_sort(CollisionPlan *plan, const Shell *shell, const float (*x)[4]);
 
+/// Whether the last search has found so many pairs that layers must lie on many others.
+static inline bool collision_is_crowded(const CollisionPlan *plan) {
+    return plan->searched && plan->listed_count > plan->sizes.pair_budget / 3;
+}
+
 /// Before a search for displacements from the start of this step: it follows from how the last one has served.
 static inline void collision_search_again(CollisionPlan *plan, uint64_t step) {
     const bool known = plan->searched && step >= plan->step;
-    plan->lasted = known && step - plan->step < COLLISION_STEPS ? (uint32_t)(step - plan->step) : COLLISION_STEPS;
+    const uint64_t lasted = known ? step - plan->step : COLLISION_STEPS;
+    const uint64_t most = collision_is_crowded(plan) ? lasted + 1 : lasted > 0 ? 2 * lasted : 1;
+    const uint32_t budget = plan->sizes.pair_budget;
+    plan->steps_most = most < COLLISION_STEPS ? (uint32_t)most : COLLISION_STEPS;
     if (!known) plan->narrowed = 0;
-    else if (plan->narrowed > 0 && plan->listed_count < plan->sizes.pair_budget / 2) plan->narrowed--;
+    else if (plan->narrowed > 0 && plan->listed_count < budget / 2) plan->narrowed--;
+    else if (plan->narrowed + 1 < COLLISION_TRIALS && plan->listed_count > budget - budget / 16) plan->narrowed++;
     plan->step = step;
 }
 
