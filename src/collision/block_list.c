@@ -3,30 +3,37 @@
 #include <string.h>
 
 bool block_list_create(Memory *memory, BlockList *list, size_t size, uint32_t capacity, uint32_t block_count) {
-    *list = (BlockList){.size = size, .capacity = capacity, .block_count = block_count};
-    list->chunk_count = capacity / BLOCK_CHUNK + block_count; // a block's last chunk may be almost empty
-    return (list->items = memory_new(memory, (size_t)list->chunk_count * BLOCK_CHUNK, size)) &&
-           NEW(memory, list->next, list->chunk_count) && NEW(memory, list->blocks, block_count);
+    *list = (BlockList){.size = size};
+    return block_list_grow(memory, list, capacity, block_count);
 }
 
 void block_list_free(Memory *memory, BlockList *list) {
-    memory_free(memory, (void *)&list->items, (size_t)list->chunk_count * BLOCK_CHUNK, list->size);
-    FREE(memory, list->next, list->chunk_count);
+    memory_free(memory, (void *)&list->items, (size_t)list->items_length * BLOCK_CHUNK, list->size);
+    FREE(memory, list->next, list->next_length);
     FREE(memory, list->blocks, list->block_count);
 }
 
 bool block_list_grow(Memory *memory, BlockList *list, uint32_t capacity, uint32_t block_count) {
-    BlockList grown;
     if (capacity < list->capacity) capacity = list->capacity;
     if (block_count < list->block_count) block_count = list->block_count;
-    if (!block_list_create(memory, &grown, list->size, capacity, block_count)) {
-        block_list_free(memory, &grown);
-        return false;
+    const uint32_t chunks = capacity / BLOCK_CHUNK + block_count; // a block's last chunk may be almost empty
+    if (chunks > list->items_length) {
+        if (!memory_grow(memory, &list->items, (size_t)list->items_length * BLOCK_CHUNK, (size_t)chunks * BLOCK_CHUNK,
+                         list->size))
+            return false;
+        list->items_length = chunks;
+    }
+    if (chunks > list->next_length) {
+        if (!memory_grow(memory, &list->next, list->next_length, chunks, sizeof *list->next)) return false;
+        list->next_length = chunks;
+    }
+    if (block_count > list->block_count) {
+        if (!memory_grow(memory, &list->blocks, list->block_count, block_count, sizeof *list->blocks)) return false;
+        list->block_count = block_count;
     }
 
-    memcpy(grown.blocks, list->blocks, list->block_count * sizeof *list->blocks);
-    block_list_free(memory, list);
-    *list = grown;
+    list->capacity = capacity;
+    list->chunk_count = chunks;
     return true;
 }
 

@@ -24,17 +24,19 @@ typedef struct BlockList {
     size_t size;       ///< bytes of an item
     uint32_t capacity; ///< items, whatever blocks they are in
     uint32_t chunk_count, block_count;
+    /// chunks in each; more than chunk_count where memory has run out before both had grown
+    uint32_t items_length, next_length;
     atomic_uint taken; ///< chunks
     bool whole;        ///< the last written items are all there
-    uint8_t *items;    ///< [chunk_count * BLOCK_CHUNK * size]
-    uint32_t *next;    ///< [chunk_count] the next chunk of the same block
+    uint8_t *items;    ///< [items_length * BLOCK_CHUNK * size]
+    uint32_t *next;    ///< [next_length] the next chunk of the same block
     ListBlock *blocks; ///< [block_count]
 } BlockList;
 
 /// A list with room for `capacity` items of `size` bytes, whatever blocks they are in. False when out of memory.
 bool block_list_create(Memory *memory, BlockList *list, size_t size, uint32_t capacity, uint32_t block_count);
 
-/// Makes room for at least `capacity` items and `block_count` blocks; the previous items are lost, not their number.
+/// Makes room for at least `capacity` items and `block_count` blocks; the previous items stay.
 /// When out of memory it returns false and the list is unchanged.
 bool block_list_grow(Memory *memory, BlockList *list, uint32_t capacity, uint32_t block_count);
 void block_list_free(Memory *memory, BlockList *list);

@@ -253,7 +253,7 @@ SingeResult broad_grid_pairs(Memory *memory, CollisionPlan *plan, const Shell *s
 void broad_grid_keep(CollisionPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room) {
     Find find = {plan, shell};
     const int blocks = grid_blocks(plan);
-    uint32_t *first = plan->around_first;
+    uint32_t *first = plan->pair_first;
     const uint32_t kept = block_list_settle(&plan->found_pairs, pool, blocks, count, room, pair_block, &find);
     block_list_read(&plan->found_pairs, pool, blocks, kept, note_first, &find);
 

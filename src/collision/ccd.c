@@ -86,36 +86,36 @@ void ccd_mark_around(const Ccd *ccd, uint32_t v) {
     for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++) ccd_mark_changed(ccd, shell->fan[f]);
 }
 
+/// Lists pair k of cell c after `count` others, unless its other cell lists it: the pair of two cells that have changed
+/// counts once.
+static inline uint32_t list_pair(CollisionPlan *plan, uint32_t c, uint32_t k, uint32_t count) {
+    const CollisionPair *pair = &plan->pairs[k];
+    const uint32_t other = pair->a == c ? pair->b : pair->a;
+    if (plan->changed[other] && other < c) return count;
+    plan->active[count] = k;
+    return count + 1;
+}
+
 /// Lists the pairs of cells that have changed. Returns how many.
 static uint32_t list_changed(CollisionPlan *plan) {
     uint32_t *first = plan->around_first, count = 0;
 
-    // sort the search's pairs by their cells, once for each search
+    // sort the search's pairs, which lie in the order of their first cells, by their second ones, once for each search
     if (plan->around_search != plan->counters.searches) {
         plan->around_search = plan->counters.searches;
         memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
-        for (uint32_t k = 0; k < plan->listed_count; k++) {
-            const CollisionPair *pair = &plan->pairs[k];
-            first[pair->a + 2]++;
-            first[pair->b + 2] += pair->a != pair->b;
-        }
-
+        for (uint32_t k = 0; k < plan->listed_count; k++) first[plan->pairs[k].b + 2]++;
         for (uint32_t c = 0; c < plan->cell_count; c++) first[c + 2] += first[c + 1];
-        for (uint32_t k = 0; k < plan->listed_count; k++) {
-            const CollisionPair *pair = &plan->pairs[k];
-            plan->around[first[pair->a + 1]++] = k;
-            if (pair->a != pair->b) plan->around[first[pair->b + 1]++] = k;
-        }
+        for (uint32_t k = 0; k < plan->listed_count; k++) plan->around[first[plan->pairs[k].b + 1]++] = k;
     }
 
-    // those of cells that have changed; the pair of two such cells once
+    // those of cells that have changed, in the list's order: a cell's pair with itself is the last
     for (uint32_t l = 0; l < plan->changed_count; l++) {
-        uint32_t c = plan->changed_list[l];
-        for (uint32_t e = first[c]; e < first[c + 1]; e++) {
-            const CollisionPair *pair = &plan->pairs[plan->around[e]];
-            uint32_t other = pair->a == c ? pair->b : pair->a;
-            if (!plan->changed[other] || other >= c) plan->active[count++] = plan->around[e];
-        }
+        const uint32_t c = plan->changed_list[l], end = first[c + 1];
+        uint32_t e = first[c];
+        for (; e < end && plan->pairs[plan->around[e]].a != c; e++) count = list_pair(plan, c, plan->around[e], count);
+        for (uint32_t k = plan->pair_first[c]; k < plan->pair_first[c + 1]; k++) count = list_pair(plan, c, k, count);
+        for (; e < end; e++) count = list_pair(plan, c, plan->around[e], count);
     }
 
     for (uint32_t k = plan->listed_count; k < plan->pair_count; k++)

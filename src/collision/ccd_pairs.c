@@ -10,6 +10,8 @@
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 
+#include <string.h>
+
 // ---- sweeping a pair
 
 static void sweep_nodes(const Ccd *ccd, uint32_t c, Float4 origin, Float4 mean, Swept *out) {
@@ -182,9 +184,9 @@ static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     return free;
 }
 
-/// Pairs that are checked before the work is compared with its bound; and what a pair that collides adds to the work in
-/// a sum of both, which is exact: the work of a chunk is less.
-enum { LOOK_CHUNK = 16 * POOL_BLOCK, LOOK_HIT = 1 << 26 };
+/// What a pair that collides adds to the work in a sum of both, which is exact: the work of a chunk is less.
+enum { LOOK_HIT = 1 << 26, LOOK_WORK_MAX = 1 + 2 * 5 * 4 + 8 * 8 };
+_Static_assert((long long)LOOK_WORK_MAX *COLLISION_CHUNK < LOOK_HIT, "sums are exact");
 
 typedef struct Look {
     const Ccd *ccd;
@@ -192,12 +194,14 @@ typedef struct Look {
     const uint32_t *active; ///< pairs, or NULL for all from the first on
 } Look;
 
-/// Checks pairs, four at a time. Returns the work, a unit for each pair and for each two features swept, and LOOK_HIT
-/// for each pair that collides.
+/// Checks pairs, four at a time, and lists those that collide from the range's own place in plan->active on, which no
+/// later pair is read from. Returns the work, a unit for each pair and for each two features swept, and LOOK_HIT for each
+/// pair that collides.
 static double look_range(void *task, int begin, int end) {
     const Look *look = task;
     const Ccd *ccd = look->ccd;
     CollisionPair *pairs = ccd->plan->pairs;
+    uint32_t *collides = ccd->plan->active + look->first + begin;
     int work = end - begin, hits = 0;
     for (int k = begin; k < end; k += 4) {
         uint32_t number[4], count = end - k < 4 ? (uint32_t)(end - k) : 4;
@@ -207,9 +211,9 @@ static double look_range(void *task, int begin, int end) {
         }
 
         // those of the four that are not free
-        for (uint32_t i = 0; i < count; i++) pairs[number[i]].hit = 2;
         for (unsigned left = ((1u << count) - 1) & ~four_are_free(ccd, number); left; left &= left - 1) {
-            CollisionPair *pair = &pairs[number[__builtin_ctz(left)]];
+            const uint32_t at = number[__builtin_ctz(left)];
+            CollisionPair *pair = &pairs[at];
             if (!ccd_is_alive(ccd, pair->a) || !ccd_is_alive(ccd, pair->b)) continue;
             if (initial_is_crossing(ccd->plan, pair)) continue;
 
@@ -231,8 +235,11 @@ static double look_range(void *task, int begin, int end) {
                 parted = feature_is_separated(p, q, shared, ccd->plan->gap, &normal[t]);
             }
 
-            if (!parted || !(float4_dot(normal[0], normal[1]) > 0)) work += sweep_pair(ccd, pair);
-            hits += pair->hit < 2;
+            if (parted && float4_dot(normal[0], normal[1]) > 0) continue;
+
+            pair->hit = 2;
+            work += sweep_pair(ccd, pair);
+            if (pair->hit < 2) collides[hits++] = at;
         }
     }
 
@@ -244,21 +251,23 @@ static double look_range(void *task, int begin, int end) {
 static uint32_t look_all(Look look, Pool *pool, uint32_t count) {
     CollisionPlan *plan = look.ccd->plan;
     const uint32_t begin = look.first;
-    uint64_t hits = 0;
     plan->hit_count = 0;
-    for (uint32_t done = 0; done < count; done += LOOK_CHUNK) {
-        const uint32_t some = count - done < LOOK_CHUNK ? count - done : LOOK_CHUNK;
+    for (uint32_t done = 0; done < count; done += COLLISION_CHUNK) {
+        const uint32_t some = count - done < COLLISION_CHUNK ? count - done : COLLISION_CHUNK;
         look.first = begin + done;
         const uint64_t sum = (uint64_t)pool_sum(pool, (int)some, look_range, &look, plan->partial);
-        hits += sum / LOOK_HIT;
         plan->work += sum % LOOK_HIT;
         if (ccd_is_spent(plan)) return 0;
+
+        // join the lists of the blocks
+        for (uint32_t block = 0; block < (uint32_t)pool_blocks((int)some); block++) {
+            const uint32_t hits = (uint32_t)((uint64_t)plan->partial[block] / LOOK_HIT);
+            memmove(plan->active + plan->hit_count, plan->active + look.first + block * POOL_BLOCK,
+                    hits * sizeof *plan->active);
+            plan->hit_count += hits;
+        }
     }
 
-    for (uint32_t k = begin; hits > 0 && k < begin + count; k++) {
-        const uint32_t number = look.active ? look.active[k] : k;
-        if (plan->pairs[number].hit < 2) plan->active[plan->hit_count++] = number;
-    }
     return plan->hit_count;
 }
 

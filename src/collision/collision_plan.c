@@ -30,7 +30,7 @@ typedef struct Array {
     size_t count, size;
 } Array;
 
-enum { ARRAYS = 39 };
+enum { ARRAYS = 40 };
 
 /// The plan's arrays, to create and to free them.
 static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
@@ -55,7 +55,7 @@ static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
         ARRAY(owner, vertices),
         ARRAY(entries, plan->entry_capacity),
         ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
-        ARRAY(pairs, plan->pair_capacity),
+        ARRAY(pairs, plan->pairs_length),
         ARRAY(repulsions, plan->repulsion_capacity),
         ARRAY(start, vertices),
         ARRAY(want, vertices),
@@ -68,15 +68,16 @@ static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
         ARRAY(stopped, vertices),
         ARRAY(changed, cells),
         ARRAY(changed_list, cells),
-        ARRAY(active, plan->pair_capacity),
+        ARRAY(active, plan->active_length),
+        ARRAY(pair_first, cells + 2),
         ARRAY(around_first, cells + 2),
-        ARRAY(around, 2 * (size_t)plan->pair_capacity),
+        ARRAY(around, plan->around_length),
         ARRAY(is_outside, cells),
         ARRAY(outside, cells),
         ARRAY(outside_boxes, cells),
         ARRAY(outside_chain, plan->bucket_count),
         ARRAY(outside_entries, plan->outside_capacity),
-        ARRAY(partial, (size_t)pool_blocks((int)plan->pair_capacity)),
+        ARRAY(partial, (size_t)collision_partials(plan)),
     };
 #undef ARRAY
     memcpy(list, all, sizeof all);
@@ -112,7 +113,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     plan->cell_count = shell->cell_count;
     plan->sizes = *sizes;
     plan->steps_most = COLLISION_STEPS;
-    plan->pair_capacity = sizes->pairs;
+    plan->pair_capacity = plan->pairs_length = plan->active_length = plan->around_length = sizes->pairs;
     plan->repulsion_capacity = sizes->repulsions;
     plan->entry_capacity = COLLISION_ENTRIES * plan->cell_count + COLLISION_LIST_BEGIN;
     plan->outside_capacity = COLLISION_LIST_BEGIN;
@@ -288,31 +289,11 @@ CollisionCounters collision_counters(const CollisionPlan *plan) { return plan->c
 
 // ---- growth
 
-typedef struct Room {
-    void *at; ///< the plan's pointer
-    size_t before, after, size;
-} Room;
-
-enum { ROOMS = 4 };
-
-/// Grows all of them or none.
-static bool grow_rooms(Memory *memory, const Room *room, int count) {
-    void *grown[ROOMS], *old;
-    for (int k = 0; k < count; k++) {
-        grown[k] = memory_new(memory, room[k].after, room[k].size);
-        if (grown[k]) continue;
-
-        while (k-- > 0) memory_free(memory, (void *)&grown[k], room[k].after, room[k].size);
-        return false;
-    }
-
-    for (int k = 0; k < count; k++) {
-        memcpy(&old, room[k].at, sizeof old);
-        memcpy(grown[k], old, room[k].before * room[k].size);
-        memory_free(memory, (void *)&old, room[k].before, room[k].size);
-        memcpy(room[k].at, &grown[k], sizeof old);
-    }
-
+/// Makes an array of *length elements as long as `wanted`; new ones are not initialised. False when out of memory.
+static bool grow_array(Memory *memory, void *at, uint32_t *length, uint32_t wanted, size_t size) {
+    if (wanted <= *length) return true;
+    if (!memory_grow(memory, at, *length, wanted, size)) return false;
+    *length = wanted;
     return true;
 }
 
@@ -326,16 +307,12 @@ bool collision_grow_pairs(Memory *memory, CollisionPlan *plan, uint64_t wanted) 
     uint32_t before = plan->pair_capacity, after = with_margin(wanted, plan->sizes.pair_max);
     if (wanted <= before || before >= plan->sizes.pair_max) return true;
 
-    const Room room[ROOMS] = {
-        {&plan->pairs, before, after, sizeof *plan->pairs},
-        {&plan->active, before, after, sizeof *plan->active},
-        {&plan->around, 2 * (size_t)before, 2 * (size_t)after, sizeof *plan->around},
-        {&plan->partial, (size_t)pool_blocks((int)before), (size_t)pool_blocks((int)after), sizeof *plan->partial},
-    };
     BlockList *pairs = &plan->found_pairs, *repulsions = &plan->found;
     if (!block_list_grow(memory, pairs, after, pairs->block_count) ||
         !block_list_grow(memory, repulsions, repulsions->capacity, collision_look_blocks(after)) ||
-        !grow_rooms(memory, room, ROOMS))
+        !grow_array(memory, &plan->pairs, &plan->pairs_length, after, sizeof *plan->pairs) ||
+        !grow_array(memory, &plan->active, &plan->active_length, after, sizeof *plan->active) ||
+        !grow_array(memory, &plan->around, &plan->around_length, after, sizeof *plan->around))
         return false;
     plan->pair_capacity = after;
     return true;
@@ -345,31 +322,20 @@ bool collision_grow_repulsions(Memory *memory, CollisionPlan *plan, uint64_t wan
     uint32_t before = plan->repulsion_capacity, after = with_margin(wanted, plan->sizes.repulsion_max);
     if (wanted <= before || before >= plan->sizes.repulsion_max) return true;
 
-    const Room room = {&plan->repulsions, before, after, sizeof *plan->repulsions};
-    if (!block_list_grow(memory, &plan->found, after, plan->found.block_count) || !grow_rooms(memory, &room, 1))
-        return false;
-    plan->repulsion_capacity = after;
-    return true;
-}
-
-/// The list at `at`, of elements of `size` bytes.
-static bool grow_entry_list(Memory *memory, const CollisionPlan *plan, void *at, size_t size, uint32_t *capacity,
-                            uint64_t wanted) {
-    const uint32_t after = with_margin(wanted, plan->sizes.entry_max);
-    const Room room = {at, *capacity, after, size};
-    if (wanted <= *capacity) return true;
-    if (!grow_rooms(memory, &room, 1)) return false;
-    *capacity = after;
-    return true;
+    return block_list_grow(memory, &plan->found, after, plan->found.block_count) &&
+           grow_array(memory, &plan->repulsions, &plan->repulsion_capacity, after, sizeof *plan->repulsions);
 }
 
 bool collision_grow_entries(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
-    return grow_entry_list(memory, plan, &plan->entries, sizeof *plan->entries, &plan->entry_capacity, wanted);
+    return wanted <= plan->entry_capacity ||
+           grow_array(memory, &plan->entries, &plan->entry_capacity, with_margin(wanted, plan->sizes.entry_max),
+                      sizeof *plan->entries);
 }
 
 bool collision_grow_outside(Memory *memory, CollisionPlan *plan, uint64_t wanted) {
-    return grow_entry_list(memory, plan, &plan->outside_entries, sizeof *plan->outside_entries, &plan->outside_capacity,
-                           wanted);
+    return wanted <= plan->outside_capacity ||
+           grow_array(memory, &plan->outside_entries, &plan->outside_capacity,
+                      with_margin(wanted, plan->sizes.entry_max), sizeof *plan->outside_entries);
 }
 
 // ---- invariants, for assertions and tests

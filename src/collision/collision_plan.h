@@ -178,6 +178,8 @@ struct CollisionPlan {
     uint32_t listed_count;  ///< and those of a cell with itself
     uint32_t pair_count;    ///< and those of cells that have left their boxes, in this step
     uint32_t pair_capacity, repulsion_capacity, entry_capacity, outside_capacity;
+    /// of these three; more than pair_capacity where memory has run out before all had grown
+    uint32_t pairs_length, active_length, around_length;
     CollisionBox *boxes;     ///< [cells]
     CollisionSlab *slabs;    ///< [cells]
     Float4 *rest;            ///< [cells] centroid at rest, and how far a corner is from it
@@ -185,7 +187,7 @@ struct CollisionPlan {
     uint32_t *owner;         ///< [vertices]
     CollisionEntry *entries; ///< [entry_capacity] by bucket
     uint32_t *bucket_first;  ///< [bucket_count + 2]
-    CollisionPair *pairs;    ///< [pair_capacity]
+    CollisionPair *pairs;    ///< [pairs_length]
     Repulsion *repulsions;   ///< [repulsion_capacity]
     /// a crowd's stripes, or 0: repulsions stripe_first[s] to stripe_first[s + 1] are those of stripe s
     uint32_t stripe_count, stripe_first[COLLISION_STRIPES + 2];
@@ -209,17 +211,18 @@ struct CollisionPlan {
     uint32_t *changed_list; ///< [changed_count] of them
     uint32_t changed_count;
     uint64_t work, work_max; ///< of CCD in this step: pairs checked, and features swept; and its bound
-    uint32_t *active;        ///< [hit_count] pairs that collide; before CCD, places in lists that are sorted
+    uint32_t *active;        ///< [active_length] pairs that collide; before CCD, places in lists that are sorted
     uint32_t hit_count;
-    uint32_t *around_first; ///< [cells + 2] a cell's pairs are around[around_first[c]] to around[around_first[c + 1]]
-    uint32_t *around;       ///< [2 pair_capacity]
-    uint64_t around_search; ///< which search these are of
-    uint8_t *is_outside;    ///< [cells] that have left their boxes
-    uint32_t *outside;      ///< [cells] a list of them
+    uint32_t *pair_first;          ///< [cells + 2] where the pairs of each cell with later ones begin
+    uint32_t *around_first;        ///< [cells + 2] where those with earlier ones, and with itself, begin in `around`
+    uint32_t *around;              ///< [around_length]
+    uint64_t around_search;        ///< which search these are of
+    uint8_t *is_outside;           ///< [cells] that have left their boxes
+    uint32_t *outside;             ///< [cells] a list of them
     OutsideBox *outside_boxes;     ///< [cells] theirs
     uint32_t *outside_chain;       ///< [bucket_count] first entries
     OutsideEntry *outside_entries; ///< [outside_capacity]
-    double *partial;               ///< [pool_blocks(pair_capacity)]
+    double *partial;               ///< [collision_partials]
     CollisionCounters counters;
 };
 
@@ -256,11 +259,17 @@ SingeResult broad_grid_pairs(Memory *memory, CollisionPlan *plan, const Shell *s
 /// Keeps the first `room` of the `count` pairs that broad_grid_pairs has found, as plan->pairs.
 void broad_grid_keep(CollisionPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room);
 
+/// Pairs that CCD checks before its work is compared with its bound; and partial sums of these, or of cells.
+enum { COLLISION_CHUNK = 256 * POOL_BLOCK };
+static inline int collision_partials(const CollisionPlan *plan) {
+    const int chunk = pool_blocks(COLLISION_CHUNK), cells = pool_blocks((int)plan->cell_count);
+    return cells > chunk ? cells : chunk;
+}
+
 /// Number of blocks in which pairs are checked.
 static inline uint32_t collision_look_blocks(uint32_t pairs) { return (pairs + COLLISION_BLOCK - 1) / COLLISION_BLOCK; }
 
-/// Makes room for `wanted` pairs or repulsions, or the max if that is less; plan->found_pairs and plan->found lose
-/// their content. False when out of memory.
+/// Makes room for `wanted` pairs or repulsions, or the max if that is less. False when out of memory.
 bool collision_grow_pairs(Memory *memory, CollisionPlan *plan, uint64_t wanted);
 bool collision_grow_repulsions(Memory *memory, CollisionPlan *plan, uint64_t wanted);
 
