@@ -215,7 +215,7 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 #define EMBER_MOST 6.0f   ///< radiance of the brightest channel, which none reaches
 
 /// Of a leaf's glow: what is neither thread nor speck, and these.
-#define LEAF_DULL 0.35f
+#define LEAF_DULL 0.27f
 #define LEAF_THREADS 0.9f
 #define LEAF_SPECKS 0.35f
 #define LEAF_COOLER 120.0f ///< K, how much cooler it is than these
@@ -287,8 +287,9 @@ static Float3 border_glow(const Preview *preview, const PaperState *state, const
 /// A leaf of char that glows away, at its own temperature. The simulation spreads its heat over a cell or two, but real
 /// embers are threads that creep over black char, and specks: lines where noise that drifts in time changes sign, in octaves, where the leaf is alive, over a dull glow. A thread narrower than a pixel is a pixel wide, but paler.
 static Float3 leaf_glow(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
-    enum { SIZES = 3 };
-    static const float size[SIZES] = {9e-3f, 4e-3f, 1.7e-3f}, weight[SIZES] = {1, 0.9f, 0.6f}; // m
+    enum { SIZES = 4 };
+    static const float size[SIZES] = {24e-3f, 9e-3f, 4e-3f, 1.7e-3f}; // m
+    static const float thick[SIZES] = {0.5e-3f, 0.22e-3f, 0.16e-3f, 0.14e-3f}, weight[SIZES] = {1, 1, 0.9f, 0.6f};
     const float activity = ember_activity(state->glowing);
     if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
 
@@ -297,7 +298,7 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     float thread = 0;
     for (uint32_t k = 0; k < SIZES; k++) {
         const float n = noise3(float3_mad(float3(0, 0, (0.35f + 0.2f * (float)k) * t), bowed, 1 / size[k]), 61 + k);
-        const float width = 0.16e-3f * (0.4f + 0.9f * life) / size[k], seen = maxf(width, 0.5f * footprint / size[k]);
+        const float width = thick[k] * (0.4f + 0.9f * life) / size[k], seen = maxf(width, 0.5f * footprint / size[k]);
         thread += weight[k] * width / seen * ridge(n, 2 * seen);
     }
 
