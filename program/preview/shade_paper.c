@@ -296,7 +296,7 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     const float life = line_life(preview, bent) * minf(air, 1.2f), t = seconds(preview);
     Float3 bowed = float3_mad(bent->position, float3(bent->fine, bent->medium, bent->coarse), 0.7e-3f);
     float thread = 0;
-    for (uint32_t k = 0; k < SIZES; k++) {
+    for (uint32_t k = 0; k < SIZES && life > 0; k++) {
         const float n = noise3(float3_mad(float3(0, 0, (0.35f + 0.2f * (float)k) * t), bowed, 1 / size[k]), 61 + k);
         const float width = thick[k] * (0.4f + 0.9f * life) / size[k], seen = maxf(width, 0.5f * footprint / size[k]);
         thread += weight[k] * width / seen * ridge(n, 2 * seen);
