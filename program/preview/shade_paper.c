@@ -284,8 +284,9 @@ static Float3 border_glow(const Preview *preview, const PaperState *state, const
     return float3_scale(blackbody_glow(preview->blackbody, 1090 - 22 * state->age + 50 * bent->fine), 2.5f * strength);
 }
 
-/// A leaf of char that glows away, at its own temperature. The simulation spreads its heat over a cell or two, but real
-/// embers are threads that creep over black char, and specks: lines where noise that drifts in time changes sign, in octaves, where the leaf is alive, over a dull glow. A thread narrower than a pixel is a pixel wide, but paler.
+/// A leaf of char that glows away, at its own temperature. The simulation spreads its heat over a cell or two. Real embers
+/// are specks, and threads that creep over black char: here lines where noise that drifts in time changes sign, in several
+/// sizes. Between them the glow is dull. A thread narrower than a pixel is drawn a pixel wide and paler.
 static Float3 leaf_glow(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
     enum { SIZES = 4 };
     static const float size[SIZES] = {24e-3f, 9e-3f, 4e-3f, 1.7e-3f}; // m
