@@ -25,6 +25,9 @@
 // tips. Soot glows as a black body between FLAME_COOL and FLAME_HOT, and hides as much as it glows. It is the hotter the
 // more heat is released around it (core) and the further it is from the edge (strong): so a flame of one or two sheets has
 // a pale core, too.
+//
+// Soot lies in threads, which are denser and cooler than what is between them. So a sheet in front hides much of what burns
+// behind it, and a body of many sheets does not add up to one flat yellow. Soot thins out towards the tips.
 
 #include "preview/internal.h"
 
@@ -36,10 +39,12 @@
 #define EDDY_RATE 8.0f   ///< 1/s, eddies that pass a height
 #define EDDY_WIDE 0.014f ///< m across
 #define EDDY_FINE 0.006f
-#define SWAY_WIDE 0.1f   ///< m, of the eddies that bend whole tongues
-#define SWAY_SLOPE 0.35f ///< m aside per m above the paper
-#define LICK_WIDE 0.045f ///< m, of the eddies that feed and starve whole tongues
-#define LICK_FULL 0.05f  ///< m above the paper, where they do so fully
+#define EDDY_THREAD 0.0062f ///< of the soot's threads
+#define THREAD_WARP 0.01f   ///< m, by which wide eddies bend them
+#define SWAY_WIDE 0.1f      ///< m, of the eddies that bend whole tongues
+#define SWAY_SLOPE 0.35f    ///< m aside per m above the paper
+#define LICK_WIDE 0.045f    ///< m, of the eddies that feed and starve whole tongues
+#define LICK_FULL 0.05f     ///< m above the paper, where they do so fully
 #define LICK 0.6f
 #define SMOKE_EDDY 0.028f
 #define SMOKE_SPEED 0.5f ///< m/s, at which they rise
@@ -47,9 +52,9 @@
 #define FLAME_COOL 1400.0f ///< K
 #define FLAME_HOT 2050.0f
 #define FLAME_DIM 0.3f ///< radiance of a thick flame at its coolest and its hottest
-#define FLAME_BRIGHT 6.8f
+#define FLAME_BRIGHT 6.2f
 #define FLAME_BAKED 3.7f        ///< radiance of what is 1 where gas is baked
-#define SOOT_DENSE 110.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
+#define SOOT_DENSE 195.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
 #define BLUE_DENSE 1.3f         ///< 1/m: radiance of the root per metre
 #define BLUE_ENDS 0.005f        ///< m
 #define SHELL_RISE 0.0005f      ///< m, w
@@ -58,7 +63,7 @@
 #define EDGE 0.42f              ///< f at a flame's edge
 #define TAPER 0.55f             ///< what is added to it above a flame's height
 #define STAND_OFF 0.0006f       ///< m above the paper, below which nothing is visible
-#define SOOT_BEGINS 0.0045f     ///< m
+#define SOOT_BEGINS 0.0050f     ///< m
 #define SOOT_FULL 0.0120f
 
 // ---- looking up
@@ -157,9 +162,9 @@ float fire_lick(const Fire *fire, Float3 p, float height) {
     return LICK * n.c * stepf(0, LICK_FULL * scale, height);
 }
 
-/// The flame at a position, from its cell, the gradient of its share in 1/m, and the noises.
-static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noise wide, Noise fine, float blur,
-                        FirePoint *point) {
+/// The flame at a position p that large eddies have moved, from its cell, the gradient of its share in 1/m, and the noises.
+static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float passed, float slope, Noise wide,
+                        Noise fine, float blur, FirePoint *point) {
     float rise = maxf(cell->rise / cell->flame, 0), torn = stepf(0, 0.02f, rise);
     float tall = rise / (fire->scale * FLAME_HEIGHT);
     float coarse = 0.075f + 0.425f * torn, small = 0.025f + 0.225f * torn;
@@ -178,13 +183,21 @@ static void shade_flame(const Fire *fire, const FireCell *cell, float slope, Noi
     point->profile = same * outer / first * (fill + fading);
     point->shell = same * (0.5f * outer * outer / first + fill * inner + SHELL * (1 - fill - fading));
 
-    float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001f * fine.d);
+    // threads are denser and cooler than what is between them
+    const Float3 bent =
+        float3_mad(p, float3(wide.b + 0.2f * fine.b, wide.a + 0.2f * fine.a, 0), fire->scale * THREAD_WARP);
+    const Noise thread = eddies(fire, bent, passed, sqrtf(fire->scale) * EDDY_THREAD, 5.5f * sqrtf(fire->scale));
+    float clear = stepf(-0.35f, 0.45f, 0.15f * (wide.d + fine.d) + 0.9f * torn * thread.a);
+
     float core = stepf(0.35f, 0.7f, cell->flame) * stepf(SOOT_BEGINS, SOOT_FULL, rise);
-    float strong = stepf(0, 0.7f, edge);
-    float hot = 0.28f + 0.42f * strong + 0.16f * core - 0.2f * tip + 0.25f * wide.d + 0.2f * fine.a;
-    soot *= soot;
+    float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
+    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.19f * core + 0.72f * clear - 0.14f * tip - 0.12f;
+
+    float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001f * fine.d);
+    soot *= soot * soot;
     float root = stepf(STAND_OFF, 3 * STAND_OFF, rise) * (1 - soot) * (1 - stepf(BLUE_ENDS / 3, BLUE_ENDS, rise));
-    soot *= 0.3f + 1.2f * stepf(-0.5f, 0.5f, 0.7f * wide.d + 0.6f * fine.a);
+    soot *= 0.2f + 3 * (1 - clear) * (1 - clear) + 1.2f * clear * clear;
+    soot *= (0.6f + 0.9f * torn * maxf(thread.b, -0.5f)) * (1 - 0.5f * tip);
     point->opaque = SOOT_DENSE * soot;
     point->soot = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * soot);
     point->root = float3_scale(float3(0.12f, 0.42f, 1.25f), BLUE_DENSE * root);
@@ -280,7 +293,7 @@ FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
     Noise fine = eddies(fire, shifted, passed, sqrtf(scale) * EDDY_FINE, 1.6f * sqrtf(scale));
     const FireCell cell =
         cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), sqrtf(scale) * 0.7f * FIRE_WARP_FINE), &slope);
-    if (cell.flame > 0.02f) shade_flame(fire, &cell, slope, wide, fine, blur, &point);
+    if (cell.flame > 0.02f) shade_flame(fire, &cell, shifted, passed, slope, wide, fine, blur, &point);
     return point;
 }
 

@@ -115,6 +115,33 @@ TEST(a_bright_flame_is_pale_in_its_centre) {
     }
 }
 
+/// A body of flame shows sheets before each other, not one yellow: its green differs within a centimetre.
+TEST(a_body_of_flame_has_folds) {
+    enum { APART = 6 };
+    static uint8_t rgb[BYTES];
+    static Ball ball;
+    SingeSurface nothing = {0};
+    PreviewDef def = aside(0.02f);
+    def.exposure = 1.6f;
+    ball_make(&ball, 0, 0, 0.2f, 0.05f, 1e7f, 0);
+    float differs = 0;
+    int count = 0;
+    for (int k = 0; k < 3; k++) {
+        draw_gas(&def, &nothing, &ball.gas, 0.3 + 0.2 * k, rgb);
+        for (int y = 0; y < H; y++)
+            for (int x = 0; x < W - APART; x++) {
+                const uint8_t *p = pixel(rgb, x, y), *q = pixel(rgb, x + APART, y);
+                if (p[0] < 240 || q[0] < 240) continue; // at its edges
+                differs += fabsf((float)p[1] - (float)q[1]);
+                count++;
+            }
+    }
+
+    print_message("green differs by %.1f over %d pixels, of %d\n", (double)(differs / (float)count), APART, count);
+    assert_true(count > 800);
+    assert_true(differs > 18 * (float)count); // 15.0 where soot was as dense everywhere
+}
+
 enum { LONG = 40, WIDE = 16, DEEP = 4, COLUMN = WIDE * DEEP * LONG };
 
 /// A line of fire on a strip of paper at z = 0, 13 cm along x: the whole of a box of cells of 8 mm burns. The paper is
