@@ -121,9 +121,10 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
 // rises along them cools them most below, and a limb shows only the scale's peaks, which are cooler. A glow is wide, so
 // a film that is set for what it lights would show it as a white disc: it is drawn as bright as lets its colours differ.
 
-#define SHAPE_GAIN 0.38f
-#define SHAPE_LIMB 190.0f ///< K, by which the limb is cooler than the middle
-#define SHAPE_BELOW 45.0f ///< K, by which what faces down is cooler than the middle
+#define SHAPE_GAIN 0.12f
+#define SHAPE_MIDDLE 210.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
+#define SHAPE_LIMB 190.0f   ///< K, by which the limb is cooler than the middle
+#define SHAPE_BELOW 45.0f   ///< K, by which what faces down is cooler than the middle
 
 void shape_shade(const Preview *preview, const PreviewShape *shape, float moment, Point *point) {
     point->albedo = float3_load(shape->colour);
@@ -141,7 +142,7 @@ void shape_shade(const Preview *preview, const PreviewShape *shape, float moment
         0.6f * noise3(p, 41) + 0.3f * noise3(float3_scale(p, 2.7f), 42) + 0.2f * noise3(float3_scale(p, 7.1f), 43);
     const float facing = clampf(float3_dot(point->normal, point->view), 0, 1), aside = 1 - facing;
     const float temperature = shape->temperature * (1 + 0.025f * scale) - SHAPE_LIMB * aside * sqrtf(aside) +
-                              SHAPE_BELOW * minf(point->normal.z, 0.5f);
+                              SHAPE_BELOW * minf(point->normal.z, 0.5f) + SHAPE_MIDDLE * facing * facing;
     const float limb = 0.25f + 0.75f * facing;
     Float3 glow = blackbody_glow(preview->blackbody, temperature);
     point->glow = float3_scale(glow, SHAPE_GAIN * limb * (1 + 0.3f * scale));
