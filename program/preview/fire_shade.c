@@ -183,17 +183,19 @@ static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float 
     point->profile = same * outer / first * (fill + fading);
     point->shell = same * (0.5f * outer * outer / first + fill * inner + SHELL * (1 - fill - fading));
 
+    float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001f * fine.d);
+
     // threads are denser and cooler than what is between them
     const Float3 bent =
         float3_mad(p, float3(wide.b + 0.2f * fine.b, wide.a + 0.2f * fine.a, 0), fire->scale * THREAD_WARP);
-    const Noise thread = eddies(fire, bent, passed, sqrtf(fire->scale) * EDDY_THREAD, 5.5f * sqrtf(fire->scale));
+    Noise thread = {0, 0, 0, 0};
+    if (soot > 0) thread = eddies(fire, bent, passed, sqrtf(fire->scale) * EDDY_THREAD, 5.5f * sqrtf(fire->scale));
     float clear = stepf(-0.35f, 0.45f, 0.15f * (wide.d + fine.d) + 0.9f * torn * thread.a);
 
     float core = stepf(0.35f, 0.7f, cell->flame) * stepf(SOOT_BEGINS, SOOT_FULL, rise);
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
     float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.19f * core + 0.72f * clear - 0.14f * tip - 0.12f;
 
-    float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001f * fine.d);
     soot *= soot * soot;
     float root = stepf(STAND_OFF, 3 * STAND_OFF, rise) * (1 - soot) * (1 - stepf(BLUE_ENDS / 3, BLUE_ENDS, rise));
     soot *= 0.2f + 3 * (1 - clear) * (1 - clear) + 1.2f * clear * clear;
