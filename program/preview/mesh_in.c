@@ -69,11 +69,12 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
 
         // char without fuel glows without a flame; false for NaN
         if (!(surface->mass[i] - surface->char_fraction[i] - surface->ash_fraction[i] > 0.01f)) out->flaming = 0;
+        out->starved = charred > 0 ? out->flaming : 0;
     }
 
     if (preview->def.plain) {
         out->temperature = out->peak = 293;
-        out->burn = out->burn_rate = out->flaming = out->age = 0;
+        out->burn = out->burn_rate = out->flaming = out->starved = out->age = 0;
     }
 
     float *position = preview->scene.positions[i];

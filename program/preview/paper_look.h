@@ -22,6 +22,7 @@ typedef struct PaperVertex {
     float burn;          ///< apparent burnt share, 0 to 1
     float burn_rate;     ///< 1/s
     float flaming;       ///< 1/s, the part of it that feeds a flame: 0 where char glows
+    float starved;       ///< 1/s, that part where there is char, which the flame keeps from air
     float gradient;      ///< 1/m, of burn in rest space
     int32_t sheet;       ///< -1: none
     float rim;           ///< 1 on the border of a piece, 0 inside
@@ -42,6 +43,7 @@ typedef struct PaperState {
     Float3 rest;
     float uv[2], temperature, peak, burn, burn_rate, gradient, heat_gradient, rim, spacing;
     float glowing; ///< 1/s, the part of burn_rate due to char without fuel
+    float starved; ///< 1/s, the part where char has fuel, whose flame keeps it from air
     float age;     ///< s of the fire's real time since ignition; 0: not yet
     int32_t sheet, piece;
     float water; ///< over the mass before it burns

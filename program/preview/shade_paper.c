@@ -63,6 +63,7 @@ void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v,
         .burn = w * a->burn + u * b->burn + v * c->burn,
         .burn_rate = w * a->burn_rate + u * b->burn_rate + v * c->burn_rate,
         .glowing = w * (a->burn_rate - a->flaming) + u * (b->burn_rate - b->flaming) + v * (c->burn_rate - c->flaming),
+        .starved = w * a->starved + u * b->starved + v * c->starved,
         .gradient = w * a->gradient + u * b->gradient + v * c->gradient,
         .heat_gradient = w * a->heat_gradient + u * b->heat_gradient + v * c->heat_gradient,
         .spacing = w * a->spacing + u * b->spacing + v * c->spacing,
@@ -220,6 +221,11 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 #define LEAF_SPECKS 0.35f
 #define LEAF_COOLER 120.0f ///< K, how much cooler it is than these
 
+/// Char below a flame, which takes the air: its threads and its border are that much paler and cooler.
+#define STARVED 0.55f
+#define STARVED_COOLER 90.0f ///< K
+#define STARVED_BORDER 0.42f ///< the burn value of its line
+
 static float seconds(const Preview *preview) { return (float)fmod(preview->time, 4096.0); }
 
 float ember_air(const Preview *preview, Float3 p) {
@@ -286,12 +292,14 @@ static Float3 border_glow(const Preview *preview, const PaperState *state, const
 
 /// A leaf of char that glows away, at its own temperature. The simulation spreads its heat over a cell or two. Real embers
 /// are specks, and threads that creep over black char: here lines where noise that drifts in time changes sign, in several
-/// sizes. Between them the glow is dull. A thread narrower than a pixel is drawn a pixel wide and paler.
+/// sizes. Between them the glow is dull. A thread narrower than a pixel is drawn a pixel wide and paler. Char that still
+/// feeds a flame glows in threads only, and along its border, where air comes to it.
 static Float3 leaf_glow(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
     enum { SIZES = 4 };
     static const float size[SIZES] = {24e-3f, 9e-3f, 4e-3f, 1.7e-3f}; // m
     static const float thick[SIZES] = {0.5e-3f, 0.22e-3f, 0.16e-3f, 0.14e-3f}, weight[SIZES] = {1, 1, 0.9f, 0.6f};
-    const float activity = ember_activity(state->glowing);
+    const float alone = ember_activity(state->glowing), flaming = ember_activity(state->starved);
+    const float starved = STARVED * flaming * stepf(0.32f, 0.46f, bent->burn) * (1 - alone), activity = alone + starved;
     if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
 
     const float life = line_life(preview, bent) * minf(air, 1.2f), t = seconds(preview);
@@ -303,14 +311,17 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
         thread += weight[k] * width / seen * ridge(n, 2 * seen);
     }
 
-    const float border = near_border(state, bent, 0.8e-3f) * (0.25f + 0.75f * life);
+    float border = near_border(state, bent, 0.8e-3f) * (0.25f + 0.75f * life);
+    const float inward = (bent->burn - STARVED_BORDER) / (maxf(state->gradient, 20) * 2 * EMBER_WIDTH);
+    border = maxf(border, starved * expf(-inward * inward) * (0.25f + 0.75f * life));
     const float speck = stepf(0.45f, 0.75f, bent->fine + 0.45f * bent->medium) * stepf(0.1f, 0.5f, life);
     const float hot = maxf(border, life * LEAF_THREADS * thread + LEAF_SPECKS * speck);
-    const float temperature = ember_temperature(state->temperature) + 130 * (life - 0.5f) + 40 * bent->medium;
+    const float temperature =
+        ember_temperature(state->temperature) + 130 * (life - 0.5f) + 40 * bent->medium - STARVED_COOLER * starved;
     Float3 dull = blackbody_glow(preview->blackbody, ember_seen(temperature - LEAF_COOLER));
     Float3 bright = blackbody_glow(preview->blackbody, ember_seen(temperature));
-    Float3 glow = float3_mad(float3_scale(dull, LEAF_DULL * (0.2f + 0.8f * life)), bright, hot);
-    return float3_scale(glow, EMBER_GAIN * activity * air);
+    Float3 glow = float3_scale(dull, LEAF_DULL * (0.2f + 0.8f * life) * alone);
+    return float3_scale(float3_mad(glow, bright, hot * activity), EMBER_GAIN * air);
 }
 
 static void ember_shade(const Preview *preview, const PaperState *state, const Bent *bent, Point *point) {
