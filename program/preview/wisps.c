@@ -19,7 +19,8 @@ enum {
 #define WISP_LIFE 1.5f    ///< s
 #define RISE 0.12f        ///< m/s
 #define SPEEDING 0.13f    ///< m/s2
-#define RIBBON 0.0060f    ///< m, half of its width where it begins
+#define RIBBON 0.0060f    ///< m, half of its width at half a second
+#define KINDLING 0.28f    ///< s, in which it is seen more and more: vapour becomes droplets as it cools
 #define THREAD 0.0009f    ///< m, radius there
 #define WISP_DEPTH 11e-3f ///< m, optical depth across a wisp times its width
 #define SMOKING 6.0f      ///< sites of which half smoke
@@ -40,7 +41,7 @@ static inline float swing(const Wisp *wisp, float moment, float often, float pla
 
 static Float3 wisp_at(const Wisp *wisp, float age, float place) {
     const float moment = wisp->now - age, early = age * age / (0.14f + age), late = early * age;
-    const float neck = 0.35f + 0.65f * expf(-7 * age) + 2.2f * age * age;
+    const float neck = 0.12f + 0.5f * age / (0.15f + age) + 2.2f * age * age; // a point of the ember feeds it
     const float turn = 1.2f * age + 1.6f * noise2(moment * 1.3f, 3, wisp->seed), c = cosf(turn), s = sinf(turn);
     const float side = RIBBON * place * neck;
     Float3 p = wisp->from;
@@ -74,7 +75,7 @@ static void thread_draw(Preview *preview, const Wisp *wisp, float place) {
         const float radius = maxf(wide / pixel + camera_blur(&preview->camera, depth), 1.1f);
         const float step = minf(0.45f * radius * pixel / (1.4f * fast), 0.02f), left = 1 - age / WISP_LIFE;
         const float patchy = clampf(0.9f + 0.5f * swing(wisp, wisp->now - age, 3, 0.6f * place, 17), 0, 2);
-        float dense = WISP_DEPTH * wisp->strength * edge * left * left * patchy * stepf(0, 0.05f, age) * open;
+        float dense = WISP_DEPTH * wisp->strength * edge * left * left * patchy * stepf(0, KINDLING, age) * open;
         dense *= RISE * step / (pixel * pixel * THREADS);
         airborne_dot(preview, at, radius, float3_scale(light, dense), dense);
         age += step;

@@ -432,13 +432,16 @@ TEST(embers_throw_sparks_and_smoke) {
         PreviewLayers layers = {.fire = fire};
         assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
         int sparks = 0, hidden = 0;
-        float smoke = 0;
+        float smoke = 0, low = 0, high = 0;
         for (int k = 0; k < FRAMES; k++) {
             assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, &error), SINGE_OK);
             for (int i = 0; i < W * (H - 10); i++) {
                 sparks += fire[i][0] > 0.05f && fire[i][0] > 2 * fire[i][2];
                 smoke = fmaxf(smoke, fire[i][3]);
                 hidden += kind != SMOULDERING && fire[i][3] > 0.1f;
+                const int height = H - 1 - i / W; // mm
+                if (height < 14) low += fire[i][3];
+                if (height >= 40 && height < 44) high += fire[i][3];
             }
         }
         preview_destroy(preview);
@@ -448,6 +451,10 @@ TEST(embers_throw_sparks_and_smoke) {
         assert_true((sparks > 10 * FRAMES) == (kind == EMBERS) || kind == FLAKES); // flakes glow, too
         assert_true((smoke > 0.02f) == (kind == SMOULDERING || kind == FLAKES));
         assert_true(kind < COLD || (sparks == 0 && smoke == 0));
+
+        // a wisp begins faint, and is densest some centimetres above; it began with a blunt end
+        if (kind == SMOULDERING) print_message("1 cm up it hides %.2f of what it does 4 cm up\n", (double)(low / high));
+        if (kind == SMOULDERING) assert_true(low < 0.5f * high);
     }
 }
 
