@@ -144,28 +144,42 @@ Float3 background_colour(const Preview *preview, Float3 direction) {
     return float3_scale(base, height > 0 ? mixf(1.12f, 0.62f, height) : mixf(1.12f, 0.75f, -height));
 }
 
-/// Crumbs of pale ash and of char, one or none in each square of two lattices, as they lie where the stain is full.
+/// Crumbs of pale ash and of char, one or none in each square of three lattices, as they lie where the stain is full: in
+/// drifts, few of them large. A large one is in parts char and in parts ash. Around each the table is darker.
 static void crumbs(const Preview *preview, Float3 position, float footprint, Table *table) {
-    const float often =
-        0.4f * clampf(0.8f + 1.4f * noise2(position.x * 26, position.y * 26, preview->def.seed), 0.05f, 1.6f);
-    for (uint32_t k = 0; k < 2; k++) {
-        const float wide = k ? 0.0019f : 0.0052f;
+    static const float squares[3] = {0.0105f, 0.0047f, 0.0019f}, most[3] = {0.28f, 0.5f, 0.4f}; // m; share that has one
+    const uint32_t seed = preview->def.seed;
+    const float drift = 1.5f * noise2(position.x * 26, position.y * 26, seed) +
+                        0.8f * noise2(position.x * 75, position.y * 75, seed + 310);
+    const float often = clampf(0.55f + 1.5f * drift, 0.02f, 1.6f);
+    for (uint32_t k = 0; k < 3; k++) {
+        const float wide = squares[k];
         float fx, fy, shown = visible(0.4f * wide, footprint);
         if (shown <= 0) continue;
         int i = noise_floor(position.x / wide + 0.37f * (float)k, &fx);
         int j = noise_floor(position.y / wide + 0.61f * (float)k, &fy);
-        uint32_t key = sample_key(i, j, preview->def.seed + 311 + k);
-        if (hash_unit(key) > often) continue;
-        float x = fx - mixf(0.35f, 0.65f, hash_unit(key + 1)), y = fy - mixf(0.35f, 0.65f, hash_unit(key + 2));
-        float turn = 2 * PI_F * hash_unit(key + 3), around = atan2f(y, x);
-        float size = mixf(0.08f, 0.33f, hash_unit(key + 4) * hash_unit(key + 5));
-        float edge = 1 + 0.33f * cosf(2 * (around - turn)) + 0.17f * sinf(3 * around + 7 * turn);
-        edge += 0.08f * sinf(7 * around + 3 * turn);
-        float cover = shown * (1 - stepf(0.85f, 1.15f, sqrtf(x * x + y * y) / (size * edge)));
-        float pale = hash_unit(key + 6), value = pale > 0.55f ? 0.10f + 0.28f * pale * pale : 0.02f;
-        value *= 1 + 0.3f * noise2(position.x * 2600, position.y * 2600, key & 255);
-        table->crumb = mixf(table->crumb, value, cover);
-        table->crumbs += (1 - table->crumbs) * cover;
+        uint32_t key = sample_key(i, j, seed + 311 + k);
+        if (hash_unit(key) > most[k] * often) continue;
+        const float size = mixf(0.07f, 0.31f, hash_unit(key + 4) * hash_unit(key + 5)), room = 1.2f * size + 0.12f;
+        const float x = fx - mixf(room, 1 - room, hash_unit(key + 1)),
+                    y = fy - mixf(room, 1 - room, hash_unit(key + 2));
+        const float turn = 2 * PI_F * hash_unit(key + 3), c = cosf(turn), s = sinf(turn);
+        const float narrow = mixf(1, 2.2f, hash_unit(key + 7)), along = c * x + s * y,
+                    across = narrow * (c * y - s * x);
+        const float fine = 1 / (size * wide); // 1/m: its edge is torn at its own scale
+        const float torn = noise2(1.1f * position.x * fine, 1.1f * position.y * fine, key & 255);
+        const float fray = noise2(3.1f * position.x * fine, 3.1f * position.y * fine, key & 255);
+        const float edge = size * maxf(1 + 0.85f * torn + 0.45f * fray, 0.1f);
+        const float reach = sqrtf(along * along + across * across) / edge;
+
+        const float beside = minf(0.0008f / wide, 0.12f) / size;
+        const float shadow = 0.75f * shown * (1 - stepf(0.95f, 1.1f + beside, reach));
+        const float cover = shown * (1 - stepf(0.85f, 1.12f, reach));
+        const float ash = clampf(1.6f * hash_unit(key + 6) - 0.55f + 0.9f * torn, 0, 1);
+        float value = mixf(0.016f, 0.11f + 0.25f * hash_unit(key + 8), ash * ash);
+        value *= 1 + 0.3f * noise2(position.x * 2600, position.y * 2600, key & 255) + 0.25f * fray;
+        table->crumb = mixf(table->crumb * (1 - shadow), value, cover);
+        table->crumbs += (1 - table->crumbs) * maxf(shadow, cover);
     }
 }
 

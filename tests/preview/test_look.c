@@ -249,6 +249,46 @@ TEST(burning_sheets_stain_the_ground) {
     assert_float_equal(middle(rgb, 1), clean, 1);
 }
 
+static int compare_bytes(const void *a, const void *b) { return *(const uint8_t *)a - *(const uint8_t *)b; }
+
+/// Crumbs of ash touch the table: it is darker around them. They looked like confetti.
+TEST(crumbs_of_ash_have_a_shadow) {
+    enum { NEAR = 1, RING = 3 };
+    static uint8_t rgb[BYTES], sorted[W * H];
+    static const uint32_t cells[4] = {0, 1, 2, 3};
+    Float4 q;
+    SingeSurface nothing = {0};
+    PreviewStart start = {4, 1, &q.position[0][0], cells, NULL, NULL};
+    quad_make(&q, 0.09f, 0.001f);
+    PreviewDef def = above();
+    def.camera.fov = 2 * atanf(0.006f / def.camera.eye[2]);
+    def.ground = PREVIEW_GROUND_PLAIN, def.starts = &start, def.sheet_count = 1;
+    draw(&def, &nothing, 0, rgb);
+    for (int i = 0; i < W * H; i++) sorted[i] = rgb[3 * i + 1];
+    qsort(sorted, W * H, 1, compare_bytes);
+    const int table = sorted[W * H / 2];
+
+    float sum = 0;
+    int around = 0, pale = 0;
+    for (int y = RING; y < H - RING; y++)
+        for (int x = RING; x < W - RING; x++) {
+            int nearest = RING + 1;
+            for (int i = 0; i < (2 * RING + 1) * (2 * RING + 1); i++) {
+                const int dx = i % (2 * RING + 1) - RING, dy = i / (2 * RING + 1) - RING;
+                const int far = abs(dx) > abs(dy) ? abs(dx) : abs(dy);
+                if (far < nearest && pixel(rgb, x + dx, y + dy)[1] > table + 20) nearest = far;
+            }
+            pale += nearest == 0;
+            if (nearest <= NEAR || nearest > RING) continue;
+            sum += (float)pixel(rgb, x, y)[1];
+            around++;
+        }
+
+    const float ring = sum / (float)around;
+    print_message("%d pixels of pale crumbs on a table of %d, %.1f around them\n", pale, table, (double)ring);
+    assert_true(pale > 30 && ring < (float)table - 0.8f); // was 0.3 above it
+}
+
 /// Pyrolysis leaves a black leaf, however little its mass, which greys as it glows away. It glows where char burns: not
 /// where a hot leaf no longer burns, and less where it still has fuel, which burns in the flame.
 TEST(char_is_black_and_greys) {
