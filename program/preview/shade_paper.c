@@ -456,7 +456,9 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     Cloth cloth;
     float threads = 1;
     if (weave) {
-        cloth_find(weave, state, bent.burn, point->footprint, &cloth);
+        // aslant a pixel holds more threads, which would be a pattern of their own
+        const float facing = maxf(float3_dot(point->geometric, point->view), 0.2f);
+        cloth_find(weave, state, bent.burn, point->footprint / facing, &cloth);
         if (cloth_is_hole(&cloth)) return false;
         threads = cloth_shade(weave, state, &cloth, point);
         if (!touched) point->albedo = float3_scale(point->albedo, threads);

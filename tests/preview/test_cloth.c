@@ -7,15 +7,20 @@
 
 static const uint32_t QUAD[4] = {0, 1, 2, 3};
 
-/// Root mean square over the picture's middle of what changes from pixel to pixel along rows, of 255.
-static float grain(float weave) {
+/// Root mean square over the picture's middle of what changes from pixel to pixel along rows, of 255. The sheet leans
+/// by that angle.
+static float grain(float weave, float lean) {
     static uint8_t rgb[BYTES];
     Float4 q;
-    quad_make(&q, 0.1f, 0.01f);
+    quad_make(&q, lean > 0 ? 0.25f : 0.1f, 0.01f);
+    for (int i = 0; i < 4 && lean > 0; i++) {
+        q.position[i][2] = sinf(lean) * q.position[i][0], q.position[i][0] *= cosf(lean);
+        q.normal[i][0] = -sinf(lean), q.normal[i][2] = cosf(lean);
+    }
     const PreviewLook look = {.weave = weave};
     const PreviewStart start = {4, 1, q.position[0], QUAD, q.uv[0], NULL};
     PreviewDef def = above();
-    def.looks = &look, def.starts = &start, def.sheet_count = 1;
+    def.looks = &look, def.starts = &start, def.sheet_count = 1, def.ground_height = -INFINITY;
     draw(&def, &q.surface, 0, rgb);
 
     enum { HALF = 10 };
@@ -30,11 +35,16 @@ static float grain(float weave) {
 
 /// A pixel is 5.8 mm wide here: it resolves threads of 40 mm, and none of 5 mm or less, which must not make patterns.
 TEST(threads_are_seen_from_near_alone) {
-    const float paper = grain(0), near = grain(0.04f), far = grain(0.005f), farther = grain(0.0011f);
+    const float paper = grain(0, 0), near = grain(0.04f, 0), far = grain(0.005f, 0), farther = grain(0.0011f, 0);
+    const float aslant = grain(0.014f, 1.05f), aslant_paper = grain(0, 1.05f);
     print_message("rms from pixel to pixel: paper %.2f, threads of 40 mm %.2f, 5 mm %.2f, 1.1 mm %.2f\n", (double)paper,
                   (double)near, (double)far, (double)farther);
     assert_true(near > 3 * paper);
     assert_true(far < paper + 1 && farther < paper + 1);
+
+    // and those of 14 mm only where the sheet faces the eye
+    print_message("aslant: paper %.2f, threads of 14 mm %.2f\n", (double)aslant_paper, (double)aslant);
+    assert_true(aslant < aslant_paper + 1);
 }
 
 /// How much brighter what was dark in a sheet's picture is once the sheet is char, of 255.
