@@ -1,6 +1,5 @@
 // What the samples share, so that each of them shows one thing: errors end the program, and paper and matches are a call.
-#ifndef SAMPLE_H
-#define SAMPLE_H
+#pragma once
 
 #include <singe/mesh.h>
 #include <singe/singe.h>
@@ -71,5 +70,3 @@ static inline void sample_match(SingeSim *sim, float x, float y, float z) {
     match.radius = match.falloff = 0.01f, match.temperature = 1123, match.end = 0.5f;
     TRY(sim, singe_sim_add_source(sim, &match, NULL));
 }
-
-#endif

@@ -1,6 +1,5 @@
 // The command lines of `singe bench`.
-#ifndef BENCH_ARGS_H
-#define BENCH_ARGS_H
+#pragma once
 
 #include "bench/options.h"
 #include "cli/args.h"
@@ -23,5 +22,3 @@ bool bench_takes(const char *accepted, const char *option);
 /// Reads the command line of the measurement `name` ("swing"), as args_read does.
 bool bench_args_read(const char *name, const char *summary, const char *accepted, int argc, char **argv,
                      BenchRequest *request, ExitCode *code);
-
-#endif

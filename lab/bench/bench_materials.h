@@ -1,6 +1,5 @@
 // The materials that `singe bench` burns.
-#ifndef BENCH_MATERIALS_H
-#define BENCH_MATERIALS_H
+#pragma once
 
 #include "bench/options.h"
 #include "cli/cli.h"
@@ -21,5 +20,3 @@ void bench_materials_close(BenchMaterials *materials);
 
 /// The material of a scene, as it is simulated.
 BenchMaterial bench_material(const SceneMaterial *material);
-
-#endif

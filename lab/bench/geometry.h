@@ -1,6 +1,5 @@
 // The geometry of a square sheet with `cells` per side, from its vertices.
-#ifndef BENCH_GEOMETRY_H
-#define BENCH_GEOMETRY_H
+#pragma once
 
 #include "singe/singe.h"
 
@@ -48,5 +47,3 @@ double geometry_window(double *line, int count);
 
 /// Its power at k waves over its length.
 double geometry_power(const double *line, int count, int k);
-
-#endif

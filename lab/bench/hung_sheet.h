@@ -1,6 +1,5 @@
 // The sheet that most measurements use: 1 m x 1 m, 0.1 kg/m2, n x n cells, no drag, no damping, held at corners.
-#ifndef BENCH_HUNG_SHEET_H
-#define BENCH_HUNG_SHEET_H
+#pragma once
 
 #include "bench/options.h"
 
@@ -41,5 +40,3 @@ SingeResult bench_give_up(SingeSim **sim, SingeResult result, SingeError *error)
 
 /// Creates a simulation and commits it. On failure *sim is NULL.
 SingeResult sheet_build(const BenchSetup *setup, SingeSim **sim, SingeError *error);
-
-#endif

@@ -1,6 +1,5 @@
 // The machine of the measurement: its name and its clocks.
-#ifndef BENCH_MACHINE_H
-#define BENCH_MACHINE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -25,5 +24,3 @@ typedef struct MachineHeld {
 
 /// A SingeAllocator's resize, which counts; `context` is a MachineHeld.
 void *machine_resize(void *context, void *block, size_t old_size, size_t new_size);
-
-#endif

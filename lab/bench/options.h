@@ -1,6 +1,5 @@
 // The options of a measurement. Zero, or an empty list, means the measurement's own default.
-#ifndef BENCH_OPTIONS_H
-#define BENCH_OPTIONS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -73,5 +72,3 @@ int options_cells(double springs);
 
 /// As asked for, or 3: fewer than the default, so that a step's cost compares with that of earlier versions.
 int options_substeps(const BenchOptions *options);
-
-#endif

@@ -1,6 +1,5 @@
 // Peak rates of the machine: fused multiply-adds from registers, and streaming through arrays.
-#ifndef BENCH_PEAKS_H
-#define BENCH_PEAKS_H
+#pragma once
 
 #include "bench/table.h"
 
@@ -23,5 +22,3 @@ double peaks_stream(const Peaks *peaks, double bytes);
 
 /// Adds them to a table's facts.
 void peaks_tell(const Peaks *peaks, BenchTable *table);
-
-#endif

@@ -1,6 +1,5 @@
 // Strain of springs, |length/target - 1|, over any number of samples: max, mean, 99th percentile.
-#ifndef BENCH_STRAIN_H
-#define BENCH_STRAIN_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -28,5 +27,3 @@ void strain_merge(Strain *strain, const Strain *other);
 /// Max, p99 and mean in percent: of the samples, and of a simulation.
 BenchValue strain_percent(const Strain *strain);
 BenchValue strain_of(const SingeStats *stats);
-
-#endif

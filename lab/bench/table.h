@@ -1,6 +1,5 @@
 // A table of results: printed row by row as they arrive, and as JSON or CSV at the end.
-#ifndef BENCH_TABLE_H
-#define BENCH_TABLE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -54,5 +53,3 @@ SingeResult table_end_row(BenchTable *table);
 void table_write_json(const BenchTable *table, FILE *file);
 void table_write_csv(const BenchTable *table, FILE *file);
 void table_free(BenchTable *table);
-
-#endif

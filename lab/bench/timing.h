@@ -1,6 +1,5 @@
 // Steps timed one by one.
-#ifndef BENCH_TIMING_H
-#define BENCH_TIMING_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -37,5 +36,3 @@ int timing_steps(double springs, int min, int max);
 
 /// Springs of all colours, as they were at the commit.
 double timing_springs(const SingeSim *sim);
-
-#endif

@@ -1,6 +1,5 @@
 // A simulation over frames of 1/24 s: the cost of each frame, strain of every colour, motion.
-#ifndef BENCH_TRAJECTORY_H
-#define BENCH_TRAJECTORY_H
+#pragma once
 
 #include "bench/hung_sheet.h"
 #include "bench/strain.h"
@@ -30,5 +29,3 @@ void trajectory_free(Trajectory *trajectory);
 /// cm, max distance of the centre of mass, at the marks, from the limit to which all solvers converge with finer time
 /// steps; NAN if the limit is unknown (it is known for BENCH_SWING held at two corners) or a mark is not reached.
 double trajectory_off(const BenchSetup *setup, const Trajectory *trajectory);
-
-#endif

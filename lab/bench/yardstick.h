@@ -1,6 +1,5 @@
 // The current speed of this machine: a fixed workload similar to a step.
-#ifndef BENCH_YARDSTICK_H
-#define BENCH_YARDSTICK_H
+#pragma once
 
 typedef struct Yardstick Yardstick;
 
@@ -10,5 +9,3 @@ void yardstick_destroy(Yardstick *yardstick);
 
 /// Does the work once; returns its time in milliseconds.
 double yardstick_run(Yardstick *yardstick);
-
-#endif

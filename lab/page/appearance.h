@@ -1,6 +1,5 @@
 // The appearance of a burning sheet in numbers, at given times.
-#ifndef PAGE_APPEARANCE_H
-#define PAGE_APPEARANCE_H
+#pragma once
 
 #include "page/lab.h"
 #include "analysis/rim.h"
@@ -33,5 +32,3 @@ double look_slope(const Look *look, double share);
 double look_area(const Look *look);
 /// Degrees rms, of the normal in wavelengths of 3 to 15 mm, where it has burnt.
 double look_wrinkles(const Look *look);
-
-#endif

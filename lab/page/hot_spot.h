@@ -1,6 +1,5 @@
 // Heat on a still sheet: the grid on which it is measured, and how fast a hot spot spreads.
-#ifndef PAGE_HOT_SPOT_H
-#define PAGE_HOT_SPOT_H
+#pragma once
 
 #include "page/lab.h"
 
@@ -18,5 +17,3 @@ typedef struct SpotMesh {
 /// The diffusivity along x and y at which a hot spot spreads, over WARM_DIFFUSIVITY.
 SINGE_NODISCARD SingeResult spot_spread(Lab *lab, const SpotMesh *mesh, SingeHeatOperator operator, double ratio[2],
                                         SingeError *error);
-
-#endif

@@ -1,6 +1,5 @@
 // Shared by the experiments of `singe paper` and `singe validate`: scenes to run, and measures of the resulting shapes.
-#ifndef PAGE_LAB_H
-#define PAGE_LAB_H
+#pragma once
 
 #include "cli/console.h"
 #include "cli/job.h"
@@ -93,5 +92,3 @@ typedef struct ShapeSpectrum {
 } ShapeSpectrum;
 SINGE_NODISCARD SingeResult shape_spectrum(const SingeView *view, int across, int along, double cell,
                                            ShapeSpectrum *spectrum);
-
-#endif

@@ -1,6 +1,5 @@
 // A command that writes a page of experiments (`singe paper`, `singe validate`): its command line and its items.
-#ifndef PAGE_PAGE_H
-#define PAGE_PAGE_H
+#pragma once
 
 #include "cli/args.h"
 #include "page/lab.h"
@@ -35,5 +34,3 @@ typedef struct PageRequest {
 /// PageRequest's. Returns EXIT_FAILED if an
 /// item fails or a measure does not hold.
 ExitCode page_run(const Page *page, const ArgCommand *command, int argc, char **argv);
-
-#endif

@@ -1,6 +1,5 @@
 // Lines over an axis, as SVG.
-#ifndef PAGE_PLOT_H
-#define PAGE_PLOT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -26,5 +25,3 @@ typedef struct Plot {
 void plot_add(Plot *plot, PlotLine line);
 void plot_draw(const Plot *plot, FILE *file);
 SINGE_NODISCARD SingeResult plot_write(const Plot *plot, const char *path, SingeError *error);
-
-#endif

@@ -4,8 +4,7 @@
 // A page is a list of reports, one per item: the source's result, then tables, plots and pictures as they are added,
 // and measures. A measure is a number with a bar. Texts are HTML; captions and names plain. Several reports of a page
 // may be filled at once, each by one thread.
-#ifndef PAGE_REPORT_H
-#define PAGE_REPORT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -81,5 +80,3 @@ const char *report_folder(const Report *report);
 /// Writes the files and frees the page. *failed is the number of measures that fail, *missing of those that miss, as is
 /// known.
 SINGE_NODISCARD SingeResult report_page_close(ReportPage *page, int *failed, int *missing, SingeError *error);
-
-#endif

@@ -1,6 +1,5 @@
 // Textures of the experiments: shown, and correlated with results.
-#ifndef PAGE_SHOW_TEXTURE_H
-#define PAGE_SHOW_TEXTURE_H
+#pragma once
 
 #include "page/lab.h"
 
@@ -12,5 +11,3 @@ double texture_mean(const SingeTexture *picture);
 
 /// Correlation of the texture, or of its mirror image, with a field of the vertices.
 double texture_correlation(const SingeView *view, const SingeTexture *picture, bool mirrored, const float *field);
-
-#endif

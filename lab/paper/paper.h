@@ -1,6 +1,5 @@
 // `singe paper`: a function per experiment.
-#ifndef PAPER_H
-#define PAPER_H
+#pragma once
 
 #include "page/page.h"
 
@@ -16,5 +15,3 @@ SingeResult paper_burn_to(Lab *lab, LabGrid *grid, const float *mass, double mas
 /// Which springs of a partly burnt cell go: the longest side of such a cell over its length at rest while it hangs, with
 /// section 6's rule of triangles or with all springs until the cell is gone.
 SingeResult paper_longest_side(Lab *lab, bool by_triangles, double *longest, SingeError *error);
-
-#endif

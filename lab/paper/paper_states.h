@@ -1,6 +1,5 @@
 // The sheets of the comparisons of `singe paper`, through the public headers only.
-#ifndef PAPER_STATES_H
-#define PAPER_STATES_H
+#pragma once
 
 #include "singe/singe.h"
 
@@ -28,5 +27,3 @@ SINGE_NODISCARD SingeResult paper_network(const SingeSim *sim, PaperState state,
 
 /// |C| of the four colours, and their sum; `sets` is 4, or 1 for a network of one set, which is the sum.
 double paper_errors(const SingeNetwork *network, uint32_t sets, double *errors);
-
-#endif

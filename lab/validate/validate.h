@@ -1,6 +1,5 @@
 // `singe validate`: a function per comparison of the physics with independent sources.
-#ifndef VALIDATE_H
-#define VALIDATE_H
+#pragma once
 
 #include "page/page.h"
 
@@ -13,5 +12,3 @@ LabFn validate_heat, validate_umbrella, validate_front, validate_pmma, validate_
 
 /// The grade of a measure.
 ReportGradeFn validate_grade;
-
-#endif

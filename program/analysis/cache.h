@@ -1,7 +1,6 @@
 // A frame of a cache as stored in its file, with its bad values: formats/ply_surface.c refuses those that verify
 // counts.
-#ifndef ANALYSIS_CACHE_H
-#define ANALYSIS_CACHE_H
+#pragma once
 
 #include "formats/formats.h"
 
@@ -41,5 +40,3 @@ float cache_value(const CacheFrame *frame, int column, uint32_t vertex);
 /// corners, or are not as long as their header says. Free it, after failure too.
 SINGE_NODISCARD SingeResult cache_read(const char *path, CacheFrame *frame, SingeError *error);
 void cache_free(CacheFrame *frame);
-
-#endif

@@ -1,6 +1,5 @@
 // Pairs of triangles of a surface that cross (docs/cli.md, verify), found without any code of the solver.
-#ifndef ANALYSIS_CROSSINGS_H
-#define ANALYSIS_CROSSINGS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -41,5 +40,3 @@ bool triangles_cross(const Corners a, const Corners b, bool *touch);
 /// must not be in the list. False when out of memory.
 bool hinges_find(const float (*position)[3], const uint32_t (*triangles)[3], uint32_t triangle_count,
                  uint32_t (*pairs)[2], size_t *count);
-
-#endif

@@ -1,6 +1,5 @@
 // Signs of determinants of points, exact for all magnitudes.
-#ifndef ANALYSIS_EXACT_H
-#define ANALYSIS_EXACT_H
+#pragma once
 
 /// The sign of |a-d b-d c-d|: 1 if a, b, c turn clockwise as seen from d (d is below their plane), -1 if
 /// counter-clockwise, 0 if the four lie in a plane. Coordinates must be finite.
@@ -11,5 +10,3 @@ int exact_orient2(const float a[3], const float b[3], const float c[3], int x, i
 
 /// Whether the three lie on a line.
 int exact_collinear(const float a[3], const float b[3], const float c[3]);
-
-#endif

@@ -1,6 +1,5 @@
 // The faults that `singe verify` counts in a frame, and the checks that find them (docs/cli.md).
-#ifndef ANALYSIS_FINDINGS_H
-#define ANALYSIS_FINDINGS_H
+#pragma once
 
 #include "analysis/cache.h"
 
@@ -59,5 +58,3 @@ bool check_surface(const CacheFrame *frame, Findings *findings);
 
 /// Records the crossings in the first frame of the run; counts and reports nothing. False when out of memory.
 bool check_start(const CacheFrame *frame, Findings *findings);
-
-#endif

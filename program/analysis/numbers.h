@@ -1,10 +1,7 @@
 // Means and medians of a few measured numbers.
-#ifndef ANALYSIS_NUMBERS_H
-#define ANALYSIS_NUMBERS_H
+#pragma once
 
 double numbers_mean(const double *numbers, int count);
 
 /// Sorts the numbers and returns their median.
 double numbers_median(double *numbers, int count);
-
-#endif

@@ -1,6 +1,5 @@
 // A surface's fields over the sheet at rest, before it burnt, on pixels that are independent of the mesh's edges.
-#ifndef ANALYSIS_REST_RASTER_H
-#define ANALYSIS_REST_RASTER_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -29,5 +28,3 @@ void rest_raster_smooth(const RestRaster *raster, const float *field, double dev
 
 /// Distance in m of every pixel to the nearest one with burn above `min`; its error is at most a tenth.
 void rest_raster_distance(const RestRaster *raster, float min, float *distance);
-
-#endif

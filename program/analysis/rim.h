@@ -1,6 +1,5 @@
 // The shape of a burnt edge: how far a sheet shrinks, slopes and curls, by the distance from the edge.
-#ifndef ANALYSIS_RIM_H
-#define ANALYSIS_RIM_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -35,5 +34,3 @@ void rim_sum(const Rim *rim, Rim *sum);
 
 /// Degrees below which this share of the counted area lies; NaN if nothing was counted.
 double rim_percentile(const double histogram[RIM_ANGLES], double share);
-
-#endif

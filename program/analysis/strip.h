@@ -1,6 +1,5 @@
 // A strip of sheet, held everywhere and lit at one end: the speed of its front, its max temperature and its residue.
-#ifndef ANALYSIS_STRIP_H
-#define ANALYSIS_STRIP_H
+#pragma once
 
 #include "singe/singe.h"
 
@@ -39,5 +38,3 @@ typedef struct StripResult {
 /// A level strip of cells of a millimetre, three across, in default steps and without gas.
 StripSetup strip_setup(const SingeMaterialDef *material);
 SingeResult strip_burn(const StripSetup *setup, StripResult *result, SingeError *error);
-
-#endif

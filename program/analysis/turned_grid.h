@@ -1,6 +1,5 @@
 // Meshes for tests that results do not depend on a mesh's orientation: squares and discs cut from a rotated grid.
-#ifndef ANALYSIS_TURNED_GRID_H
-#define ANALYSIS_TURNED_GRID_H
+#pragma once
 
 #include "mesh/to_quads.h"
 
@@ -17,5 +16,3 @@ typedef struct TurnedGrid {
 /// onto it: a side that cuts across cells has teeth of at most half a cell. uv goes from (0,0) at (-x,-y) to (1,1) on
 /// the outline.
 SINGE_NODISCARD SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error);
-
-#endif

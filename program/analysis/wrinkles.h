@@ -1,6 +1,5 @@
 // Measures of a drawn sheet's shape: the directions of its creases, its roughness, and how smooth it is along folds.
-#ifndef ANALYSIS_WRINKLES_H
-#define ANALYSIS_WRINKLES_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -38,5 +37,3 @@ bool folds_add(const SingeSurface *surface, Folds *folds);
 
 /// Degrees, root mean square; NaN if there is no fold.
 double folds_angle(const Folds *folds);
-
-#endif

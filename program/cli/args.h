@@ -1,6 +1,5 @@
 // Command lines: long options ("--name value" or "--name=value"), one-letter options, operands.
-#ifndef CLI_ARGS_H
-#define CLI_ARGS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -72,5 +71,3 @@ ExitCode args_unknown(const ArgCommand *command, const char *what, const char *w
 /// The most similar of `count` words to `word`, or NULL if none is similar. `stride` is the distance between the words'
 /// pointers in bytes, so that a table's names can be passed.
 const char *args_nearest(const char *word, const void *first, int count, unsigned long stride);
-
-#endif

@@ -1,8 +1,7 @@
 // DIR/checkpoint.singe, and the previous one in DIR/checkpoint.previous.singe: a snapshot of the simulation, then a
 // trailer with its frame, the steps since, the hash of the scene and a checksum. A checkpoint is written whole or not
 // at all, after all files of its frame.
-#ifndef CLI_CHECKPOINT_H
-#define CLI_CHECKPOINT_H
+#pragma once
 
 #include "cli/console.h"
 #include "cli/folder.h"
@@ -66,5 +65,3 @@ SINGE_NODISCARD SingeResult checkpoint_read_file(const char *path, const SingeSi
 /// Replaces the last checkpoint, which is unusable, by the previous one: the next one written then does not replace the
 /// only good one.
 SINGE_NODISCARD SingeResult checkpoint_promote(const Folder *folder, SingeError *error);
-
-#endif

@@ -1,6 +1,5 @@
 // The command `singe`: a file per command, and the exit codes that all of them keep to.
-#ifndef CLI_CLI_H
-#define CLI_CLI_H
+#pragma once
 
 /// The program's exit codes (docs/cli.md).
 typedef enum ExitCode {
@@ -51,5 +50,3 @@ CommandFn command_run, command_info, command_clean, command_check, command_view,
     command_measure, command_verify, command_replay, command_bench, command_paper, command_validate, command_sweep,
     command_fit, command_scene_doc, command_scene_schema, command_materials, command_new, command_manual,
     command_completion;
-
-#endif

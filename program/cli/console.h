@@ -1,7 +1,6 @@
 // The program's output: errors, warnings, notes and the progress line on standard error, results on standard output,
 // and the tables of `--csv`.
-#ifndef CLI_CONSOLE_H
-#define CLI_CONSOLE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -74,5 +73,3 @@ int console_finish(int code);
 /// receives it directly. A pipe without a reader is a failure: opening it would wait forever. Prints the error.
 ExitCode console_write_table(Console *console, const char *path, void (*print)(FILE *file, const void *context),
                              const void *context);
-
-#endif

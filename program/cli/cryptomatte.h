@@ -1,6 +1,5 @@
 // Mattes by name for compositors: layers of an EXR by the Cryptomatte specification 1.2 (Friedman & Jones 2015).
-#ifndef CLI_CRYPTOMATTE_H
-#define CLI_CRYPTOMATTE_H
+#pragma once
 
 #include "formats/formats.h"
 #include "preview/preview.h"
@@ -24,5 +23,3 @@ uint32_t cryptomatte_id(const char *name);
 bool cryptomatte_make(Cryptomatte *layer, const char *name, bool pieces, const char *const *sheets,
                       const PreviewMatte (*mattes)[PREVIEW_MATTES], size_t pixels);
 void cryptomatte_free(Cryptomatte *layer);
-
-#endif

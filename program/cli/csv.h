@@ -1,6 +1,5 @@
 // Reads CSV tables: a header, and lines with as many cells.
-#ifndef CLI_CSV_H
-#define CLI_CSV_H
+#pragma once
 
 #include "cli/cli.h"
 #include "cli/console.h"
@@ -45,5 +44,3 @@ void stats_table_free(StatsTable *table);
 
 /// The line of a frame, or NULL.
 const StatsRow *stats_table_row(const StatsTable *table, int frame);
-
-#endif

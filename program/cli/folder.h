@@ -1,8 +1,7 @@
 // Paths of a run's files: DIR/ply/NAME.0001.ply, DIR/gas/NAME.0001.vdb, DIR/frames/NAME.0001.png,
 // DIR/exr/NAME.0001.exr, DIR/checkpoints/NAME.0001.singe, the formats of formats/output.h (DIR/vtp/NAME.0001.vtp, DIR/NAME.pvd), and files that are not
 // per frame.
-#ifndef CLI_FOLDER_H
-#define CLI_FOLDER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -99,5 +98,3 @@ ExitCode folder_span(const Folder *folder, Console *console, int *first, int *la
 /// Fills *error with the path and the system's error number, 0 for anything but a regular file. Returns
 /// SINGE_ERROR_FILE.
 SingeResult folder_fail(const char *path, const char *what, int reason, SingeError *error);
-
-#endif

@@ -1,6 +1,5 @@
 // Signals. Ctrl-C and SIGTERM: the first asks the run to end after its step, the second ends the program at once.
-#ifndef CLI_INTERRUPT_H
-#define CLI_INTERRUPT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -22,5 +21,3 @@ bool interrupt_left_work(void);
 /// Registers a draft (file_draft) to be removed if the program exits early, when out of memory. It must be disowned before it is freed. Ignores NULL and more than 8 drafts.
 void interrupt_own(const char *draft);
 void interrupt_disown(const char *draft);
-
-#endif

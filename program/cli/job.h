@@ -1,6 +1,5 @@
 // A scene that has been read and can be built: run, check and render begin with it.
-#ifndef CLI_JOB_H
-#define CLI_JOB_H
+#pragma once
 
 #include "cli/cli.h"
 #include "cli/console.h"
@@ -70,5 +69,3 @@ enum { JOB_THREADS_MAX = 64, JOB_FRAMES_MAX = 1000000 };
 /// The exit code of a library result: out of memory and errors of our own files are failures, everything else is bad
 /// input.
 ExitCode job_exit(SingeResult result);
-
-#endif

@@ -1,7 +1,6 @@
 // Locks of an output folder, so that two processes do not write the same files. The kernel holds them for the process
 // (fcntl, advisory): they end with it, however it ends. A killed process leaves a file that locks nothing.
-#ifndef CLI_LOCK_H
-#define CLI_LOCK_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -24,5 +23,3 @@ SINGE_NODISCARD SingeResult lock_take(Lock *lock, const char *path, const char *
 
 /// Releases the lock. The last holder removes the file.
 void lock_release(Lock *lock);
-
-#endif

@@ -1,7 +1,6 @@
 // The formats that a run or a conversion writes besides pictures and gas: frames, and the roots that refer to them; and
 // the gas on finer cells, with the tongues of the flames.
-#ifndef CLI_OUTPUTS_H
-#define CLI_OUTPUTS_H
+#pragma once
 
 #include "cli/folder.h"
 #include "cli/job.h"
@@ -54,5 +53,3 @@ SINGE_NODISCARD SingeResult gas_detail_convert(const Folder *folder, Pictures *p
 /// The same for frames 1 to `last`, in the existing folder. SINGE_ERROR_STATE if the progress callback returns false.
 SINGE_NODISCARD SingeResult gas_detail_write(const Job *job, const Folder *folder, int last, OutputsProgress *progress,
                                              void *context, SingeError *error);
-
-#endif

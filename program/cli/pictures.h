@@ -1,6 +1,5 @@
 // The pictures of a scene as the commands use them, and the frames that they show.
-#ifndef CLI_PICTURES_H
-#define CLI_PICTURES_H
+#pragma once
 
 #include "cli/folder.h"
 #include "cli/job.h"
@@ -79,5 +78,3 @@ void contact_sheet_free(ContactSheet *sheet);
 
 /// The frame of [first, last] that a tile shows: spread evenly, both ends included.
 int contact_sheet_frame(int tile, int tiles, int first, int last);
-
-#endif

@@ -1,6 +1,5 @@
 // The file that `singe run --record` writes.
-#ifndef CLI_RECORDING_H
-#define CLI_RECORDING_H
+#pragma once
 
 #include <stdio.h>
 
@@ -21,5 +20,3 @@ SingeRecord recording_hook(Recording *recording);
 
 /// Closes it, if there is one. Prints the error if not all has been written; returns EXIT_FAILED in place of EXIT_GOOD.
 ExitCode recording_close(Recording *recording, ExitCode code, Console *console);
-
-#endif

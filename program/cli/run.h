@@ -1,7 +1,6 @@
 // Internals of singe run: a run in progress, and its parts. run.c is the command, run_begin.c begins or resumes a run,
 // run_branch.c continues from another, run_frame.c steps to a frame and writes it, record.c writes DIR/run.json.
-#ifndef CLI_RUN_H
-#define CLI_RUN_H
+#pragma once
 
 #include <pthread.h>
 
@@ -159,5 +158,3 @@ SINGE_NODISCARD SingeResult run_end_frame(Run *run, SingeStats *stats, SingeErro
 
 /// Writes a checkpoint of the current state. No frame may be in writing.
 SINGE_NODISCARD SingeResult run_write_checkpoint(Run *run, Progress progress, SingeError *error);
-
-#endif

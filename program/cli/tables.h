@@ -1,8 +1,7 @@
 // The tables of a run, which grow by whole lines with its frames: DIR/stats.csv with a line per frame, DIR/events.csv
 // with a line per event, in order of time, and DIR/probes.csv with a line per probe and frame. A resumed run truncates
 // them to its checkpoint.
-#ifndef CLI_TABLES_H
-#define CLI_TABLES_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -90,5 +89,3 @@ SINGE_NODISCARD SingeResult tables_sync(Tables *tables, SingeError *error);
 /// The unit of a column of stats.csv; "" if it has none.
 const char *tables_unit(const char *column);
 void tables_close(Tables *tables);
-
-#endif

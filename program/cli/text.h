@@ -1,6 +1,5 @@
 // Small pieces of text: formatted strings, JSON out and in.
-#ifndef CLI_TEXT_H
-#define CLI_TEXT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -34,5 +33,3 @@ bool text_json_member(const char *json, size_t size, const char *name, const cha
 /// The bytes of a JSON string value, from malloc; NULL if it is not one. The program ends with EXIT_FAILED when out of
 /// memory.
 char *text_json_unquote(const char *value, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 // DIR/preview.mp4 and DIR/preview.gif from the PNGs, by the program ffmpeg.
-#ifndef CLI_VIDEO_H
-#define CLI_VIDEO_H
+#pragma once
 
 #include "cli/console.h"
 #include "cli/folder.h"
@@ -17,5 +16,3 @@ VideoResult video_make(Console *console, const Folder *folder, double fps, int f
 
 /// DIR/preview.gif, at most 640 pixels wide and 25 frames a second, in the same way.
 VideoResult gif_make(Console *console, const Folder *folder, double fps, int first, int last);
-
-#endif

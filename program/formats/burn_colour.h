@@ -1,6 +1,5 @@
 // Vertex colours of burning paper and cloth, for programs that draw them.
-#ifndef FORMATS_BURN_COLOUR_H
-#define FORMATS_BURN_COLOUR_H
+#pragma once
 
 #include "formats/output.h"
 
@@ -24,5 +23,3 @@ static inline uint8_t ember_step(float temperature) {
 float ember_light(float temperature);
 /// Linear emission of an ember, 2.5 in red at 1200 K, in its blackbody colour.
 void ember_colour(uint8_t step, float colour[3]);
-
-#endif

@@ -1,7 +1,6 @@
 // Files in and out: meshes, pictures, the cache of PLY and VDB. Readers work on bytes in memory; file.c reads files,
 // and writes them whole or not at all. Memory comes from a SingeAllocator (zeroed: libc).
-#ifndef FORMATS_FORMATS_H
-#define FORMATS_FORMATS_H
+#pragma once
 
 #include "mesh/polygons.h"
 #include "singe/sim.h"
@@ -169,5 +168,3 @@ SINGE_NODISCARD SingeResult vdb_write_fine(const char *path, const Gas *gas, dou
 /// is read back bit for bit.
 SINGE_NODISCARD SingeResult vdb_read_gas(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                          Gas *gas, double *time, SingeError *error);
-
-#endif

@@ -1,6 +1,5 @@
 // Shared by the writer and the reader of gas.
-#ifndef FORMATS_GAS_GRID_H
-#define FORMATS_GAS_GRID_H
+#pragma once
 
 #include "formats/formats.h"
 
@@ -39,5 +38,3 @@ void gas_fill(Gas *gas, float coolest);
 bool gas_decode(Gas *gas);
 /// Makes the arrays for gas->view.size, filled with still air.
 SINGE_NODISCARD SingeResult gas_make(Gas *gas, const char *name, float coolest, SingeError *error);
-
-#endif

@@ -1,6 +1,5 @@
 // A binary glTF 2.0 file in the making: its buffer and the parts of its JSON.
-#ifndef FORMATS_GLB_H
-#define FORMATS_GLB_H
+#pragma once
 
 #include "formats/output.h"
 #include "formats/sink.h"
@@ -58,5 +57,3 @@ void glb_make_unit(float v[3]);
 /// `extras` is JSON for the asset.
 SINGE_NODISCARD SingeResult glb_finish(GlbFile *file, const char *up, const char *extras, const char *path,
                                        SingeError *error);
-
-#endif

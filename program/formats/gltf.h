@@ -1,6 +1,5 @@
 // The parts of a glTF that form its meshes, as arrays (gltf.c); gltf_mesh.c makes polygons from them.
-#ifndef FORMATS_GLTF_H
-#define FORMATS_GLTF_H
+#pragma once
 
 #include "formats/json.h"
 
@@ -56,5 +55,3 @@ uint32_t gltf_type_size(uint32_t type);
 
 /// Makes polygons of the file's scene.
 SINGE_NODISCARD SingeResult gltf_make(Gltf *gltf, uint64_t max, Polygons *polygons);
-
-#endif

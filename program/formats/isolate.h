@@ -1,7 +1,6 @@
 // Runs a function in a process of its own: third-party code that may crash, or use all memory or time, reads a file
 // there. This process continues with an answer or an error.
-#ifndef FORMATS_ISOLATE_H
-#define FORMATS_ISOLATE_H
+#pragma once
 
 #include "formats/formats.h"
 
@@ -35,5 +34,3 @@ bool isolate_possible(void);
 /// too, it is checked several times a second.
 SINGE_NODISCARD SingeResult isolate_run(const char *name, IsolateWork *work, void *context, IsolateLimits limits,
                                         SingeAllocator allocator, Bytes *answer, SingeError *error);
-
-#endif

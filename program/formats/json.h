@@ -1,6 +1,5 @@
 // JSON as a flat list of values, in the order of the file, for the reader of glTF.
-#ifndef FORMATS_JSON_H
-#define FORMATS_JSON_H
+#pragma once
 
 #include "formats/formats.h"
 
@@ -42,5 +41,3 @@ bool json_count(const Json *json, int64_t value, uint64_t *number);
 
 /// Places an array's items from: for (i = 0, v = value + 1; i < count; i++, v = values[v].after).
 uint32_t json_items(const Json *json, int64_t value);
-
-#endif

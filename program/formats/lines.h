@@ -1,6 +1,5 @@
 // A cursor over lines of text that end in LF, CR LF or CR.
-#ifndef FORMATS_LINES_H
-#define FORMATS_LINES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -54,5 +53,3 @@ static inline bool text_word_is(const uint8_t *begin, const uint8_t *end, const 
     size_t length = strlen(word);
     return (size_t)(end - begin) == length && memcmp(begin, word, length) == 0;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // LZ4's block format: OpenUSD compresses integers and names with it.
-#ifndef FORMATS_LZ4_H
-#define FORMATS_LZ4_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -10,5 +9,3 @@ static inline size_t lz4_size_max(size_t size) { return size + size / 255 + 16; 
 
 /// Compresses a block and returns its length; `out` has room for lz4_size_max(size).
 size_t lz4_pack(const uint8_t *in, size_t size, uint8_t *out);
-
-#endif

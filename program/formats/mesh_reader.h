@@ -1,6 +1,5 @@
 // Shared by the mesh readers.
-#ifndef FORMATS_MESH_READER_H
-#define FORMATS_MESH_READER_H
+#pragma once
 
 #include "formats/formats.h"
 
@@ -34,5 +33,3 @@ typedef struct MeshCounts {
 /// are not finite, or no faces, are SINGE_ERROR_MESH; uv that are not finite become 0.
 SINGE_NODISCARD SingeResult mesh_answer_take(const char *name, const uint8_t *bytes, size_t size,
                                              SingeAllocator allocator, Polygons *polygons, SingeError *error);
-
-#endif

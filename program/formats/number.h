@@ -1,6 +1,5 @@
 // Decimal numbers in text, independent of the locale.
-#ifndef FORMATS_NUMBER_H
-#define FORMATS_NUMBER_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -22,5 +21,3 @@ NumberStatus number_integer(const uint8_t **at, const uint8_t *end, int64_t *val
 
 /// Writes a finite double so that number_double reads it back exactly. Returns the length.
 int number_print(double value, char text[40]);
-
-#endif

@@ -1,8 +1,7 @@
 // Output for other programs: formats of frames, each in a source file of its own and one row here. A format writes a
 // file per frame and may have a root: a file that refers to all frames. Writers are pure: the same frame and scene give
 // the same bytes, whether they come from a simulation or from the cache.
-#ifndef FORMATS_OUTPUT_H
-#define FORMATS_OUTPUT_H
+#pragma once
 
 #include "formats/formats.h"
 
@@ -231,5 +230,3 @@ static inline SheetPart sheet_part(const SheetParts *p, uint32_t sheet) {
                        p->triangle_first[sheet + 1] - p->triangle_first[sheet], p->vertices + p->vertex_first[sheet],
                        p->triangles + p->triangle_first[sheet]};
 }
-
-#endif

@@ -1,6 +1,5 @@
 // The PLY header, and values of its body, for the readers of meshes and of the cache.
-#ifndef FORMATS_PLY_H
-#define FORMATS_PLY_H
+#pragma once
 
 #include "formats/formats.h"
 #include "formats/lines.h"
@@ -61,5 +60,3 @@ size_t ply_type_size(PlyType type);
 
 /// Fails at the cursor: by line in text, by byte in binary.
 SingeResult ply_refuse(const Ply *ply, SingeResult code, const char *format, ...) SINGE_PRINTF(3, 4);
-
-#endif

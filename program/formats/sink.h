@@ -1,6 +1,5 @@
 // Collects the bytes of a file in memory. A sink that cannot grow remains unchanged and reports that at the end.
-#ifndef FORMATS_SINK_H
-#define FORMATS_SINK_H
+#pragma once
 
 #include "formats/formats.h"
 #include "common/store.h"
@@ -43,5 +42,3 @@ void sink_float(Sink *sink, float value);
 
 /// Writes the file, whole or not at all, and frees the sink.
 SINGE_NODISCARD SingeResult sink_write(Sink *sink, const char *path, SingeError *error);
-
-#endif

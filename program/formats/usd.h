@@ -3,8 +3,7 @@
 //     /NAME                 Xform
 //     /NAME/sheets/SHEET    Mesh of a sheet; with a picture its faces are in the subsets `fresh` and `burnt`
 //     /NAME/gas, /NAME/camera, /NAME/light, /NAME/materials, /NAME/props: only in the root
-#ifndef FORMATS_USD_H
-#define FORMATS_USD_H
+#pragma once
 
 #include "formats/output.h"
 #include "formats/sink.h"
@@ -45,5 +44,3 @@ enum {
 };
 /// The first USD_OWN attributes; the fields of fields.h follow as primvars.
 extern const UsdAttribute usd_attributes[USD_OWN];
-
-#endif

@@ -9,8 +9,7 @@
 // A value is 64 bits: flags (array, inlined, compressed) in bits 63 to 61, the type in 48 to 55, and in the lower 48
 // the value or where it lies. Integers are packed as differences (crate_ints), these by LZ4; single floats may be
 // numbers of a table of the values that occur (crate_floats). All is little-endian.
-#ifndef FORMATS_USD_CRATE_H
-#define FORMATS_USD_CRATE_H
+#pragma once
 
 #include "formats/sink.h"
 
@@ -95,5 +94,3 @@ void crate_spec(Crate *crate, uint32_t path, CrateSpec kind, const CrateField *f
 bool crate_take(Crate *crate, Sink *bytes);
 /// Ends the file, writes it whole or not at all, and frees the crate.
 SINGE_NODISCARD SingeResult crate_write(Crate *crate, const char *path, SingeError *error);
-
-#endif

@@ -1,6 +1,5 @@
 // Draws triangles of uv on a square picture, and dilates values beyond them.
-#ifndef FORMATS_UV_RASTER_H
-#define FORMATS_UV_RASTER_H
+#pragma once
 
 #include "formats/formats.h"
 
@@ -16,5 +15,3 @@ enum { UV_NONE = UINT32_MAX };
 /// Finds the nearest covered pixel of each uncovered pixel within `reach` pixels (across sides); of several the first
 /// in search order. A covered pixel is its own nearest; others have UV_NONE. `queue` has room for size * size.
 void uv_spread(int size, int reach, const uint8_t *covered, uint32_t *nearest, uint32_t *queue);
-
-#endif

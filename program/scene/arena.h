@@ -1,6 +1,5 @@
 // The memory of a scene: blocks that are freed together.
-#ifndef SCENE_ARENA_H
-#define SCENE_ARENA_H
+#pragma once
 
 #include <stddef.h>
 
@@ -19,5 +18,3 @@ char *arena_text(SceneArena *arena, const char *text, size_t length);
 /// Records that an allocation failed elsewhere.
 void arena_fail(SceneArena *arena);
 int arena_failed(const SceneArena *arena);
-
-#endif

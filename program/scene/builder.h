@@ -1,7 +1,6 @@
 // Adds a scene's objects to a simulation, one by one: for a simulation from the start (build_sim.c) and for one that goes
 // on with other objects (branch.c).
-#ifndef SCENE_BUILDER_H
-#define SCENE_BUILDER_H
+#pragma once
 
 #include "scene/scene.h"
 
@@ -17,5 +16,3 @@ typedef struct SceneBuilder {
 SINGE_NODISCARD SingeResult builder_add_source(const SceneBuilder *builder, uint32_t index);
 SINGE_NODISCARD SingeResult builder_add_collider(const SceneBuilder *builder, uint32_t index);
 SINGE_NODISCARD SingeResult builder_add_pin(const SceneBuilder *builder, uint32_t index);
-
-#endif

@@ -1,6 +1,5 @@
 // The built-in materials: the files of materials/, embedded unchanged by packaging/cmake/embed.cmake.
-#ifndef SCENE_BUILTIN_H
-#define SCENE_BUILTIN_H
+#pragma once
 
 #include <stddef.h>
 
@@ -12,5 +11,3 @@ typedef struct SceneBuiltin {
 
 /// Sorted by name; a row of zeros follows the last.
 extern const SceneBuiltin scene_builtins[];
-
-#endif

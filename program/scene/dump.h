@@ -1,6 +1,5 @@
 // Writes values as text.
-#ifndef SCENE_DUMP_H
-#define SCENE_DUMP_H
+#pragma once
 
 #include "scene/schema.h"
 
@@ -11,5 +10,3 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file);
 /// memory. Two that are equal give the same text.
 char *dump_text(const Schema *schema, const void *object);
 char *dump_row_text(const SchemaRow *row, unsigned kind, const void *object);
-
-#endif

@@ -1,6 +1,5 @@
 // From an error of the library to the scene's objects: their file, line and words.
-#ifndef SCENE_FAULTS_H
-#define SCENE_FAULTS_H
+#pragma once
 
 #include "scene/messages.h"
 
@@ -24,5 +23,3 @@ typedef enum FaultScope {
 
 /// Reports the first fault of each sheet; faults of a mesh at the name of its file. Returns whether there was one.
 bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scope, SceneMessages *messages);
-
-#endif

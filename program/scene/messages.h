@@ -1,6 +1,5 @@
 // Errors in a scene, collected with their locations.
-#ifndef SCENE_MESSAGES_H
-#define SCENE_MESSAGES_H
+#pragma once
 
 #include "scene/scene.h"
 
@@ -32,5 +31,3 @@ void messages_sort(SceneMessages *messages, uint32_t first);
 
 /// The number of messages; a call that increases it has found an error.
 static inline uint32_t message_total(const SceneMessages *messages) { return messages->count + messages->left_out; }
-
-#endif

@@ -1,6 +1,5 @@
 // Meshes that are drawn in place of sheets, from files.
-#ifndef SCENE_RENDER_FILE_H
-#define SCENE_RENDER_FILE_H
+#pragma once
 
 #include "scene/scene.h"
 
@@ -9,5 +8,3 @@
 SINGE_NODISCARD SingeResult render_file_make(const char *name, const Polygons *polygons, RenderFile *file,
                                              SingeError *error);
 void render_file_free(RenderFile *file);
-
-#endif

@@ -6,8 +6,7 @@
 //
 // A Scene holds the filled-in Defs of include/singe/types.h, without the arrays they point to; scene_load reads those.
 // Lengths are metres, angles radians, temperatures kelvin, as in the Defs.
-#ifndef SCENE_SCENE_H
-#define SCENE_SCENE_H
+#pragma once
 
 #include <stdio.h>
 
@@ -443,5 +442,3 @@ bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, d
 
 /// Seconds from one frame to the next, and the simulation's step.
 static inline double scene_frame_time(const Scene *scene) { return 1.0 / (double)scene->fps; }
-
-#endif

@@ -1,7 +1,6 @@
 // The schema of scene files: one table for each map that a scene may hold. The reader, --set, the dump and
 // docs/scene.md are all made from these tables.
-#ifndef SCENE_SCHEMA_H
-#define SCENE_SCHEMA_H
+#pragma once
 
 #include "scene/scene.h"
 #include "scene/tree.h"
@@ -167,5 +166,3 @@ typedef struct Nearest {
 void nearest_offer(Nearest *nearest, const char *candidate);
 /// "" or "; did you mean 'best'?"
 const char *nearest_hint(const Nearest *nearest, char *buffer, size_t size);
-
-#endif

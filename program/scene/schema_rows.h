@@ -1,6 +1,5 @@
 // Macros for the schema's tables.
-#ifndef SCENE_SCHEMA_ROWS_H
-#define SCENE_SCHEMA_ROWS_H
+#pragma once
 
 #include "scene/schema.h"
 #include "scene/words.h"
@@ -54,5 +53,3 @@
 
 // the scene's maps, besides those in schema.c
 extern const Schema schema_sheet, schema_source, schema_collider, schema_pin, schema_probe, schema_preview;
-
-#endif

@@ -1,6 +1,5 @@
 // Meshes that move frame by frame: a sequence of files, and the objects that follow it.
-#ifndef SCENE_SEQUENCE_H
-#define SCENE_SEQUENCE_H
+#pragma once
 
 #include "scene/scene.h"
 
@@ -27,5 +26,3 @@ SINGE_NODISCARD SingeResult follow_material(const Scene *scene, const SceneAsset
 
 /// Whether a file's name has a place for the frame's number: one run of #, after the last slash.
 bool sequence_name_fits(const char *name);
-
-#endif

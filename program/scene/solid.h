@@ -1,6 +1,5 @@
 // Colliders from files.
-#ifndef SCENE_SOLID_H
-#define SCENE_SOLID_H
+#pragma once
 
 #include "scene/scene.h"
 
@@ -26,5 +25,3 @@ SINGE_NODISCARD SingeResult solid_make_heights(const SingeTexture *picture, cons
 double metres_per_unit(int unit, float scale);
 
 void solid_free(SceneSolid *solid);
-
-#endif

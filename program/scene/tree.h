@@ -1,7 +1,6 @@
 // The text of a scene as a tree of lists, maps and single values, each with its location. It depends on YAML, not on
 // scenes.
-#ifndef SCENE_TREE_H
-#define SCENE_TREE_H
+#pragma once
 
 #include "scene/arena.h"
 #include "scene/messages.h"
@@ -38,5 +37,3 @@ const char *node_describe(const YamlNode *node, char *buffer, size_t size);
 
 /// " 'key'", shortened and printable; "" for a key in a file other than the scene.
 const char *node_key(const YamlNode *node, char *buffer, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 // Quantities: numbers with units, by dimension.
-#ifndef SCENE_UNITS_H
-#define SCENE_UNITS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -56,5 +55,3 @@ void quantity_units(Dimension dimension, char *buffer, size_t size);
 
 /// The shortest bare number that quantity_read, rounded to float, reads back as `value`.
 void quantity_print(float value, Dimension dimension, char *buffer, size_t size);
-
-#endif

@@ -1,7 +1,6 @@
 // Reads one value from one node of the tree, and checks it against its row. Errors are reported with their location and
 // leave the value unchanged.
-#ifndef SCENE_VALUES_H
-#define SCENE_VALUES_H
+#pragma once
 
 #include "scene/schema.h"
 
@@ -31,5 +30,3 @@ void check_times(Reader *reader, const YamlNode *list, const void *items, size_t
 
 /// Also checks that the file exists, if the reader has a folder.
 void value_file(Reader *reader, const SchemaRow *row, const YamlNode *node, SceneFile *field);
-
-#endif

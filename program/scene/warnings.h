@@ -1,6 +1,5 @@
 // Warnings about a scene that can be simulated.
-#ifndef SCENE_WARNINGS_H
-#define SCENE_WARNINGS_H
+#pragma once
 
 #include "scene/scene.h"
 
@@ -21,5 +20,3 @@ double scene_ignition(const Scene *scene);
 static inline bool source_wets_or_blows(const SingeSourceDef *def) {
     return def->kind >= SINGE_SOURCE_WATER && def->kind <= SINGE_SOURCE_TURBULENCE;
 }
-
-#endif

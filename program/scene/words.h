@@ -1,6 +1,5 @@
 // The words by which scenes, options and tables name the values of the library's enums.
-#ifndef SCENE_WORDS_H
-#define SCENE_WORDS_H
+#pragma once
 
 #include "singe/types.h"
 
@@ -16,5 +15,3 @@ typedef struct EnumWords {
 } EnumWords;
 
 extern const EnumWords enum_words;
-
-#endif

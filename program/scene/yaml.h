@@ -1,7 +1,6 @@
 // YAML as a list of events, by libfyaml in a process of its own (formats/isolate.h): libfyaml crashes when out of
 // memory, and a scene may come from anywhere. The events are validated.
-#ifndef SCENE_YAML_H
-#define SCENE_YAML_H
+#pragma once
 
 #include "formats/formats.h"
 
@@ -50,5 +49,3 @@ SINGE_NODISCARD SingeResult yaml_read(const char *name, const char *bytes, size_
 bool yaml_next(YamlEvents *events, YamlEvent *event);
 
 void yaml_free(YamlEvents *events);
-
-#endif

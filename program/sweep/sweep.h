@@ -8,8 +8,7 @@
 //   slurm/                  scripts and logs of jobs (slurm_jobs.c)
 //
 // A row's folder moves from unfinished/ to rows/ as the last step: it is complete there, or absent.
-#ifndef SWEEP_SWEEP_H
-#define SWEEP_SWEEP_H
+#pragma once
 
 #include "cli/job.h"
 #include "cli/lock.h"
@@ -86,5 +85,3 @@ ExitCode sweep_print_openjd(const Sweep *sweep);
 
 /// Writes report.csv, index.html and sheet.svg of the complete rows (sweep_report.c).
 ExitCode sweep_report(Sweep *sweep);
-
-#endif

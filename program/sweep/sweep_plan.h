@@ -1,6 +1,5 @@
 // The plan of a sweep: a scene, and the parameters that its rows set (docs/sweep.md). A row is one run.
-#ifndef SWEEP_PLAN_H
-#define SWEEP_PLAN_H
+#pragma once
 
 #include "cli/cli.h"
 #include "cli/console.h"
@@ -80,5 +79,3 @@ static inline const char *plan_value(const Plan *plan, uint32_t row, uint32_t pa
 
 /// A parameter's short name: the part after the last dot, longer if others have the same end.
 const char *plan_label(const Plan *plan, uint32_t parameter);
-
-#endif

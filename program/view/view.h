@@ -2,8 +2,7 @@
 // live.c burns a scene and watches its file.
 //
 // All of it is one thread: files are read in child processes, which are made while there is one (formats/isolate.h).
-#ifndef VIEW_VIEW_H
-#define VIEW_VIEW_H
+#pragma once
 
 #include <sys/types.h>
 #include <time.h>
@@ -78,5 +77,3 @@ SINGE_NODISCARD SingeResult server_open(View *view, Server **server, SingeError 
 /// Attends to requests for at most some ms.
 void server_attend(Server *server, int ms);
 void server_close(Server *server);
-
-#endif

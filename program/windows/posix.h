@@ -1,7 +1,6 @@
 // The part of POSIX that the command uses and Windows lacks. The compiler includes this file first in every file of the
 // command (posix.cmake), which also writes the headers that Windows lacks: they lead here. Paths are UTF-8, with / between their parts.
-#ifndef WINDOWS_POSIX_H
-#define WINDOWS_POSIX_H
+#pragma once
 
 #define _CRT_RAND_S // before the first of Windows' headers
 #include <direct.h>
@@ -212,5 +211,3 @@ typedef int fd_set;
 struct termios {
     int unused;
 };
-
-#endif

@@ -1,6 +1,5 @@
 // Ablation: removes burnt parts (section 6), labels the pieces, and gives the level set that surface/ draws.
-#ifndef ABLATE_ABLATE_H
-#define ABLATE_ABLATE_H
+#pragma once
 
 #include "common/pool.h"
 #include "shell/shell.h"
@@ -35,5 +34,3 @@ void ablate_step(AblatePlan *plan, const StepContext *context, AblateState *abla
 
 /// Relabels the pieces after a tear, removes small loose ones, and reports those that separated.
 void ablate_torn(AblatePlan *plan, const StepContext *context, AblateState *ablate);
-
-#endif

@@ -1,6 +1,5 @@
 // Shared declarations of the ablate stage's files.
-#ifndef ABLATE_ABLATE_PLAN_H
-#define ABLATE_ABLATE_PLAN_H
+#pragma once
 
 #include "ablate/ablate.h"
 
@@ -32,5 +31,3 @@ void remove_spring(Removal *removal, SingeColour colour, uint32_t spring);
 
 /// Finds the pieces after a change: drops small loose ones, keeps or gives ids, pushes SINGE_EVENT_PIECE_FREED.
 void piece_update(Removal *removal, EventList *events);
-
-#endif

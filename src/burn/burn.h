@@ -1,6 +1,5 @@
 // Burning: mass loss (eq 4), volume (eq 5) and target lengths (eq 6).
-#ifndef BURN_BURN_H
-#define BURN_BURN_H
+#pragma once
 
 #include "common/pool.h"
 #include "shell/target_length.h"
@@ -14,5 +13,3 @@ SingeResult burn_step(const StepContext *context, const float *thickening, doubl
 /// Computes the target lengths of all springs that are alive in `ablate` from the masses: to the bit those that the
 /// steps computed.
 void burn_restore_lengths(const Shell *shell, const AblateState *ablate, BurnState *burn);
-
-#endif

@@ -1,6 +1,5 @@
 // Shared declarations of the passes of one burn step.
-#ifndef BURN_JOB_H
-#define BURN_JOB_H
+#pragma once
 
 #include "burn/burn.h"
 
@@ -50,5 +49,3 @@ double burn_lose_mass(BurnJob *job, Pool *pool);
 
 /// Eq 6, for springs with an end that lost mass in this step.
 void burn_shrink(BurnJob *job, Pool *pool);
-
-#endif

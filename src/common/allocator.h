@@ -1,7 +1,6 @@
 // The caller's memory hook, or libc's allocator if there is none. Inline, so that programs next to libsinge can use it,
 // too, though a shared library hides its names.
-#ifndef COMMON_ALLOCATOR_H
-#define COMMON_ALLOCATOR_H
+#pragma once
 
 #include "singe/base.h"
 
@@ -26,5 +25,3 @@ static inline void *allocator_resize(SingeAllocator hook, void *block, size_t ol
     hook = allocator_or_libc(hook);
     return hook.resize(hook.context, block, block ? old_size : 0, new_size);
 }
-
-#endif

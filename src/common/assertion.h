@@ -1,8 +1,7 @@
 // Assertions of invariants, which only a bug in this program can break. Inputs are checked by code that returns an
 // error instead. Enabled if SINGE_ASSERTIONS is defined (the presets dev, asan, tsan and fuzz); otherwise nothing is
 // computed.
-#ifndef COMMON_ASSERTION_H
-#define COMMON_ASSERTION_H
+#pragma once
 
 #ifdef SINGE_ASSERTIONS
 /// Prints the condition with its file and line, and aborts.
@@ -10,6 +9,4 @@ _Noreturn void assertion_failed(const char *condition, const char *file, int lin
 #define SINGE_ASSERT(condition) ((condition) ? (void)0 : assertion_failed(#condition, __FILE__, __LINE__))
 #else
 #define SINGE_ASSERT(condition) ((void)sizeof(!(condition)))
-#endif
-
 #endif

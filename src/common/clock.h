@@ -1,8 +1,5 @@
 // Time for the timers. No result depends on it.
-#ifndef COMMON_CLOCK_H
-#define COMMON_CLOCK_H
+#pragma once
 
 /// s since some moment; never goes back.
 double clock_seconds(void);
-
-#endif

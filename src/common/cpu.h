@@ -1,11 +1,8 @@
 // Which instructions this machine can run.
-#ifndef COMMON_CPU_H
-#define COMMON_CPU_H
+#pragma once
 
 #include "singe/types.h"
 
 /// Whether the processor has all instructions of the set, and the operating system saves their registers. False for
 /// SINGE_INSTRUCTIONS_BEST, which is no set.
 bool cpu_has(SingeInstructions set);
-
-#endif

@@ -1,7 +1,6 @@
 // A hashed grid of cubes (Teschner et al., Optimized spatial hashing, 2003) of members that reach no farther than a cube:
 // all that reach a position lie in the 27 cubes about it.
-#ifndef COMMON_CUBE_GRID_H
-#define COMMON_CUBE_GRID_H
+#pragma once
 
 #include "common/float3.h"
 #include "common/memory.h"
@@ -27,5 +26,3 @@ void cube_grid_add(CubeGrid *grid, uint32_t member, const float position[3]);
 
 /// The heads of the lists of the 27 cubes about a position. Two may be the same.
 void cube_grid_around(const CubeGrid *grid, Float3 position, uint32_t first[27]);
-
-#endif

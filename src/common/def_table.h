@@ -1,7 +1,6 @@
 // The tables of the public Defs (include/singe/*.def) as data. From a row follow a field's check and its message, and its
 // place in snapshots.
-#ifndef COMMON_DEF_TABLE_H
-#define COMMON_DEF_TABLE_H
+#pragma once
 
 #include <math.h>
 
@@ -78,5 +77,3 @@ void def_stream(Stream *stream, const DefTable *table, void *def, size_t first, 
 
 /// Whether an enum has this value.
 bool def_has_value(const char *words, int value);
-
-#endif

@@ -1,6 +1,5 @@
 // Errors: filled in once, where most is known, and passed up unchanged.
-#ifndef COMMON_ERROR_H
-#define COMMON_ERROR_H
+#pragma once
 
 #include "singe/base.h"
 
@@ -14,5 +13,3 @@ SingeResult error_set(SingeError *error, SingeResult code, const char *stage, in
         SingeResult try_result_ = (call);    \
         if (try_result_) return try_result_; \
     } while (0)
-
-#endif

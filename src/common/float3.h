@@ -1,6 +1,5 @@
 // Three floats, three doubles, and the quaternions of poses.
-#ifndef COMMON_FLOAT3_H
-#define COMMON_FLOAT3_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -77,5 +76,3 @@ static inline bool unit3(double *a) {
     for (int k = 0; k < 3; k++) a[k] /= length;
     return true;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Four floats at once: the arithmetic of gcc's and clang's vector types, which compile for every processor.
-#ifndef COMMON_FLOAT4_H
-#define COMMON_FLOAT4_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -95,5 +94,3 @@ static inline void float4_transpose(Float4 q[4]) {
     q[2] = FLOAT4_SHUFFLE(zw01, zw23, 0, 1, 4, 5);
     q[3] = FLOAT4_SHUFFLE(zw01, zw23, 2, 3, 6, 7);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // printf with a decimal point in every locale: the C library's follows the host's locale.
-#ifndef COMMON_FORMAT_H
-#define COMMON_FORMAT_H
+#pragma once
 
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,5 +8,3 @@
 /// lengths l, ll and z, %s, %e, %f, %g and %%, with flags, widths and precisions in digits. The text ends at any other
 /// conversion.
 void text_print(char *out, size_t size, const char *format, va_list arguments);
-
-#endif

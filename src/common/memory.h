@@ -1,6 +1,5 @@
 // Memory through the caller's hook, counted.
-#ifndef COMMON_MEMORY_H
-#define COMMON_MEMORY_H
+#pragma once
 
 #include "singe/base.h"
 
@@ -25,5 +24,3 @@ void memory_free(Memory *memory, void *array_pointer, size_t count, size_t eleme
 
 #define NEW(memory, array, count) ((array) = memory_new((memory), (count), sizeof *(array)))
 #define FREE(memory, array, count) memory_free((memory), (void *)&(array), (count), sizeof *(array))
-
-#endif

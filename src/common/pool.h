@@ -1,6 +1,5 @@
 // Work shared among threads: fixed blocks, so that results do not depend on the number of threads.
-#ifndef COMMON_POOL_H
-#define COMMON_POOL_H
+#pragma once
 
 #include "common/memory.h"
 
@@ -37,5 +36,3 @@ void pool_for(Pool *pool, int count, int grain, SingeTaskFn *run, void *context)
 typedef double PoolSumFn(void *context, int begin, int end);
 double pool_sum(Pool *pool, int count, PoolSumFn *sum, void *context, double *partial);
 static inline int pool_blocks(int count) { return count / POOL_BLOCK + (count % POOL_BLOCK > 0); }
-
-#endif

@@ -1,7 +1,6 @@
 // Foreign text in messages: file names, keys and values of a scene, which may contain any bytes. Characters that are
 // invisible or that a terminal would act on are escaped, and long text is shortened.
-#ifndef COMMON_PRINTABLE_H
-#define COMMON_PRINTABLE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -56,5 +55,3 @@ Shown shown_path(const char *path);
 
 /// Removes an incomplete last character of a zero-terminated text.
 void printable_trim(char *text);
-
-#endif

@@ -1,6 +1,5 @@
 // Seeded noise from integer hashes: the same on every machine.
-#ifndef COMMON_RANDOM_H
-#define COMMON_RANDOM_H
+#pragma once
 
 #include "singe/types.h"
 
@@ -15,5 +14,3 @@ float random_noise(float x, float y, float z, uint32_t seed);
 
 /// Octaves of value noise in [0, 1], spread so that it fills most of that range.
 float random_fractal(const SingeNoise *noise, float x, float y, float z);
-
-#endif

@@ -1,8 +1,7 @@
 // Elementary functions of the core. libm's by default; with SINGE_PORTABLE_MATH our own (real.c), which use nothing but
 // IEEE 754's additions, products, quotients and square roots: the same bytes with every C library, compiler and
 // processor. The two differ in the last digit of some results, so a build uses one kind throughout.
-#ifndef COMMON_REAL_H
-#define COMMON_REAL_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -58,5 +57,3 @@ static inline double double_min(double a, double b) { return a < b || b != b ? a
 
 /// False for NaN.
 static inline bool float_within(float value, float low, float high) { return value >= low && value <= high; }
-
-#endif

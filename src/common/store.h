@@ -1,7 +1,6 @@
 // Memory from the caller's hook, and messages about files, for what lies outside libsinge: the makers of meshes, and the
 // readers and writers of the program. They link a copy of their own, since a shared libsinge hides its inside.
-#ifndef COMMON_STORE_H
-#define COMMON_STORE_H
+#pragma once
 
 #include "common/error.h"
 #include "singe/material.h"
@@ -47,5 +46,3 @@ static inline void store_u32_little(uint8_t *p, uint32_t value) {
     p[2] = (uint8_t)(value >> 16);
     p[3] = (uint8_t)(value >> 24);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // A stream of bytes in memory, read and written by the same code, so that the two cannot disagree.
-#ifndef COMMON_STREAM_H
-#define COMMON_STREAM_H
+#pragma once
 
 #include "common/memory.h"
 
@@ -21,5 +20,3 @@ void stream_data(Stream *stream, void *data, size_t size);
 
 /// 64-bit FNV-1a over 8-byte words and the remaining bytes: detects damage, not malice.
 uint64_t stream_checksum(const uint8_t *bytes, size_t size);
-
-#endif

@@ -1,7 +1,6 @@
 // Threads, mutexes and conditions: POSIX's, Windows' own, or none in WebAssembly. A Mutex or a Condition must not be moved while it is in
 // use.
-#ifndef COMMON_THREAD_H
-#define COMMON_THREAD_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -49,5 +48,3 @@ void condition_close(Condition *condition);
 void condition_wait(Condition *condition, Mutex *mutex);
 void condition_signal(Condition *condition);
 void condition_broadcast(Condition *condition);
-
-#endif

@@ -1,6 +1,5 @@
 // Advection of advect.c along one axis: the loops over cells, with one file per instruction set.
-#ifndef GAS_ADVECT_AXIS_H
-#define GAS_ADVECT_AXIS_H
+#pragma once
 
 #include "gas/gas_plan.h"
 
@@ -26,5 +25,3 @@ extern SweepFn sweep_plain, sweep_v3;
 
 /// The sweep for these instructions.
 SweepFn *sweep_choose(SingeInstructions instructions);
-
-#endif

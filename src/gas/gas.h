@@ -1,6 +1,5 @@
 // The gas around a fire: hot air, flames and smoke on a grid.
-#ifndef GAS_GAS_H
-#define GAS_GAS_H
+#pragma once
 
 #include "common/stream.h"
 #include "common/pool.h"
@@ -43,5 +42,3 @@ void gas_step(GasPlan *plan, const StepContext *context, GasState *gas);
 
 /// The last step for readers.
 SingeGas gas_view(const GasPlan *plan);
-
-#endif

@@ -7,8 +7,7 @@
 //
 // which is advected like a density, gives the buoyancy g L, and grows by q/GAS_HEAT where q W/m3 are released, while
 // the gas expands by the same amount: div u = q/GAS_HEAT (low Mach number, ideal gas).
-#ifndef GAS_GAS_PLAN_H
-#define GAS_GAS_PLAN_H
+#pragma once
 
 #include "gas/gas.h"
 #include "world/smother.h"
@@ -205,5 +204,3 @@ static inline float gas_sample(const GasGrid *grid, const float *field, const fl
     c += part[1] * (e - c);
     return a + part[2] * (c - a);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Heat: sources, losses, combustion and diffusion (eq 1 to 3).
-#ifndef HEAT_HEAT_H
-#define HEAT_HEAT_H
+#pragma once
 
 #include "common/pool.h"
 #include "shell/shell.h"
@@ -69,5 +68,3 @@ typedef struct HeatCounters {
 /// context->view. `sources` and context->colliders may be NULL. SINGE_ERROR_DIVERGED with the particle when a
 /// temperature is not finite. Adds to *counters.
 SingeResult heat_step(HeatPlan *plan, const StepContext *context, HeatState *heat, HeatCounters *counters);
-
-#endif

@@ -1,6 +1,5 @@
 // Shared declarations of the stage: the plan, and the passes that heat_step calls in order.
-#ifndef HEAT_HEAT_PLAN_H
-#define HEAT_HEAT_PLAN_H
+#pragma once
 
 #include <string.h>
 
@@ -213,5 +212,3 @@ static inline uint32_t heat_group_last(const HeatPlan *plan, uint32_t group) {
     uint32_t last = (group + 1) * HEAT_GROUP;
     return last < plan->particles ? last : plan->particles;
 }
-
-#endif

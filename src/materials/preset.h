@@ -1,6 +1,5 @@
 // The table of materials that have names: src/materials/presets.c, made from src/materials/*.yaml.
-#ifndef MATERIALS_PRESET_H
-#define MATERIALS_PRESET_H
+#pragma once
 
 #include "singe/material.h"
 
@@ -11,5 +10,3 @@ typedef struct MaterialPreset {
 
 /// In the order of their names; a row of zeros behind the last.
 extern const MaterialPreset material_presets[];
-
-#endif

@@ -1,6 +1,5 @@
 // Splits a face's ring of corners into loops that can be cut into triangles (loops.c).
-#ifndef MESH_LOOPS_H
-#define MESH_LOOPS_H
+#pragma once
 
 #include "mesh/polygon.h"
 
@@ -34,5 +33,3 @@ bool loops_is_star(Loops *loops, uint32_t loop);
 
 /// Whether all corners lie on a line. A ring that crosses itself may have an area of 0 without being flat.
 bool loops_is_flat(const Loops *loops, const uint32_t *ring, uint32_t n);
-
-#endif

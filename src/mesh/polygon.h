@@ -1,6 +1,5 @@
 // Polygons cut into triangles that cover exactly their area (polygon.c).
-#ifndef MESH_POLYGON_H
-#define MESH_POLYGON_H
+#pragma once
 
 #include "mesh/work.h"
 
@@ -34,5 +33,3 @@ bool polygon_cut(PolygonCut *cut, const uint32_t *ring, uint32_t n);
 
 /// Whether two of cut->triangle overlap, projected along a normal.
 bool polygon_overlaps(PolygonCut *cut, const double normal[3]);
-
-#endif

@@ -1,6 +1,5 @@
 // Polygons: the mesh of a file, before it becomes the quads of a sheet.
-#ifndef MESH_POLYGONS_H
-#define MESH_POLYGONS_H
+#pragma once
 
 #include "singe/material.h"
 
@@ -21,5 +20,3 @@ typedef struct Polygons {
 } Polygons;
 
 void polygons_free(Polygons *polygons);
-
-#endif

@@ -1,7 +1,6 @@
 // Makes the quads of a sheet from the polygons of a file (docs/meshes.md): vertices are welded, faults are repaired or
 // refused, and triangles and polygons become quads. The core accepts only quads.
-#ifndef MESH_TO_QUADS_H
-#define MESH_TO_QUADS_H
+#pragma once
 
 #include "mesh/polygons.h"
 
@@ -98,5 +97,3 @@ SINGE_NODISCARD SingeResult mesh_make(const char *name, const Polygons *polygons
 
 /// Writes the index-th sentence about the mesh to `text`: first a summary, then the changes. False if there is none.
 bool mesh_report_line(const MeshReport *report, int index, char *text, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 // A mesh while it is repaired: what the files of this folder share.
-#ifndef MESH_WORK_H
-#define MESH_WORK_H
+#pragma once
 
 #include "common/float3.h"
 #include "mesh/to_quads.h"
@@ -154,5 +153,3 @@ void mesh_order(Work *work);
 /// and do so in preference to others.
 void match_grow(Work *work, uint32_t count, const uint32_t *arc_first, const uint32_t *arc_to, const uint8_t *open,
                 uint32_t *mate);
-
-#endif

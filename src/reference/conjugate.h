@@ -1,6 +1,5 @@
 // The sweeps of conjugate gradients that have a version for each instruction set.
-#ifndef REFERENCE_CONJUGATE_H
-#define REFERENCE_CONJUGATE_H
+#pragma once
 
 #include "reference/spring_network.h"
 
@@ -19,5 +18,3 @@ typedef struct ConjugateKernel {
 } ConjugateKernel;
 
 extern const ConjugateKernel conjugate_plain, conjugate_v3;
-
-#endif

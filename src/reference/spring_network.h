@@ -2,8 +2,7 @@
 // `paper-literal`, `all-at-once` and `mass-spring` run on one, and so does singe/research.h.
 //
 // Springs are in sets. Each set is projected as one system: a colour, or all springs at once.
-#ifndef REFERENCE_SPRING_NETWORK_H
-#define REFERENCE_SPRING_NETWORK_H
+#pragma once
 
 #include "common/pool.h"
 #include "singe/types.h"
@@ -112,5 +111,3 @@ const struct ConjugateKernel *conjugate_choose(SingeInstructions instructions);
 /// Solves the scaled system for `solution`, from zero; `residual` holds the right-hand side and then the residual.
 /// `square` is the right-hand side's square, and the iterations end below `enough` (conjugate_gradient.c).
 ProjectionReport conjugate_gradient(Network *network, uint32_t group, Pool *pool, double square, double enough);
-
-#endif

@@ -1,6 +1,5 @@
 // Families: sets of items (strands, cells) of which no two share a particle.
-#ifndef SHELL_FAMILY_H
-#define SHELL_FAMILY_H
+#pragma once
 
 #include "common/error.h"
 #include "common/memory.h"
@@ -20,5 +19,3 @@ uint32_t family_colour(Memory *memory, const ItemNodes *items, uint32_t *family)
 /// family_count + 1 entries.
 void family_sort(uint32_t item_count, const uint32_t *family, uint32_t family_count, uint32_t *family_first,
                  uint32_t *sorted);
-
-#endif

@@ -1,6 +1,5 @@
 // A parameter over the particles of a shell: one number for all particles, or an array where it varies.
-#ifndef SHELL_FIELD_H
-#define SHELL_FIELD_H
+#pragma once
 
 #include "common/memory.h"
 
@@ -24,5 +23,3 @@ bool field_create(Memory *memory, Field *field, float value);
 bool field_vary(Memory *memory, Field *field, uint32_t count);
 /// `count` particles are the shell's. A zeroed field is allowed.
 void field_free(Memory *memory, Field *field, uint32_t count);
-
-#endif

@@ -2,8 +2,7 @@
 //
 // Half-edge 4 c + i is side i of cell c, from its corner i to corner i + 1. Its twin is the same edge in the
 // neighbouring cell, with the opposite direction.
-#ifndef SHELL_HALF_EDGE_H
-#define SHELL_HALF_EDGE_H
+#pragma once
 
 #include "common/assertion.h"
 #include "shell/shell.h"
@@ -41,5 +40,3 @@ static inline bool half_edge_is_inside(const HalfEdges *mesh, uint32_t vertex) {
     SINGE_ASSERT(vertex < mesh->shell->vertex_count);
     return mesh->fan_size[vertex] && mesh->twin[mesh->fan_start[vertex]] != SHELL_NONE;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Properties of the particles, from the sheets' parameters.
-#ifndef SHELL_MATTER_H
-#define SHELL_MATTER_H
+#pragma once
 
 #include "shell/shell.h"
 
@@ -19,5 +18,3 @@ void matter_weigh(Shell *shell, const SheetSource *sources);
 /// Gives a vertex without cells the material of another and `area` of its area, with the same share of mass and
 /// capacity.
 void matter_split(Shell *shell, uint32_t from, uint32_t to, float area);
-
-#endif

@@ -1,6 +1,5 @@
 // Rest measures of cells, particles and springs.
-#ifndef SHELL_REST_LENGTHS_H
-#define SHELL_REST_LENGTHS_H
+#pragma once
 
 #include "common/float3.h"
 #include "shell/shell.h"
@@ -29,5 +28,3 @@ float cell_grain(const Shell *shell, uint32_t cell, Float3 along);
 /// Fills the springs' `grain` where a sheet shrinks more in one direction; rest positions and lengths are in place.
 /// False when out of memory.
 bool measure_fibres(Memory *memory, Shell *shell);
-
-#endif

@@ -1,6 +1,5 @@
 // A sheet's checked Def and material.
-#ifndef SHELL_SHEET_H
-#define SHELL_SHEET_H
+#pragma once
 
 #include "shell/shell.h"
 
@@ -13,5 +12,3 @@ SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSou
 
 /// Checks values that material_evaluate wrote, or that were read back.
 SingeResult material_check_values(const SheetSource *source, SingeError *error);
-
-#endif

@@ -3,8 +3,7 @@
 // Particles: vertex v is particle v (corner, blue layer); cell c is particle vertex_count + c (centre, green layer).
 // Only splits of vertices change a built Shell (shell/split.h); tears make them. Everything else that changes is in
 // State.
-#ifndef SHELL_SHELL_H
-#define SHELL_SHELL_H
+#pragma once
 
 #include "common/assertion.h"
 #include "common/error.h"
@@ -372,5 +371,3 @@ static inline float shell_burn_progress(float mass, float mass_min) {
 static inline bool shell_holds_water(const Shell *shell) {
     return shell->matter.moisture.mask || shell->matter.moisture.values[0] > 0;
 }
-
-#endif

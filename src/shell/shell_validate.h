@@ -1,6 +1,5 @@
 // Invariants of a Shell and of a State on it: for assertions, and for tests. Each call checks everything.
-#ifndef SHELL_SHELL_VALIDATE_H
-#define SHELL_SHELL_VALIDATE_H
+#pragma once
 
 #include "shell/shell.h"
 
@@ -17,5 +16,3 @@ bool state_validate(const Shell *shell, const State *state, ShellFault *fault);
 
 /// Asserts both; the assertion prints the fault.
 void shell_assert(const Shell *shell, const State *state);
-
-#endif

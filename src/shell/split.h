@@ -6,8 +6,7 @@
 // blue spring, a spare one after those of the strands. v' has v's rest position, uv and material; area, mass and
 // capacity are divided in the ratio of the corners' areas. The list of ShellSplit records all splits, so that they can
 // be repeated.
-#ifndef SHELL_SPLIT_H
-#define SHELL_SPLIT_H
+#pragma once
 
 #include "shell/shell.h"
 
@@ -51,5 +50,3 @@ SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split);
 
 /// Repeats the splits of another shell of the same sheets. False if they do not fit it.
 bool split_replay(Shell *shell, const ShellSplit *splits, uint32_t count);
-
-#endif

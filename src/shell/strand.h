@@ -1,6 +1,5 @@
 // Strands: chains and rings of springs of one colour.
-#ifndef SHELL_STRAND_H
-#define SHELL_STRAND_H
+#pragma once
 
 #include "shell/shell.h"
 
@@ -25,5 +24,3 @@ SingeResult strand_build(Memory *memory, uint32_t particle_count, const LooseSpr
 
 /// Frees what strand_build allocated.
 void strand_free(Memory *memory, SpringSet *set);
-
-#endif

@@ -23,8 +23,7 @@
 //
 // f is the fuel, w = 1 - f - c/nu the share that has become ash (glow.c). In the paper, without char, the density is
 // linear from 1 to rho_ash in the burn progress 1 - f = w = (1 - m)/(1 - m_min).
-#ifndef SHELL_TARGET_LENGTH_H
-#define SHELL_TARGET_LENGTH_H
+#pragma once
 
 #include <math.h>
 
@@ -81,5 +80,3 @@ static inline float target_length(const SpringSet *springs, uint32_t s, SpringEn
     if (springs->grain) ratio = fibre_ratio(a, b, ratio, springs->grain[s], in_plane);
     return springs->rest[s] * ratio;
 }
-
-#endif

@@ -1,7 +1,6 @@
 // The calls that change a simulation, as src/sim defines them: call_NAME for singe_sim_NAME. Inside the library they are
 // called by these names, so that a recording holds what its user called, and no more.
-#ifndef SIM_CALLS_H
-#define SIM_CALLS_H
+#pragma once
 
 #include "sim/sim_internal.h"
 
@@ -32,5 +31,3 @@
 /// The points that set_collider_vertices and set_pin_positions read; 0 for a handle that they refuse.
 uint32_t call_collider_points(const SingeSim *sim, SingeColliderId id);
 uint32_t call_pin_points(const SingeSim *sim, SingePinId id);
-
-#endif

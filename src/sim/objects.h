@@ -1,6 +1,5 @@
 // Shared by the calls for sources, colliders and pins.
-#ifndef SIM_OBJECTS_H
-#define SIM_OBJECTS_H
+#pragma once
 
 #include "common/store.h"
 #include "sim/calls.h"
@@ -22,5 +21,3 @@ static inline SingeResult object_stale(SingeSim *sim, const char *stage, uint32_
     ((id).generation != 0 && (id).index < (list).count && (list).items[(id).index].generation == (id).generation \
          ? &(list).items[(id).index]                                                                             \
          : NULL)
-
-#endif

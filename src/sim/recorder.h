@@ -4,8 +4,7 @@
 // call's record comes before the call does anything. Behind it come what callback sources returned (RECORD_HEAT) and the
 // state (RECORD_STATE) of each step, then the call's answer (RECORD_RESULT). A recording without RECORD_END was cut
 // short.
-#ifndef SIM_RECORDER_H
-#define SIM_RECORDER_H
+#pragma once
 
 #include "sim/tape.h"
 #include "singe/sim.h"
@@ -59,5 +58,3 @@ void recorder_state(Recorder *recorder, const struct Shell *shell, const struct 
 /// What a callback source has left in the arrays: a SingeFluxFn whose context is the recorder.
 void recorder_hear(void *context, const SingeView *view, float *flux, float *conductance,
                    float *conductance_temperature);
-
-#endif

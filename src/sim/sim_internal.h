@@ -1,6 +1,5 @@
 // A simulation: everything a SingeSim owns. Only src/sim includes this.
-#ifndef SIM_SIM_INTERNAL_H
-#define SIM_SIM_INTERNAL_H
+#pragma once
 
 #include "ablate/ablate.h"
 #include "burn/burn.h"
@@ -153,5 +152,3 @@ static inline uint32_t sim_take_slot(SingeSim *sim, uint32_t *count, uint32_t in
     if (*count == index) ++*count;
     return sim->next_generation++;
 }
-
-#endif

@@ -1,7 +1,6 @@
 // Checks of a simulation that was read back: everything that stages and public functions rely on, whoever wrote the
 // bytes.
-#ifndef SIM_SNAPSHOT_CHECK_H
-#define SIM_SNAPSHOT_CHECK_H
+#pragma once
 
 #include "sim/sim_internal.h"
 
@@ -20,5 +19,3 @@ bool snapshot_pin_fits(const Shell *shell, const Pin *pin);
 /// Whether the State is one that steps can leave, for the torn shell and the present pins. Target lengths and the slots
 /// of lanes without a strand follow from other data: they are set to that.
 bool snapshot_state_fits(SingeSim *sim);
-
-#endif

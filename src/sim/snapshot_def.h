@@ -1,6 +1,5 @@
 // Defs in a snapshot: each field that matters, without padding, pointers and hooks.
-#ifndef SIM_SNAPSHOT_DEF_H
-#define SIM_SNAPSHOT_DEF_H
+#pragma once
 
 #include "common/stream.h"
 #include "sim/sim_internal.h"
@@ -16,5 +15,3 @@ void snapshot_source_def(Stream *stream, SingeSourceDef *def);
 
 /// Without path.
 void snapshot_collider_def(Stream *stream, SingeColliderDef *def);
-
-#endif

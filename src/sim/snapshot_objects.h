@@ -1,6 +1,5 @@
 // Sheets and objects in a snapshot. Each function returns false when out of memory, or where the stream has failed.
-#ifndef SIM_SNAPSHOT_OBJECTS_H
-#define SIM_SNAPSHOT_OBJECTS_H
+#pragma once
 
 #include "common/stream.h"
 #include "sim/sim_internal.h"
@@ -15,5 +14,3 @@ bool snapshot_sheets(Stream *stream, SingeSim *sim);
 
 /// Sources, colliders and pins, with their generations; the shell has been built.
 bool snapshot_objects(Stream *stream, SingeSim *sim);
-
-#endif

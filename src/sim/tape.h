@@ -1,7 +1,6 @@
 // The bytes of a recording, written and read by the same code. Numbers are little-endian on every machine, and nothing
 // depends on the size of a pointer.
-#ifndef SIM_TAPE_H
-#define SIM_TAPE_H
+#pragma once
 
 #include "common/def_table.h"
 #include "common/memory.h"
@@ -68,5 +67,3 @@ void tape_material_def(Tape *tape, const SingeMaterialDef *given, SingeMaterialD
 
 /// An array of keys, or NULL.
 void tape_path(Tape *tape, uint32_t *count, const SingePoseKey **path);
-
-#endif

@@ -3,8 +3,7 @@
 // This is the one stage that changes the Shell, by the splits of shell/split.h, whose list is in the TearState. A split
 // creates a particle, so it copies the old particle's values in every part of the State. The stage runs after
 // everything in a step that can fail, so a failed step has torn nothing.
-#ifndef TEAR_TEAR_H
-#define TEAR_TEAR_H
+#pragma once
 
 #include "common/pool.h"
 #include "shell/shell.h"
@@ -24,5 +23,3 @@ void tear_stretched(TearPlan *plan, uint32_t sheet, float stretch);
 /// *short_of_spares: a tear found no spare vertex.
 uint32_t tear_step(TearPlan *plan, Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT], Pool *pool,
                    float h, bool *short_of_spares);
-
-#endif

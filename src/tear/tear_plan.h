@@ -1,6 +1,5 @@
 // Shared declarations of the stage's files.
-#ifndef TEAR_TEAR_PLAN_H
-#define TEAR_TEAR_PLAN_H
+#pragma once
 
 #include "common/float3.h"
 #include "shell/split.h"
@@ -74,5 +73,3 @@ Float3 tear_normal(const Shell *shell, const Fan *fan);
 
 /// Splits a vertex and gives the new one its state (split_state.c).
 void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *split, SplitResult *result);
-
-#endif

@@ -1,6 +1,5 @@
 // Air that sources move: jets, vortices, attraction and turbulence, on top of the wind.
-#ifndef WORLD_AIR_H
-#define WORLD_AIR_H
+#pragma once
 
 #include "world/source.h"
 
@@ -15,5 +14,3 @@ Float3 source_air(const Source *source, Float3 position, double time);
 
 /// The sum of all; sources may be NULL.
 Float3 air_velocity(const SourceList *sources, Float3 position, double time);
-
-#endif

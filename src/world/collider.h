@@ -1,6 +1,5 @@
 // Rigid solids: their signed distance, for contact in the dynamics, for contact heat and for the gas.
-#ifndef WORLD_COLLIDER_H
-#define WORLD_COLLIDER_H
+#pragma once
 
 #include "world/deform.h"
 #include "world/height_solid.h"
@@ -35,5 +34,3 @@ void collider_at(const Collider *collider, double time);
 
 /// The bounding box of the collider during a substep, in its own frame; infinite where the collider is.
 void collider_bounds(const Collider *collider, Float3 *low, Float3 *high);
-
-#endif

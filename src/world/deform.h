@@ -5,8 +5,7 @@
 //
 //   x' = x + sum_k w_k (v_k' - v_k),   w the weights of its foot in the triangle before, v and v' that triangle's
 //   vertices
-#ifndef WORLD_DEFORM_H
-#define WORLD_DEFORM_H
+#pragma once
 
 #include "world/mesh_solid.h"
 #include "world/motion.h"
@@ -44,5 +43,3 @@ Float3 deform_drift(const Deform *deform, Float3 p);
 
 /// The bounding box of the mesh during the substep.
 void deform_bounds(const Deform *deform, Float3 *low, Float3 *high);
-
-#endif

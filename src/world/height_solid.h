@@ -1,6 +1,5 @@
 // A solid below a height field.
-#ifndef WORLD_HEIGHT_SOLID_H
-#define WORLD_HEIGHT_SOLID_H
+#pragma once
 
 #include "common/error.h"
 #include "common/memory.h"
@@ -23,5 +22,3 @@ void height_solid_free(Memory *memory, HeightSolid *solid);
 
 /// See collider_distance.
 float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Float3 *normal);
-
-#endif

@@ -1,6 +1,5 @@
 // A solid inside a closed triangle mesh.
-#ifndef WORLD_MESH_SOLID_H
-#define WORLD_MESH_SOLID_H
+#pragma once
 
 #include "common/error.h"
 #include "common/memory.h"
@@ -72,5 +71,3 @@ void mesh_tree_refit(MeshSolid *solid);
 /// The triangle nearest to p among those nearer than sqrt(*square), which becomes its squared distance; UINT32_MAX:
 /// none.
 uint32_t mesh_tree_nearest(const MeshSolid *solid, Float3 p, float *square);
-
-#endif

@@ -1,6 +1,5 @@
 // Points that move in straight lines from their positions at one time to positions that a caller sets for another.
-#ifndef WORLD_MOTION_H
-#define WORLD_MOTION_H
+#pragma once
 
 #include "common/error.h"
 #include "common/float3.h"
@@ -29,5 +28,3 @@ static inline Float3 motion_point(const Motion *motion, uint32_t i, float share)
 
 /// Fails with the point that is not finite or beyond `max` m.
 SingeResult motion_check(uint32_t count, const float *points, float max, const char *owner, SingeError *error);
-
-#endif

@@ -1,6 +1,5 @@
 // Key-framed motion.
-#ifndef WORLD_PATH_H
-#define WORLD_PATH_H
+#pragma once
 
 #include "common/error.h"
 #include "common/memory.h"
@@ -39,5 +38,3 @@ static inline Float3 pose_apply(const Pose *pose, Float3 local) {
 static inline Float3 pose_unapply(const Pose *pose, Float3 world) {
     return quat_unrotate(pose->rotation, float3_sub(world, pose->position));
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Particles held on a path.
-#ifndef WORLD_PIN_H
-#define WORLD_PIN_H
+#pragma once
 
 #include "shell/shell.h"
 #include "world/motion.h"
@@ -27,5 +26,3 @@ typedef struct PinList {
     uint32_t count, capacity;
     Pin *items;
 } PinList;
-
-#endif

@@ -1,6 +1,5 @@
 // Sheets that keep air from others.
-#ifndef WORLD_SMOTHER_H
-#define WORLD_SMOTHER_H
+#pragma once
 
 #include "common/cube_grid.h"
 #include "common/pool.h"
@@ -24,5 +23,3 @@ bool smother_place(Smother *smother, const Shell *shell, const StateInput *state
 
 /// Whether another sheet keeps air from a particle, after smother_place.
 bool smother_covers(const Smother *smother, const Shell *shell, const StateInput *state, uint32_t particle);
-
-#endif

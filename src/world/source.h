@@ -1,6 +1,5 @@
 // Sources of heat: their slots. src/heat/source.c makes them and heats sheets; src/gas burns their flames.
-#ifndef WORLD_SOURCE_H
-#define WORLD_SOURCE_H
+#pragma once
 
 #include <math.h>
 
@@ -49,5 +48,3 @@ static inline double source_arrival(const Source *source, uint32_t particle) {
     const float map = source->texture[particle];
     return map == SOURCE_NEVER ? (double)INFINITY : from + (to - from) * (double)map;
 }
-
-#endif

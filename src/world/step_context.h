@@ -1,6 +1,5 @@
 // Input of every stage of a step.
-#ifndef WORLD_STEP_CONTEXT_H
-#define WORLD_STEP_CONTEXT_H
+#pragma once
 
 #include "common/pool.h"
 #include "singe/sim.h"
@@ -27,5 +26,3 @@ typedef struct StepContext {
     float pace;                ///< s of fire over s of the scene
     float ambient_temperature; ///< K
 } StepContext;
-
-#endif

@@ -1,7 +1,6 @@
 // The nearest point of a triangle to a point, and the feature it lies on (Ericson, Real-Time Collision Detection,
 // 5.1.5), in double precision: rounding must not change the side of a point near a surface.
-#ifndef WORLD_TRIANGLE_H
-#define WORLD_TRIANGLE_H
+#pragma once
 
 #include "common/float3.h"
 
@@ -58,5 +57,3 @@ static inline TriangleClosest triangle_closest(Float3 p, Float3 a, Float3 b, Flo
     const double sum = 1 / (va + vb + vc);
     return triangle_closest_at(pa, ab, ac, vb * sum, vc * sum, TRIANGLE_FACE);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // A flat grid sheet with its shell, state and events, for the tests of burn and ablate.
-#ifndef TESTS_ABLATE_BURNING_SHEET_H
-#define TESTS_ABLATE_BURNING_SHEET_H
+#pragma once
 
 #include "support/test.h"
 
@@ -146,5 +145,3 @@ static inline double mass_left(const BurningSheet *b) {
             mass += (double)b->state.burn.mass[i] * (double)b->shell.matter.mass[i];
     return mass;
 }
-
-#endif

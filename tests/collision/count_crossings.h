@@ -1,12 +1,9 @@
 // A count of crossings that shares nothing with the library: every pair of a surface's triangles whose boxes meet,
 // edges against triangles, in double precision.
-#ifndef TESTS_COLLISION_COUNT_CROSSINGS_H
-#define TESTS_COLLISION_COUNT_CROSSINGS_H
+#pragma once
 
 #include "singe/sim.h"
 
 /// Pairs of triangles without a common vertex that pass through each other; and with one, those whose opposite edge
 /// passes through the other triangle.
 long crossings_count(const SingeSurface *surface);
-
-#endif

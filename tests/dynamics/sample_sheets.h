@@ -1,6 +1,5 @@
 // Small sheets for the tests of the dynamics, built below the public API so that single stages can run.
-#ifndef TESTS_DYNAMICS_SAMPLE_SHEETS_H
-#define TESTS_DYNAMICS_SAMPLE_SHEETS_H
+#pragma once
 
 #include "dynamics/dynamics.h"
 
@@ -50,5 +49,3 @@ double bench_height(const Bench *bench, uint32_t cell);
 
 /// Weight of a spring in the strands' layout.
 float bench_weight(const Bench *bench, SingeColour colour, uint32_t spring);
-
-#endif

@@ -1,7 +1,6 @@
 // OpenUSD's crate files, read back without OpenUSD and without the writer's code: what tests hold usd_crate.c against.
 // Everything is asserted: lengths, ranges, and that every section is used up.
-#ifndef TESTS_FORMATS_CRATE_READER_H
-#define TESTS_FORMATS_CRATE_READER_H
+#pragma once
 
 #include "format_test.h"
 
@@ -209,5 +208,3 @@ static inline uint32_t *crate_samples(const CrateFile *file, const char *path, i
     free(numbers);
     return values;
 }
-
-#endif

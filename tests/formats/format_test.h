@@ -1,6 +1,5 @@
 // Helpers for the tests of formats: a temporary folder, and checks of messages.
-#ifndef TESTS_FORMATS_FORMAT_TEST_H
-#define TESTS_FORMATS_FORMAT_TEST_H
+#pragma once
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -62,5 +61,3 @@ static inline void assert_mesh_refused(const char *name, const void *data, size_
     assert_null(mesh.corners);
     assert_null(mesh.attributes);
 }
-
-#endif

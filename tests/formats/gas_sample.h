@@ -1,6 +1,5 @@
 // A gas made by formula: a hot column that leans, thicker than a block of cells, in a box of odd sizes.
-#ifndef TESTS_FORMATS_GAS_SAMPLE_H
-#define TESTS_FORMATS_GAS_SAMPLE_H
+#pragma once
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,5 +41,3 @@ static inline bool gas_sample_make(GasSample *s, uint32_t nx, uint32_t ny, uint3
 static inline void gas_sample_free(GasSample *s) {
     free(s->temperature), free(s->smoke), free(s->flame), free(s->velocity);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Damage to bytes of which most are good, and memory that has an end.
-#ifndef TESTS_FUZZ_DAMAGE_H
-#define TESTS_FUZZ_DAMAGE_H
+#pragma once
 
 #include <math.h>
 #include <string.h>
@@ -49,5 +48,3 @@ static inline void put_double(Input *input, uint8_t *at) {
     double number = specials[input_pick(input, 8)];
     memcpy(at, &number, sizeof number);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Properties of every mesh that a reader accepts.
-#ifndef TESTS_FUZZ_MESH_H
-#define TESTS_FUZZ_MESH_H
+#pragma once
 
 #include <math.h>
 
@@ -39,5 +38,3 @@ static inline void demand_quads(const Polygons *polygons) {
     }
     mesh_free(&mesh);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Properties of every scene that is read, whatever its bytes.
-#ifndef TESTS_FUZZ_SCENE_H
-#define TESTS_FUZZ_SCENE_H
+#pragma once
 
 #include <stdint.h>
 #include <stdio.h>
@@ -37,5 +36,3 @@ static inline void expect_back(const Scene *scene, SceneSyntax syntax) {
     scene_free(again);
     scene_messages_free(&messages);
 }
-
-#endif

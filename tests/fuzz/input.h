@@ -1,6 +1,5 @@
 // A fuzzer's bytes, taken one by one as choices. What is missing at the end reads as zero.
-#ifndef TESTS_FUZZ_INPUT_H
-#define TESTS_FUZZ_INPUT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -34,5 +33,3 @@ static inline float input_share(Input *input) { return (float)((int)input_byte(i
 static inline void demand(bool holds) {
     if (!holds) abort();
 }
-
-#endif

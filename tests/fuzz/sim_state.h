@@ -1,6 +1,5 @@
 // The visible state of a simulation, for fuzz targets: it must be finite, and two simulations must agree.
-#ifndef TESTS_FUZZ_SIM_STATE_H
-#define TESTS_FUZZ_SIM_STATE_H
+#pragma once
 
 #include <math.h>
 
@@ -57,5 +56,3 @@ static inline uint64_t digest_view(const SingeSim *sim) {
     }
     return digest;
 }
-
-#endif

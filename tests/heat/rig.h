@@ -1,6 +1,5 @@
 // A sheet of nx by ny cells with everything the heat stage needs, for its tests.
-#ifndef TESTS_HEAT_RIG_H
-#define TESTS_HEAT_RIG_H
+#pragma once
 
 #include "support/test.h"
 
@@ -70,5 +69,3 @@ float rig_random(uint32_t a, uint32_t b);
         if (!(fabs(value_ - expected_) <= tolerance_))                                                \
             fail_msg("%s is %.9g, expected %.9g within %.3g", #value, value_, expected_, tolerance_); \
     } while (0)
-
-#endif

@@ -1,6 +1,5 @@
 // OBJ texts of meshes, what mesh_make makes of them, and looks at that.
-#ifndef TESTS_MESH_SAMPLE_MESHES_H
-#define TESTS_MESH_SAMPLE_MESHES_H
+#pragma once
 
 #include <math.h>
 #include <stdio.h>
@@ -91,5 +90,3 @@ static inline void assert_squares(const Mesh *mesh, float side) {
             assert_float_equal(ax * by - ay * bx, side * side, 1e-7f);
         }
 }
-
-#endif

@@ -1,6 +1,5 @@
 // The light of the preview's tests: a low sun, a bright sky and a table, so that everything in a picture shows.
-#ifndef TESTS_PREVIEW_DAY_H
-#define TESTS_PREVIEW_DAY_H
+#pragma once
 
 #include "preview/preview.h"
 
@@ -21,5 +20,3 @@ static inline PreviewDef by_day(void) {
 
     return def;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Shared by the tests of the preview: a small picture from above, a quad of paper, and a ball of gas.
-#ifndef TESTS_PREVIEW_FIXTURE_H
-#define TESTS_PREVIEW_FIXTURE_H
+#pragma once
 
 #include <stdlib.h>
 #include <string.h>
@@ -99,5 +98,3 @@ static inline void ball_make(Ball *b, float x, float y, float z, float radius, f
         b->velocity[i][2] = 1;
     }
 }
-
-#endif

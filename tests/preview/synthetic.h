@@ -1,6 +1,5 @@
 // Burning sheets made by formula, so that pictures can be looked at and tested without the simulator.
-#ifndef TESTS_PREVIEW_SYNTHETIC_H
-#define TESTS_PREVIEW_SYNTHETIC_H
+#pragma once
 
 #include "singe/sim.h"
 
@@ -15,5 +14,3 @@ typedef enum SyntheticKind {
 /// `radius` (m) is the hole's. Arrays come from malloc; free with synthetic_free. False when out of memory.
 bool synthetic_make(SyntheticKind kind, int cells_x, float radius, SingeSurface *surface);
 void synthetic_free(SingeSurface *surface);
-
-#endif

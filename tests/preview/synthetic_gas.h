@@ -1,7 +1,6 @@
 // The gas about a burning sheet by formula, in cells as coarse as a simulation's, so that flames can be looked at and
 // tested without one.
-#ifndef TESTS_PREVIEW_SYNTHETIC_GAS_H
-#define TESTS_PREVIEW_SYNTHETIC_GAS_H
+#pragma once
 
 #include "singe/sim.h"
 
@@ -15,5 +14,3 @@ typedef struct SyntheticGas {
 /// it in each layer. Arrays come from malloc; free with synthetic_gas_free. False when out of memory.
 bool synthetic_gas_make(const SingeSurface *surface, float cell, float time, SyntheticGas *gas);
 void synthetic_gas_free(SyntheticGas *gas);
-
-#endif

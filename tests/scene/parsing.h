@@ -1,6 +1,5 @@
 // Helpers for tests that parse scenes from text.
-#ifndef TESTS_SCENE_PARSING_H
-#define TESTS_SCENE_PARSING_H
+#pragma once
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,5 +36,3 @@ static inline char *dump_text(const Scene *scene, SceneSyntax syntax) {
     assert_non_null(text);
     return text;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Small meshes for the tests of the shell, and what every shell must satisfy.
-#ifndef TESTS_SHELL_SAMPLE_SHELLS_H
-#define TESTS_SHELL_SAMPLE_SHELLS_H
+#pragma once
 
 #include "shell/shell.h"
 
@@ -42,5 +41,3 @@ Shell mesh_shell(Memory *memory, const QuadMesh *mesh);
 /// Checks strands, families, cell springs and cell families from their definitions.
 void check_shell(const Shell *shell);
 uint32_t count_rings(const SpringSet *set);
-
-#endif

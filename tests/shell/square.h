@@ -1,6 +1,5 @@
 // A sheet for the tests of materials, and what the library makes of its parameters.
-#ifndef TESTS_SHELL_SQUARE_H
-#define TESTS_SHELL_SQUARE_H
+#pragma once
 
 #include <math.h>
 #include <stdlib.h>
@@ -50,5 +49,3 @@ static inline void refuse(const SingeSheetDef *def, int64_t element, const char 
     if (!strstr(error.message, says)) fail_msg("%s", error.message);
     assert_int_equal(memory.held, 0);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // A recording in memory, and its records.
-#ifndef TESTS_SIM_RECORDING_H
-#define TESTS_SIM_RECORDING_H
+#pragma once
 
 #include <stdlib.h>
 #include <string.h>
@@ -48,5 +47,3 @@ static inline size_t tape_find(const Tape *tape, int kind, int n) {
     }
     return tape->size;
 }
-
-#endif

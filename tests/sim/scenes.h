@@ -1,6 +1,5 @@
 // Scenes that several tests of the step use.
-#ifndef TESTS_SIM_SCENES_H
-#define TESTS_SIM_SCENES_H
+#pragma once
 
 #include "support/support.h"
 
@@ -34,5 +33,3 @@ void scene_every_call(const Scene *scene);
 /// The callback source's function: a flux that grows with position and time; *context is a float, W/m2.
 void scene_flux(void *context, const struct SingeView *view, float *flux, float *conductance,
                 float *conductance_temperature);
-
-#endif

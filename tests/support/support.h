@@ -1,6 +1,5 @@
 // Helpers of the tests: meshes, simulations made through the public header, and a counting allocator.
-#ifndef TEST_SUPPORT_H
-#define TEST_SUPPORT_H
+#pragma once
 
 #include "singe/singe.h"
 #include "support/test.h"
@@ -109,5 +108,3 @@ void test_allocator_check(const TestAllocator *allocator);
             break;                                                  \
         }                                                           \
     }
-
-#endif

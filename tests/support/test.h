@@ -1,6 +1,5 @@
 // A test is a program of cases. Each case adds itself to its program, and tests/support/test.c runs them.
-#ifndef TEST_H
-#define TEST_H
+#pragma once
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -32,5 +31,3 @@ void test_float_equal(float value, float expected, float tolerance, const char *
 #undef assert_float_equal
 #define assert_float_equal(value, expected, tolerance) \
     test_float_equal((float)(value), (float)(expected), (float)(tolerance), __FILE__, __LINE__)
-
-#endif

@@ -1,6 +1,5 @@
 // A burning sheet that is drawn, and fields for it that drawings must reproduce.
-#ifndef TESTS_SURFACE_DRAWING_H
-#define TESTS_SURFACE_DRAWING_H
+#pragma once
 
 #include "ablate/burning_sheet.h"
 #include "shell/split.h"
@@ -146,5 +145,3 @@ static inline void burn_rings(Drawing *d, float time) {
         burn->mass[i] = fminf(1, fmaxf(0.15f, mass));
     }
 }
-
-#endif

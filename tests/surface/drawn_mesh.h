@@ -1,6 +1,5 @@
 // Checks of a drawn mesh that lies in the plane z = 0.
-#ifndef TESTS_SURFACE_DRAWN_MESH_H
-#define TESTS_SURFACE_DRAWN_MESH_H
+#pragma once
 
 #include "ablate/burning_sheet.h"
 
@@ -44,5 +43,3 @@ static inline Edge *drawn_edges(const SingeSurface *s) {
     qsort(edges, count, sizeof *edges, compare_edges);
     return edges;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Closed triangle meshes for the tests of colliders.
-#ifndef TESTS_WORLD_SOLIDS_H
-#define TESTS_WORLD_SOLIDS_H
+#pragma once
 
 #include "singe/types.h"
 
@@ -24,5 +23,3 @@ SingeColliderDef triangles_def(const Triangles *mesh);
 
 /// Signed distance by looking at all triangles: the sign by the solid angle under which they are seen.
 double triangles_distance(const Triangles *mesh, const float p[3]);
-
-#endif
