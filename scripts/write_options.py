@@ -1,15 +1,11 @@
 #!/usr/bin/env python3
 """Writes bindings/web/src/options.ts, the types of the npm package's options, from the tables of Defs
-(include/singe/*.def): one interface for each Def, with its fields, units, ranges and documentation.
-
-usage: write_options.py [--check]
-
---check: changes nothing, and fails where the file differs.
+(include/singe/*.def): one interface for each Def, with its fields, units, ranges and documentation. The build of that
+package runs it.
 """
 
 import pathlib
 import re
-import sys
 import textwrap
 
 import write_types
@@ -81,10 +77,7 @@ def main():
     units = {"DIM_" + row[0]: row[2] for _, row in tables["dimensions"]}
     words = words_of(tables)
     text = "\n".join([HEAD, *(options(part, tables[part], units, words) + "\n" for part in DEFS)])
-    if "--check" not in sys.argv[1:]:
-        FILE.write_text(text, encoding="utf-8")
-    elif FILE.read_text(encoding="utf-8") != text:
-        sys.exit("bindings/web/src/options.ts does not follow from the tables: run scripts/write_options.py")
+    FILE.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
