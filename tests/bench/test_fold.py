@@ -24,7 +24,3 @@ class Fold(unittest.TestCase):
         for row in rows:
             self.assertLess(abs(row["elastic_deg"]), 1)
             self.assertEqual(row["inverted"], 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -64,7 +64,3 @@ class Front(unittest.TestCase):
                 self.assertEqual(row["finding"], "near level" if row["direction"] == "down" else "climbs")
         for row in self.rows_of("up"):
             self.assertGreater(row["speed_mm_s_is"], 4 * down[row["material"]]["speed_mm_s_is"])
-
-
-if __name__ == "__main__":
-    unittest.main()

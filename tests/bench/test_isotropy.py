@@ -33,7 +33,3 @@ class Isotropy(unittest.TestCase):
     def test_without_a_limit_they_do(self):
         """The bad case on the other side of the bar."""
         self.assertGreater(self.effect("--curvature", "0"), 1.3)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -47,7 +47,3 @@ class Peers(unittest.TestCase):
 
     def test_a_peer_that_fails_is_named(self):
         self.assertEqual(bench_peers.run_peer("Nobody", ["false"], 8, 10, 5), "Nobody: failed: no word")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -43,7 +43,3 @@ class Spread(unittest.TestCase):
         usual = self.speed("up")
         for other in self.speed("up", cell=1), self.speed("up", gas_cell=4), self.speed("up", gas_cell=9):
             self.assertLess(abs(other / usual - 1), 0.25)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -36,7 +36,3 @@ class Swing(unittest.TestCase):
         options = ("--thickness", "1", "--steps", "2", "--substeps", "1")
         self.assertEqual(swing(*options, "--time", "0.8")[0]["bars"], "missed")
         self.assertEqual(swing(*options, "--time", "0.1")[0]["bars"], "-")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -19,7 +19,3 @@ class Tear(unittest.TestCase):
                 self.assertLessEqual(abs(row["off_pct"]), 10)
                 self.assertLessEqual(abs(row["load_n_m"] / LINE_STRENGTH - 1), 0.2)
                 self.assertEqual((row["pieces"], row["aside"]), (2, 0))
-
-
-if __name__ == "__main__":
-    unittest.main()

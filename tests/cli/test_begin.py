@@ -5,7 +5,6 @@ import os
 import pty
 import resource
 import shutil
-import unittest
 
 from support import HAS_EXR, SINGE, Case
 
@@ -230,7 +229,3 @@ class Begin(Case):
                 file.write("half")
         self.run_scene("o", "--resume")
         self.no_temporaries("o")
-
-
-if __name__ == "__main__":
-    unittest.main()

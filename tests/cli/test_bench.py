@@ -5,7 +5,6 @@ import json
 import math
 import subprocess
 import sys
-import unittest
 import xml.dom.minidom
 
 from support import ROOT, SINGE, Case
@@ -175,7 +174,3 @@ class Bench(Case):
     def test_csv_that_cannot_be_written(self):
         _, err = self.singe("bench", "memory", "--springs", "250", "--csv", self.path("no", "x.csv"), expect=1)
         self.assertIn("cannot write", err)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@ import json
 import os
 import re
 import shutil
-import unittest
 
 from support import ROOT, SANITIZED, Case
 
@@ -359,7 +358,3 @@ class Branch(Case):
             self.singe("clean", self.path("whole"), "--keep-every", "4", expect=code)
         self.singe("clean", self.path("whole"), expect=2)
         self.assertEqual(len(self.plys("whole")), FRAMES)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@ import json
 import os
 import re
 import struct
-import unittest
 import xml.etree.ElementTree as xml
 
 from support import HAS_EXR, Case, Ply, write_png
@@ -201,7 +200,3 @@ class Convert(Case):
         times = [float(item.get("timestep")) for item in xml.parse(self.path("o", "tiny.pvd")).iter("DataSet")]
         self.assertEqual(times, [frame / 24 for frame in range(6)])
         self.assertEqual(root.find("PolyData/FieldData/DataArray").text, frame.time)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -366,7 +366,3 @@ class Delivery(Case):
             self.assertIn("is not in frame 1", self.singe("convert", self.path("o"), "--to", "vat", expect=2)[1])
             self.assertFalse(os.listdir(self.path("o", "vat")))
         self.no_temporaries("o")
-
-
-if __name__ == "__main__":
-    unittest.main()

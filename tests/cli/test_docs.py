@@ -6,7 +6,6 @@ import os
 import pathlib
 import re
 import shlex
-import unittest
 
 from support import Case
 
@@ -152,7 +151,3 @@ class Docs(Case):
                     self.assertTrue({f"--{name}", f"-{letter}"} & listed, name)
                     listed -= {f"--{name}", f"-{letter}"}
                 self.assertFalse(listed)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -137,7 +137,3 @@ class Failure(Case):
         self.singe("clean", self.path("o"), "--keep-every", "2", preexec_fn=limited)  # its locks cannot name it
         _, err = self.singe("new", "letter", "-o", self.path("new"), expect=1, preexec_fn=limited)
         self.assertIn("File too large", err)
-
-
-if __name__ == "__main__":
-    unittest.main()

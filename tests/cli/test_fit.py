@@ -182,7 +182,3 @@ class Fit(Case):
         self.assertIn("has no temperatures of probe 'q'", err)
         _, err = self.fit("scene: tiny.yaml\ntarget: {masks: mask##.png}\nevaluations: 1\n" + RANGE, out="g", expect=1)
         self.assertIn("no frame has a mask of this name", err)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 import os
 import shutil
 import subprocess
-import unittest
 
 from support import Case
 
@@ -83,7 +82,3 @@ class Gas(Case):
         left = sorted(os.listdir(self.path("o", "gas")))
         self.assertEqual([n for n in left if not n.startswith("tiny.000") or n.endswith(".bak")],
                          ["other.0001.vdb", "tiny.0002.vdb.bak"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ import re
 import signal
 import socket
 import time
-import unittest
 
 from support import Case
 
@@ -135,7 +134,3 @@ class Lock(Case):
         self.assertEqual(len(os.listdir(self.path("o", "frames"))), 2)
         self.assertIsNone(run.poll())
         self.end(run)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 
 import json
 import os
-import unittest
 
 from support import Case
 
@@ -90,7 +89,3 @@ class Materials(Case):
         self.assertIn("mine.yaml:2:1: error: unknown key in a material; did you mean 'thickness'?", err)
         _, err = self.singe("bench", "front", "--material", "newsprint," * 17, expect=2)
         self.assertIn("at most 16 materials", err)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 import csv
 import math
 import os
-import unittest
 
 from support import SANITIZED, Case, Ply
 
@@ -102,7 +101,3 @@ class Measure(Case):
         with open(path, "r+b") as file:
             file.truncate(os.path.getsize(path) // 2)
         self.assertIn("tiny.0003.ply", self.singe("measure", self.path("o"), expect=2)[1])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@ import os
 import resource
 import subprocess
 import time
-import unittest
 
 from hostile import GOOD, HOSTILE, SQUARE, TWO, gltf, struct
 from support import SINGE, Case, Ply
@@ -191,7 +190,3 @@ class Meshes(Case):
         report, _ = self.numbers("ngons.obj")
         self.assertEqual(report, "49 vertices, 0 triangles, 26 quads, 3 polygons, 1 component")
         self.assertLess(abs(self.area("ngons.obj") / 0.12**2 - 1), 1e-5)
-
-
-if __name__ == "__main__":
-    unittest.main()

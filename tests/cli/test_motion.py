@@ -3,7 +3,6 @@
 import math
 import os
 import struct
-import unittest
 
 from support import Case
 
@@ -176,7 +175,3 @@ class Motion(Case):
         for frame in range(FRAMES):
             write_obj(self.path("body.%04d.obj" % (frame + 1)), box((0, 0.04, 0), 1)[0], faces[:5])
         self.wrong("the mesh is open")
-
-
-if __name__ == "__main__":
-    unittest.main()

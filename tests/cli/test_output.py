@@ -235,7 +235,3 @@ class Output(Case):
         self.assertGreaterEqual(vertices, 169)
         for field in ("temperature", "mass", "time_ignited", "piece"):
             self.assertTrue(any(line.startswith("property") and field in line for line in header), field)
-
-
-if __name__ == "__main__":
-    unittest.main()

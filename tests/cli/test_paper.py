@@ -5,7 +5,6 @@ import json
 import math
 import os
 import re
-import unittest
 
 from support import Case
 from test_docs import ROOT
@@ -127,7 +126,3 @@ class Paper(Case):
                     self.assertIn('"method": "paper"', file.read())
         _, err = self.singe("check", small, "--set", "solver=papers", expect=2)
         self.assertIn("did you mean 'paper'?", err)
-
-
-if __name__ == "__main__":
-    unittest.main()

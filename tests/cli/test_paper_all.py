@@ -48,7 +48,3 @@ class All(Paper):
 
 def load_tests(loader, tests, pattern):
     return unittest.TestSuite([All("test_all")])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -187,7 +187,3 @@ class Render(Case):
                           ("ground.kind=lava", "wood"), ("environment.kind=disco", "studio"),
                           ("environment.picture=none.png", "none.png")):
             self.assertIn(word, self.singe("render", self.path("o"), "--set", "preview." + bad, expect=2)[1])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ import signal
 import subprocess
 import sys
 import time
-import unittest
 
 from support import ROOT, Case
 
@@ -127,7 +126,3 @@ class Replay(Case):
             _, err = self.run_scene("full", "--record", FULL, expect=1)
             self.assertIn("No space left", err)
             self.assertEqual(self.record("full")["result"], "complete")  # the run itself went on
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -7,7 +7,6 @@ import resource
 import shutil
 import signal
 import time
-import unittest
 
 from support import HAS_FFMPEG, SANITIZED, Case, write_png
 
@@ -414,7 +413,3 @@ class Resume(Case):
         shutil.move(self.path("a"), self.path("b"))
         self.run_scene("b", "--resume")
         self.same_as_whole("b")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -139,7 +139,3 @@ class New(Case):
             with open(os.path.join(folder, name + ".yaml"), encoding="utf-8") as file:
                 self.assertEqual(self.singe("materials", name)[0], file.read())
         self.assertIn("did you mean 'cotton'?", self.singe("materials", "coton", expect=2)[1])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@ a failure."""
 import itertools
 import os
 import subprocess
-import unittest
 
 from support import SINGE, Case
 
@@ -72,7 +71,3 @@ class Streams(Case):
             self.assertEqual(self.code("run", self.path("nothing.yaml"), stderr=full), 2)
         self.assertEqual(len(self.plys("o")), 6)
         self.assertEqual(self.code("run", self.path("nothing.yaml"), preexec_fn=closed(2)), 2)
-
-
-if __name__ == "__main__":
-    unittest.main()

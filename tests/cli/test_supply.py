@@ -69,7 +69,3 @@ class Supply(unittest.TestCase):
             for line in text.splitlines():
                 self.assertNotRegex(line, r'"[^"]*(/tmp|/shm|singe-)[^"]*%l?[du]|getpid\(\)\}|\b(tmpnam|tempnam|mktemp)\(',
                                     name)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -517,7 +517,3 @@ class Sweep(Case):
         subprocess.run(["bash", script], env={**os.environ, "SLURM_ARRAY_TASK_ID": "1"}, check=True,
                        capture_output=True, timeout=120)
         self.assertEqual(self.plys("s/rows/0001"), self.plys("whole/rows/0001"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ import os
 import signal
 import struct
 import time
-import unittest
 
 from support import SANITIZED, Case, Ply
 
@@ -171,7 +170,3 @@ class Tables(Case):
                       complaint("probes: [{kind: uv, at: [2, 0.5]}]\n", expect=0))
         self.assertIn("misses the sheet", complaint("probes: [{kind: point, at: [1, 0, 0]}]\n", expect=0))
         self.assertNotIn("probe", complaint("probes: [{kind: point, at: [1 cm, 0, 51 mm]}]\n", expect=0))
-
-
-if __name__ == "__main__":
-    unittest.main()

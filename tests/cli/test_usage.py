@@ -244,7 +244,3 @@ class Usage(Case):
 
     def test_program_is_there(self):
         self.assertTrue(os.access(SINGE, os.X_OK))
-
-
-if __name__ == "__main__":
-    unittest.main()

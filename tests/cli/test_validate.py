@@ -29,7 +29,3 @@ class Validate(Paper):
 
 def load_tests(loader, tests, pattern):
     return unittest.TestSuite([Validate("test_all"), Validate("test_only")])
-
-
-if __name__ == "__main__":
-    unittest.main()

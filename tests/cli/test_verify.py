@@ -7,7 +7,6 @@ import os
 import random
 import signal
 import struct
-import unittest
 from fractions import Fraction
 
 from support import Case, Ply
@@ -533,7 +532,3 @@ gas: no
         self.assertEqual(self.crossings(0.7e-3), 0)
         self.assertEqual(self.crossings(3e-3), 0)
         self.assertGreater(self.crossings(0.7e-3, expect=1, more=", rigid: 10 cm"), 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

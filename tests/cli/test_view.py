@@ -8,7 +8,6 @@ import socket
 import struct
 import subprocess
 import time
-import unittest
 
 from support import SANITIZED, SINGE, Case
 
@@ -253,8 +252,6 @@ class Live(Case):
         self.assertEqual(os.listdir(self.path("tmp")), [])
 
 
-if __name__ == "__main__":
-    if subprocess.run([SINGE, "view", "--help"], capture_output=True).returncode:
-        print("this singe was built without singe view")
-        raise SystemExit(77)
-    unittest.main()
+if subprocess.run([SINGE, "view", "--help"], capture_output=True).returncode:
+    print("this singe was built without singe view")
+    raise SystemExit(77)

@@ -136,7 +136,3 @@ zpty -d z
                            (["tiny.yaml"], "'run tiny.yaml'"), (["convert", "x", "--sinlge"], "'--single'"),
                            (["bench", "frnt"], "'front'"), (["help", "swep"], "'sweep'")):
             self.assertIn("did you mean " + hint, self.singe(*args, expect=2)[1])
-
-
-if __name__ == "__main__":
-    unittest.main()

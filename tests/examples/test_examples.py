@@ -6,7 +6,6 @@ import os
 import random
 import statistics
 import time
-import unittest
 
 from support import Case, Ply
 
@@ -665,7 +664,3 @@ class SameBytes(Example):
             self.run_example("killed", "--resume", "--threads", "4", *self.FRAMES)
             self.assertEqual(self.plys("1"), self.plys("killed"))
             self.assertEqual(self.numbers("1"), self.numbers("killed"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -11,7 +11,6 @@ import math
 import os
 import re
 import sys
-import unittest
 
 from support import SANITIZED, Case
 from test_verify import Surface
@@ -196,7 +195,3 @@ class MeshZoo(Case):
         self.assertEqual(shapes["cone"], (1, 40, 40))
         self.assertEqual(shapes["components"][0], 4)
         self.assertEqual(shapes["moebius"][:2], (0, 80))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -205,7 +205,3 @@ except KeyboardInterrupt:
         text = text.replace("print(singe.check('x')", "try: singe.check('x')\nexcept singe.CommandMissingError as e: "
                             "print('missing', e)\nsys.exit()\n(0")
         self.assertIn("missing", self.python(text))
-
-
-if __name__ == "__main__":
-    unittest.main()

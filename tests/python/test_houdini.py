@@ -152,7 +152,3 @@ class Houdini(Case):
             Node(lambda: Geometry([], [], {})).cook(1)
         with self.assertRaisesRegex(NodeError, "there is no material of this name"):
             Node(paper, material="asbestos").cook(1)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -12,7 +12,6 @@ import subprocess
 import sys
 import threading
 import time
-import unittest
 
 from support import ROOT, Case, burning, singe
 
@@ -720,7 +719,3 @@ except singe.StateError:
             logger.removeHandler(nosy)
             logger.setLevel(level)
         self.assertTrue(found and re.search("within", found[0]))
-
-
-if __name__ == "__main__":
-    unittest.main()
