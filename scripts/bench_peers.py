@@ -22,6 +22,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+from pathlib import Path
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 FRAMES = 16
@@ -59,9 +60,8 @@ def run_peer(name, command, cells, steps, iterations):
         if done.returncode or not os.path.exists(out):
             return f"{name}: failed: {(done.stderr.strip().splitlines() or ['no word'])[-1]}"
         times = [float(line) for line in done.stdout.split()]
-        with open(out, "rb") as file:
-            return (f"{name}, {steps} steps of {iterations} iterations", statistics.median(times),
-                    *measure(cells, file.read()))
+        return (f"{name}, {steps} steps of {iterations} iterations", statistics.median(times),
+                *measure(cells, Path(out).read_bytes()))
 
 
 def run_singe(singe, cells):
@@ -124,11 +124,9 @@ def main():
     print("\n".join(lines + missing))
     if options.table:
         path = os.path.join(ROOT, "docs", "performance.md")
-        with open(path, encoding="utf-8") as file:
-            text = file.read()
+        text = Path(path).read_text(encoding="utf-8")
         before, rest = text.split(BEGIN)
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(before + BEGIN + "\n\n" + "\n".join(lines) + "\n\n" + END + rest.split(END)[1])
+        Path(path).write_text(before + BEGIN + "\n\n" + "\n".join(lines) + "\n\n" + END + rest.split(END)[1], encoding="utf-8")
     return 0
 
 

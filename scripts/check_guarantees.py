@@ -14,6 +14,7 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 
 def ctest_names(build):
@@ -23,8 +24,7 @@ def ctest_names(build):
 
 
 def make_targets(root):
-    with open(os.path.join(root, "Makefile")) as file:
-        return {"make " + name for name in re.findall(r"^([a-z-]+):", file.read(), re.M)}
+    return {"make " + name for name in re.findall(r"^([a-z-]+):", Path(root, "Makefile").read_text(), re.M)}
 
 
 def cases(root):
@@ -39,8 +39,7 @@ def cases(root):
                 pattern = r"\bdef (?:test_)?(\w+)\("
             else:
                 continue
-            with open(path) as file:
-                text = file.read()
+            text = Path(path).read_text()
             names = re.findall(pattern, text, re.M)
             found.update(n.removeprefix("test_") for n in names)
     return found

@@ -17,6 +17,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from pathlib import Path
 
 STAGES = ["heat", "burn", "ablate", "dynamics"]
 BOUND = 0.10
@@ -71,8 +72,7 @@ def measure(program, *arguments):
 
 
 def read_baseline():
-    with open(BASELINE, encoding="utf-8") as file:
-        lines = file.read().split("\n")
+    lines = Path(BASELINE).read_text(encoding="utf-8").split("\n")
     rows = [line.split(",") for line in lines if line and not line.startswith("#")][1:]
     return lines[0].removeprefix("# "), {stage: int(count) for stage, count in rows}
 

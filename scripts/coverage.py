@@ -15,6 +15,7 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 FOLDERS = ("src", "program/formats", "program/scene")
 LINES, BRANCHES = 95.0, 85.0  # bars, in %
@@ -41,8 +42,7 @@ class File:
 
     def __init__(self, root, name):
         self.name, self.lines, self.branches = name, {}, {}
-        with open(os.path.join(root, name), encoding="utf-8") as file:
-            self.text = file.read().split("\n")
+        self.text = Path(root, name).read_text(encoding="utf-8").split("\n")
 
     def source(self, number):
         return self.text[number - 1].strip() if number <= len(self.text) else "(changed since the build)"

@@ -12,6 +12,7 @@ import argparse
 import math
 import os
 import random
+from pathlib import Path
 
 from mesh_files import Mesh, mesh_bytes
 
@@ -449,8 +450,7 @@ def file_name(name):
 def write(name, folder):
     ending, _, make, _ = MESHES[name]
     path = os.path.join(folder, file_name(name))
-    with open(path, "wb") as file:
-        file.write(mesh_bytes(make(), ending))
+    Path(path).write_bytes(mesh_bytes(make(), ending))
     return path
 
 

@@ -13,6 +13,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from pathlib import Path
 
 
 def exported(archive):
@@ -60,8 +61,7 @@ def measured(cc, include):
     lines.append("return 0; }")
     with tempfile.TemporaryDirectory() as folder:
         source, program = os.path.join(folder, "abi.c"), os.path.join(folder, "abi")
-        with open(source, "w", encoding="utf-8") as file:
-            file.write("\n".join(lines))
+        Path(source).write_text("\n".join(lines), encoding="utf-8")
         subprocess.run([cc, "-I", include, source, "-o", program], check=True)
         return subprocess.run([program], capture_output=True, text=True, check=True).stdout.splitlines()
 
@@ -83,11 +83,9 @@ def main():
         found += [f"{name} {symbol}" for symbol in exported(archive)]
     found += measured(options.cc, options.include)
     if options.update:
-        with open(options.file, "w", encoding="utf-8") as file:
-            file.write("\n".join(found) + "\n")
+        Path(options.file).write_text("\n".join(found) + "\n", encoding="utf-8")
         return
-    with open(options.file, encoding="utf-8") as file:
-        kept = file.read().splitlines()
+    kept = Path(options.file).read_text(encoding="utf-8").splitlines()
     changes = [line for line in difflib.unified_diff(kept, found, options.file, "now", lineterm="", n=0)]
     if changes:
         print("\n".join(changes))

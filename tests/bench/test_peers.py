@@ -5,6 +5,7 @@ import stat
 import sys
 import tempfile
 import unittest
+from pathlib import Path
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "scripts"))
 import bench_peers  # noqa: E402
@@ -27,8 +28,7 @@ class Peers(unittest.TestCase):
     def row(self, above=0.0, short=0):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "peer")
-            with open(path, "w", encoding="utf-8") as file:
-                file.write(PEER.format(python=sys.executable, above=above, short=short))
+            Path(path).write_text(PEER.format(python=sys.executable, above=above, short=short), encoding="utf-8")
             os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
             return bench_peers.run_peer("Known", [path], 8, 10, 5)
 

@@ -2,6 +2,7 @@
 
 import struct
 import zlib
+from pathlib import Path
 
 
 def unpack(data, size):
@@ -19,8 +20,7 @@ def unpack(data, size):
 
 def header(path):
     """(the file's bytes, where its header ends, {attribute: bytes})."""
-    with open(path, "rb") as file:
-        data = file.read()
+    data = Path(path).read_bytes()
     assert data[:4] == b"\x76\x2f\x31\x01", path
     at, attributes = 8, {}
     while data[at]:

@@ -11,6 +11,7 @@ import subprocess
 import tempfile
 import unittest
 import zlib
+from pathlib import Path
 
 SINGE = os.environ["SINGE"]
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
@@ -51,8 +52,7 @@ class Ply:
     """A frame of a cache: its time, columns of the vertices' values by name, and triangles."""
 
     def __init__(self, path):
-        with open(path, "rb") as file:
-            header, body = file.read().split(b"end_header\n", 1)
+        header, body = Path(path).read_bytes().split(b"end_header\n", 1)
         self.header = header.decode()
         self.time = re.search(r"^comment singe \S+ time (\S+)$", self.header, re.MULTILINE).group(1)
         count, faces = (int(n) for n in re.findall(r"^element \w+ (\d+)$", self.header, re.MULTILINE))
@@ -91,8 +91,7 @@ class Case(unittest.TestCase):
 
     def write_scene(self, name="tiny.yaml", frames=6, steps=2, cells=12, gas="{cell_size: 8 mm}", extra=""):
         path = self.path(name)
-        with open(path, "w") as file:
-            file.write(SCENE.format(frames=frames, steps=steps, cells=cells, gas=gas) + extra)
+        Path(path).write_text(SCENE.format(frames=frames, steps=steps, cells=cells, gas=gas) + extra)
         return path
 
     def singe(self, *args, expect=0, **options):
@@ -108,8 +107,7 @@ class Case(unittest.TestCase):
     def fake_ffmpeg(self, script):
         """An environment whose ffmpeg is a script of ours."""
         os.makedirs(self.path("bin"), exist_ok=True)
-        with open(self.path("bin", "ffmpeg"), "w") as file:
-            file.write("#!/bin/sh\n" + script + "\n")
+        Path(self.path("bin", "ffmpeg")).write_text("#!/bin/sh\n" + script + "\n")
         os.chmod(self.path("bin", "ffmpeg"), 0o755)
         return {**os.environ, "PATH": self.path("bin") + os.pathsep + os.environ["PATH"]}
 
@@ -122,21 +120,18 @@ class Case(unittest.TestCase):
         folder = self.path(out, "ply")
         digests = {}
         for name in sorted(os.listdir(folder)):
-            with open(os.path.join(folder, name), "rb") as file:
-                digests[name] = hashlib.sha256(file.read()).hexdigest()
+            digests[name] = hashlib.sha256(Path(folder, name).read_bytes()).hexdigest()
         return digests
 
     def stats(self, out):
-        with open(self.path(out, "stats.csv"), newline="") as file:
-            return list(csv.DictReader(file))
+        return list(csv.DictReader(Path(self.path(out, "stats.csv")).read_text().splitlines()))
 
     def numbers(self, out):
         """The stats without what a clock measured."""
         return [{k: v for k, v in row.items() if not k.startswith("ms_")} for row in self.stats(out)]
 
     def record(self, out):
-        with open(self.path(out, "run.json")) as file:
-            return json.load(file)
+        return json.loads(Path(self.path(out, "run.json")).read_text())
 
     def no_temporaries(self, out):
         left = [n for _, _, names in os.walk(self.path(out)) for n in names if n.endswith((".tmp", ".part"))]

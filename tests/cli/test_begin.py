@@ -5,6 +5,7 @@ import os
 import pty
 import resource
 import shutil
+from pathlib import Path
 
 from support import HAS_EXR, SINGE, Case
 
@@ -19,8 +20,7 @@ class Begin(Case):
                 if os.path.islink(path):
                     found[path] = os.readlink(path)
                 elif os.path.isfile(path):
-                    with open(path, "rb") as file:
-                        found[path] = hashlib.sha256(file.read()).hexdigest()
+                    found[path] = hashlib.sha256(Path(path).read_bytes()).hexdigest()
         return found
 
     def limited(self, *args, kind=resource.RLIMIT_FSIZE, most, expect=1):
@@ -121,8 +121,7 @@ class Begin(Case):
             with self.subTest(extra):
                 scene, key = self.path(f"s{number}.yaml"), extra.split(":")[0]
                 lines = [line for line in lines_of_all if not line.startswith(key)] + [extra]
-                with open(scene, "w") as file:
-                    file.write("\n".join(lines) + "\n")
+                Path(scene).write_text("\n".join(lines) + "\n")
                 code = self.code_of("check", scene)
                 if code:
                     _, err = self.singe("check", scene, expect=2)
@@ -131,8 +130,7 @@ class Begin(Case):
 
     def test_formats_that_no_sheet_can_have_are_refused_by_check(self):
         """Textures need uv, which a mesh without them does not have."""
-        with open(self.path("bare.obj"), "w") as file:
-            file.write("v 0 0 0\nv .1 0 0\nv .1 .1 0\nv 0 .1 0\nf 1 2 3 4\n")
+        Path(self.path("bare.obj")).write_text("v 0 0 0\nv .1 0 0\nv .1 .1 0\nv 0 .1 0\nf 1 2 3 4\n")
         for number, (sheets, code) in enumerate((
             ("[{mesh: bare.obj}]", 2),
             ("[{mesh: bare.obj}, {grid: {size: [0.1, 0.1], cells: [4, 4]}, translate: [0, 0, 0.1]}]", 0),
@@ -153,9 +151,8 @@ class Begin(Case):
         for detail, code in (1, 0), (4, 2):
             with self.subTest(detail):
                 scene = self.path(f"g{detail}.yaml")
-                with open(scene, "w") as file:
-                    file.write("frames: 1\nsteps: 1\nsheets: [{grid: {size: [0.4, 0.4], cells: [6, 6]}}]\n"
-                               f"preview: {{size: [32, 32], samples: 1}}\ngas: {{cell_size: 3 mm, detail: {detail}}}\n")
+                Path(scene).write_text("frames: 1\nsteps: 1\nsheets: [{grid: {size: [0.4, 0.4], cells: [6, 6]}}]\n"
+                                       f"preview: {{size: [32, 32], samples: 1}}\ngas: {{cell_size: 3 mm, detail: {detail}}}\n")
                 for command in (["check"], ["run", "--no-preview", "-o", self.path(f"g{detail}")]):
                     _, err = self.singe(*command, scene, expect=code)
                     self.assertEqual("g4.yaml:5:32: error: the gas with detail 4 has" in err, code == 2)
@@ -164,9 +161,8 @@ class Begin(Case):
     def test_checking_a_scene_with_a_huge_picture_takes_little_memory(self):
         """The whole picture would take 2.7 GB; a smaller one is timed."""
         scene = self.path("huge.yaml")
-        with open(scene, "w") as file:
-            file.write("frames: 1\nsteps: 1\nsheets: [{grid: {size: [0.4, 0.4], cells: [6, 6]}}]\n"
-                       "preview: {size: [4096, 4096], samples: 1}\n")
+        Path(scene).write_text("frames: 1\nsteps: 1\nsheets: [{grid: {size: [0.4, 0.4], cells: [6, 6]}}]\n"
+                               "preview: {size: [4096, 4096], samples: 1}\n")
         run = self.start("check", scene)
         _, status, usage = os.wait4(run.pid, 0)
         run.returncode = os.waitstatus_to_exitcode(status)
@@ -182,8 +178,7 @@ class Begin(Case):
         """Their targets belong to somebody else. The folder itself may be a link."""
         os.makedirs(self.path("theirs", "frames"))
         for name in "stats.csv", "run.json", "checkpoint.singe", "preview.mp4", "frames/tiny.0001.png":
-            with open(self.path("theirs", name), "w") as file:
-                file.write("theirs")
+            Path(self.path("theirs", name)).write_text("theirs")
         before = self.tree("theirs")
         os.mkdir(self.path("real"))
         os.symlink("real", self.path("o"))
@@ -225,7 +220,6 @@ class Begin(Case):
     def test_drafts_of_a_killed_run_go(self):
         self.run_scene("o", "--quiet")
         for name in "ply/tiny.0001.ply.12-0.tmp.12-0.tmp", "preview.mp4.12-3.tmp", "preview.gif.12-0.tmp":
-            with open(self.path("o", name), "w") as file:
-                file.write("half")
+            Path(self.path("o", name)).write_text("half")
         self.run_scene("o", "--resume")
         self.no_temporaries("o")

@@ -6,6 +6,7 @@ import math
 import subprocess
 import sys
 import xml.dom.minidom
+from pathlib import Path
 
 from support import ROOT, SINGE, Case
 
@@ -42,8 +43,7 @@ class Bench(Case):
                 out, err = self.singe("bench", name, *options, *drawn)
                 self.assertEqual(err, "")
                 self.assertGreaterEqual(len(out.splitlines()), 2)
-        with open(self.path("plate.svg")) as file:
-            svg = file.read()
+        svg = Path(self.path("plate.svg")).read_text()
         self.assertEqual(svg.count("<path "), 12)  # strips at 0 and 45 degrees and four discs, without and with `isotropic`
         self.assertTrue(svg.endswith("</svg>\n"))
 

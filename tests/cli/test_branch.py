@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+from pathlib import Path
 
 from support import ROOT, SANITIZED, Case
 
@@ -127,8 +128,7 @@ class Branch(Case):
         self.assertFalse(os.path.exists(self.path("b", "tiny.usda")))
         shutil.copy(self.path("whole", "ply", "tiny.0001.ply"), self.path("b", "ply", "tiny.0002.ply"))
         self.run_scene("b", "--resume", "--set", usd)
-        with open(self.path("b", "tiny.usda")) as file:
-            named = set(re.findall(r"@\./usd/(.*?)@", file.read()))
+        named = set(re.findall(r"@\./usd/(.*?)@", Path(self.path("b", "tiny.usda")).read_text()))
         self.assertEqual(sorted(named), sorted(os.listdir(self.path("b", "usd"))))
 
     def test_keyed_pace(self):
@@ -200,10 +200,8 @@ class Branch(Case):
     def test_refusals(self):
         """What cannot change is named with its place in the scene, and nothing is written."""
         self.whole()
-        with open(self.scene) as file:
-            text = file.read()
-        with open(self.scene, "w") as file:
-            file.write(text.replace("steps: 2", "steps: 3") + "contact: {friction: 0.9}\n")
+        text = Path(self.scene).read_text()
+        Path(self.scene).write_text(text.replace("steps: 2", "steps: 3") + "contact: {friction: 0.9}\n")
         _, err = self.branch("b", 4, "sheets.0.grid.cells=[9, 8]", "sheets.0.material.thickness=2 mm", "seed=4",
                              expect=2)
         for part in ("tiny.yaml:3:8: error: steps cannot change in a branch: it was 2",
@@ -211,8 +209,7 @@ class Branch(Case):
                      "sheets.0.material.thickness cannot change", "seed cannot change"):
             self.assertIn(part, err)
         self.assertFalse(os.path.exists(self.path("b")))
-        with open(self.scene, "w") as file:
-            file.write(text)
+        Path(self.scene).write_text(text)
         os.symlink("whole", self.path("link"))
         for of, frame, out, part in (("whole", 7, "b", "whole has 1-6"), ("whole", 0, "b", "expected DIR:FRAME"),
                                      ("none", 4, "b", "run.json"), ("link", 4, "whole", "also the folder of this run"),
@@ -261,11 +258,9 @@ class Branch(Case):
 
         def record(**members):
             def change(path):
-                with open(path) as file:
-                    whole = json.load(file)
+                whole = json.loads(Path(path).read_text())
                 whole.update(members)
-                with open(path, "w") as file:
-                    json.dump(whole, file)
+                Path(path).write_text(json.dumps(whole))
             return change
 
         damaged("run.json", cut, 2, "run.json is not the record of a run")
@@ -285,13 +280,10 @@ class Branch(Case):
         damaged("stats.csv", cut, 2, "stats.csv lacks frames 1 to 5")
 
         # a file of the earlier scene is not what it was
-        with open(self.path("mesh.obj"), "w") as file:
-            file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
-        with open(self.scene) as file:
-            text = file.read()
+        Path(self.path("mesh.obj")).write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        text = Path(self.scene).read_text()
         self.scene = self.path("of_mesh.yaml")
-        with open(self.scene, "w") as file:
-            file.write(text.replace("grid: {size: [6 cm, 6 cm], cells: [8, 8]}", "mesh: mesh.obj"))
+        Path(self.scene).write_text(text.replace("grid: {size: [6 cm, 6 cm], cells: [8, 8]}", "mesh: mesh.obj"))
         self.run_scene("m", "--set", "frames=3")
         with open(self.path("mesh.obj"), "a") as file:
             file.write("v 2 0 0\nv 2 1 0\nf 2 5 6 3\n")
@@ -313,8 +305,7 @@ class Branch(Case):
         self.run_scene("few", "--set", f"checkpoints={{every: 1, megabytes: {2.5e-6 * size}}}")
         self.assertEqual(sorted(os.listdir(self.path("few", "checkpoints"))), ["tiny.0004.singe"])
         self.assertEqual(self.plys("whole"), self.plys("few"))
-        with open(self.path("few", "checkpoints", "tiny.0004.singe"), "rb") as file:
-            self.assertEqual(len(file.read()), size)
+        self.assertEqual(len(Path(self.path("few", "checkpoints", "tiny.0004.singe")).read_bytes()), size)
         self.run_scene("few", "--force")  # a run without them removes those of another
         self.assertFalse(os.path.exists(self.path("few", "checkpoints")))
 
@@ -337,8 +328,7 @@ class Branch(Case):
             self.assertIn(part, out)
         note = self.path("b", "ply", "tiny.0099.ply"), self.path("b", "ply", "tiny.0002.ply.txt")
         for path in note:
-            with open(path, "w") as file:
-                file.write("mine")
+            Path(path).write_text("mine")
         _, err = self.singe("clean", self.path("b"), "--keep-every", "4")
         self.assertIn("removed 6 files of 6 frames", err)
         self.assertEqual([name[5:9] for name in self.plys("b")], ["0001", "0002", "0004", "0006", "0099"])
@@ -353,8 +343,7 @@ class Branch(Case):
         self.singe("clean", self.path("b"), "--keep-every", "100")
         self.assertEqual(len(os.listdir(self.path("away"))), 3)
         for text, code in ("{}", 2), ('{"name": "tiny", "frames": 6, "frames_done": -4}', 2), ("[", 2), ("", 2):
-            with open(self.path("whole", "run.json"), "w") as file:
-                file.write(text)
+            Path(self.path("whole", "run.json")).write_text(text)
             self.singe("clean", self.path("whole"), "--keep-every", "4", expect=code)
         self.singe("clean", self.path("whole"), expect=2)
         self.assertEqual(len(self.plys("whole")), FRAMES)

@@ -5,6 +5,7 @@ import os
 import re
 import struct
 import xml.etree.ElementTree as xml
+from pathlib import Path
 
 from support import HAS_EXR, Case, Ply, write_png
 
@@ -19,12 +20,10 @@ class Convert(Case):
         found = {}
         folder = self.path(out, name)
         for file in sorted(os.listdir(folder)):
-            with open(os.path.join(folder, file), "rb") as bytes_:
-                found[file] = bytes_.read()
+            found[file] = Path(folder, file).read_bytes()
         root = self.path(out, "tiny%s" % FORMATS[name])
         if os.path.exists(root):
-            with open(root, "rb") as bytes_:
-                found["root"] = bytes_.read()
+            found["root"] = Path(root).read_bytes()
         return found
 
     def run_formats(self, out, *args, **options):
@@ -111,8 +110,7 @@ class Convert(Case):
         self.run_formats("o", "--frames", "6", "--set", "sheets.0.material.moisture=20 %")
         frame = Ply(self.path("o", "ply", "tiny.0006.ply"))
         count, column = len(frame.rows), frame.columns()
-        with open(self.path("o", "glb", "tiny.0006.glb"), "rb") as file:
-            glb = file.read()
+        glb = Path(self.path("o", "glb", "tiny.0006.glb")).read_bytes()
         magic, version, size, text_size, _ = struct.unpack_from("<4s4I", glb)
         self.assertEqual((magic, version, size), (b"glTF", 2, len(glb)))
         stage = json.loads(glb[20 : 20 + text_size])
@@ -149,15 +147,13 @@ class Convert(Case):
         stages, sizes = [], []
         for plain in (["--plain"], []):
             self.singe("convert", self.path("o"), "--to", "glb", "--single", *plain)
-            with open(self.path("o", "tiny.glb"), "rb") as file:
-                glb = file.read()
+            glb = Path(self.path("o", "tiny.glb")).read_bytes()
             size = struct.unpack_from("<I", glb, 12)[0]
             stages.append(json.loads(glb[20 : 20 + size]))
             sizes.append(len(glb))
             image = stages[-1]["images"][0]
             view = stages[-1]["bufferViews"][image["bufferView"]]
-            with open(self.path("p.png"), "rb") as file:
-                self.assertEqual(glb[28 + size + view["byteOffset"] :][: view["byteLength"]], file.read())
+            self.assertEqual(glb[28 + size + view["byteOffset"] :][: view["byteLength"]], Path(self.path("p.png")).read_bytes())
             self.assertEqual(image["mimeType"], "image/png")
         self.assertNotIn("extensionsRequired", stages[0])
         attributes = [[mesh["primitives"][0]["attributes"].keys() for mesh in stage["meshes"]] for stage in stages]

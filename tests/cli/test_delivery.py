@@ -6,6 +6,7 @@ import os
 import struct
 import unittest
 import zipfile
+from pathlib import Path
 
 import exr
 from support import HAS_EXR, Case, Ply, write_png
@@ -13,8 +14,7 @@ from support import HAS_EXR, Case, Ply, write_png
 
 def glb(path):
     """The JSON, and a function that gives the values of an accessor."""
-    with open(path, "rb") as file:
-        data = file.read()
+    data = Path(path).read_bytes()
     size, = struct.unpack_from("<I", data, 12)
     text, body = json.loads(data[20 : 20 + size]), data[28 + size :]
 
@@ -41,9 +41,8 @@ SPOT = ("sources: [{kind: spot, position: [-3 cm, 0, 5 cm], temperature: 1200 K,
 class Delivery(Case):
     def burn(self, out, *args):
         self.scene = self.path("burn.yaml")
-        with open(self.scene, "w") as file:
-            file.write(BURNING + SPOT + "name: burn\nsheets: [{grid: {size: [6 cm, 6 cm], cells: [16, 16]}, "
-                       "translate: [0, 0, 5 cm]}]\n")
+        Path(self.scene).write_text(BURNING + SPOT + "name: burn\nsheets: [{grid: {size: [6 cm, 6 cm], cells: [16, 16]}, "
+                                    "translate: [0, 0, 5 cm]}]\n")
         self.run_scene(out, "--quiet", *args)
 
     def frame(self, out, number):
@@ -100,8 +99,7 @@ class Delivery(Case):
                     file.write("vt %g %g\n" % (low + 0.25 * u, 0.25 * v))
             file.write("f 1/1 2/2 3/3 4/4\nf 5/5 6/6 7/7 8/8\n")
         self.scene = self.path("two.yaml")
-        with open(self.scene, "w") as file:
-            file.write(BURNING + "sheets: [{mesh: two.obj}]\noutput: {formats: [textures], texture_size: 128}\n")
+        Path(self.scene).write_text(BURNING + "sheets: [{mesh: two.obj}]\noutput: {formats: [textures], texture_size: 128}\n")
         self.run_scene("o", "--quiet", "--frames", "1")
         _, _, image = exr.read(self.path("o", "textures", "two.0001.exr"))
         row = 127 - 10  # from the top; v = 10.5 / 128
@@ -114,8 +112,7 @@ class Delivery(Case):
 
     @unittest.skipUnless(HAS_EXR, "built without EXR")
     def test_layers_and_no_uv(self):
-        with open(self.path("bare.obj"), "w") as file:
-            file.write("v 0 0 0\nv .05 0 0\nv .05 .05 0\nv 0 .05 0\nf 1 2 3 4\n")
+        Path(self.path("bare.obj")).write_text("v 0 0 0\nv .05 0 0\nv .05 .05 0\nv 0 .05 0\nf 1 2 3 4\n")
         grid = "{grid: {size: [6 cm, 6 cm], cells: [4, 4]}, name: %s, translate: [0, 0, %g]}"
         self.scene = self.path("many.yaml")
         with open(self.scene, "w") as file:
@@ -125,8 +122,7 @@ class Delivery(Case):
         _, _, image = exr.read(self.path("o", "textures", "many.0001.exr"))
         self.assertEqual(sorted(image), ["A", "B", "G", "R"] + ["two_too." + letter for letter in "ABGR"])
         self.assertEqual(min(image["two_too.A"]), 1)
-        with open(self.scene, "w") as file:
-            file.write(BURNING + "sheets: [{mesh: bare.obj}]\noutput: {formats: [textures]}\n")
+        Path(self.scene).write_text(BURNING + "sheets: [{mesh: bare.obj}]\noutput: {formats: [textures]}\n")
         self.assertIn("many.yaml:8:19: error: the format 'textures' needs a sheet with uv; no sheet has any",
                       self.run_scene("x", expect=2)[1])
 
@@ -140,8 +136,7 @@ class Delivery(Case):
 
     def check_vat(self, out, frames, vertices, sheets=1):
         """Every vertex of every frame against the cache. Returns how many are gone at the end."""
-        with open(self.path(out, "vat", "burn.json")) as file:
-            about = json.load(file)
+        about = json.loads(Path(self.path(out, "vat", "burn.json")).read_text())
         self.assertEqual((about["frames"], about["vertices"], about["fps"]), (frames, vertices, 24))
         width, height, image = exr.read(self.path(out, "vat", "burn.position.exr"))
         self.assertEqual((width, height), (about["width"], about["height"]))
@@ -210,13 +205,11 @@ class Delivery(Case):
                     for face in ((a, b, c), (a, c, d)):
                         file.write("f " + " ".join("%d/%d" % (v, other.get(v, v)) for v in face) + "\n")
         self.scene = self.path("burn.yaml")
-        with open(self.scene, "w") as file:
-            file.write(BURNING + SPOT + "sheets:\n  - {mesh: tri.obj, quads: split}\n" +
-                       "  - {grid: {size: [6 cm, 6 cm], cells: [3, 3]}, translate: [0, 0, 20 cm]}\n")
+        Path(self.scene).write_text(BURNING + SPOT + "sheets:\n  - {mesh: tri.obj, quads: split}\n" +
+                                    "  - {grid: {size: [6 cm, 6 cm], cells: [3, 3]}, translate: [0, 0, 20 cm]}\n")
         self.run_scene("o", "--quiet")
         self.singe("convert", self.path("o"), "--to", "vat", "--quiet")
-        with open(self.path("o", "vat", "burn.json")) as file:
-            about = json.load(file)
+        about = json.loads(Path(self.path("o", "vat", "burn.json")).read_text())
         self.assertGreater(about["vertices"], 25 + 16 + 30)
         text, values = glb(self.path("o", "vat", "burn.glb"))
         self.assertEqual(len(text["meshes"]), 2)
@@ -262,8 +255,7 @@ class Delivery(Case):
     def test_usdz(self):
         self.burn("o", "--set", "output.formats=[usd]")
         self.singe("convert", self.path("o"), "--to", "usdz", "--quiet")
-        with open(self.path("o", "burn.usdz"), "rb") as file:
-            whole = file.read()
+        whole = Path(self.path("o", "burn.usdz")).read_bytes()
         with zipfile.ZipFile(self.path("o", "burn.usdz")) as archive:
             self.assertIsNone(archive.testzip())  # every sum is right
             entries = archive.infolist()
@@ -274,14 +266,12 @@ class Delivery(Case):
                 name, extra = struct.unpack_from("<HH", whole, entry.header_offset + 26)
                 self.assertEqual((entry.header_offset + 30 + name + extra) % 64, 0)
                 path = self.path("o", entry.filename)
-                with open(path, "rb") as file:
-                    self.assertEqual(archive.read(entry), file.read(), entry.filename)
+                self.assertEqual(archive.read(entry), Path(path).read_bytes(), entry.filename)
 
     def test_usdz_has_pictures(self):
         write_png(self.path("print.png"), [bytes([200, 128, 7] * 4)] * 4, channels=3)
         self.scene = self.path("burn.yaml")
-        with open(self.scene, "w") as file:
-            file.write(BURNING + "sheets: [{grid: {size: [6 cm, 6 cm], cells: [4, 4]}, picture: print.png}]\n")
+        Path(self.scene).write_text(BURNING + "sheets: [{grid: {size: [6 cm, 6 cm], cells: [4, 4]}, picture: print.png}]\n")
         self.run_scene("o", "--quiet", "--frames", "2")
         self.singe("convert", self.path("o"), "--to", "usdz", "--quiet")
         with zipfile.ZipFile(self.path("o", "burn.usdz")) as archive, open(self.path("print.png"), "rb") as file:
@@ -296,15 +286,13 @@ class Delivery(Case):
         """Finer cells in 16-bit floats; the run's own files stay as they are."""
         self.scene = self.write_scene(frames=4)
         self.run_scene("o", "--quiet", "--set", "pace=16")
-        with open(self.path("o", "gas", "tiny.0004.vdb"), "rb") as file:
-            coarse = file.read()
+        coarse = Path(self.path("o", "gas", "tiny.0004.vdb")).read_bytes()
         out, _ = self.singe("convert", self.path("o"), "--to", "gas")
         self.assertEqual(out.strip(), self.path("o", "gas_detail", "tiny.0001.vdb"))
         found = {}
         for detail in (1, 2, 2, 4):
             self.singe("convert", self.path("o"), "--to", "gas", "--quiet", "--set", "gas.detail=%d" % detail)
-            with open(self.path("o", "gas_detail", "tiny.0004.vdb"), "rb") as file:
-                fine = file.read()
+            fine = Path(self.path("o", "gas_detail", "tiny.0004.vdb")).read_bytes()
             self.assertEqual(fine.count(b"_HalfFloat"), 5)
             at, = (i + 17 for i in [fine.index(b"size\x05\0\0\0vec3i")])
             size, = [struct.unpack_from("<3I", fine, at)]
@@ -313,8 +301,7 @@ class Delivery(Case):
             self.assertIn(found.setdefault(detail, fine), (fine,))
         self.assertLess(len(found[2]), len(found[4]))
         self.assertEqual(len(os.listdir(self.path("o", "gas_detail"))), 4)
-        with open(self.path("o", "gas", "tiny.0004.vdb"), "rb") as file:
-            self.assertEqual(file.read(), coarse)
+        self.assertEqual(Path(self.path("o", "gas", "tiny.0004.vdb")).read_bytes(), coarse)
         self.assertIn("detail must be 1 to 4", self.singe("convert", self.path("o"), "--to", "gas", "--set",
                                                               "gas.detail=5", expect=2)[1])
         self.burn("none", "--frames", "2")
@@ -345,8 +332,7 @@ class Delivery(Case):
         self.run_scene("run", *sets)
         self.assertFalse(os.path.exists(self.path("run", "gas_detail")))
         self.singe("convert", self.path("run"), "--to", "usd", "--quiet", "--set", "gas.detail=2")
-        with open(self.path("run", "tiny.usda")) as file:
-            self.assertNotIn("gas_detail", file.read())
+        self.assertNotIn("gas_detail", Path(self.path("run", "tiny.usda")).read_text())
 
     def test_refusals(self):
         self.burn("o", "--frames", "2")
@@ -358,11 +344,9 @@ class Delivery(Case):
                                                  "output.texture_size=3", expect=2)[1])
         if HAS_EXR:
             # a cache of another mesh than the scene's
-            with open(self.path("o", "run.json")) as file:
-                record = json.load(file)
+            record = json.loads(Path(self.path("o", "run.json")).read_text())
             record["scene"]["sheets"][0]["grid"]["cells"] = [15, 16]
-            with open(self.path("o", "run.json"), "w") as file:
-                json.dump(record, file)
+            Path(self.path("o", "run.json")).write_text(json.dumps(record))
             self.assertIn("is not in frame 1", self.singe("convert", self.path("o"), "--to", "vat", expect=2)[1])
             self.assertFalse(os.listdir(self.path("o", "vat")))
         self.no_temporaries("o")

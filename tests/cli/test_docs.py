@@ -3,9 +3,9 @@
 import csv
 import json
 import os
-import pathlib
 import re
 import shlex
+from pathlib import Path
 
 from support import Case
 
@@ -13,8 +13,7 @@ ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 
 
 def page(name):
-    with open(os.path.join(ROOT, "docs", name), encoding="utf-8") as file:
-        return file.read()
+    return Path(ROOT, "docs", name).read_text(encoding="utf-8")
 
 
 def documented(text):
@@ -45,7 +44,7 @@ class Tutorials(Case):
 
     def test_commands(self):
         """Those of all pages: commands and options exist. Options of USD are those of the Python package."""
-        root, options, found = pathlib.Path(ROOT), {}, 0
+        root, options, found = Path(ROOT), {}, 0
         pages = [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
         for path in pages:
             text = path.read_text(encoding="utf-8")
@@ -68,8 +67,7 @@ class Tutorials(Case):
         names = []
         for _, block in self.blocks("yaml"):
             names.append(re.match(r"# ([\w.]+)", block).group(1))
-            with open(self.path(names[-1]), "w") as file:
-                file.write(block)
+            Path(self.path(names[-1])).write_text(block)
         self.singe("check", self.path("strip.yaml"), "--set", "sheets.0.grid.cells=[10, 2]")
         self.singe("sweep", self.path("strips.yaml"), "-o", self.path("out"), "--print")
         self.assertEqual(names, ["strip.yaml", "strips.yaml", "fit.yaml"])
@@ -77,8 +75,7 @@ class Tutorials(Case):
     def test_c(self):
         for name, block in self.blocks("c"):
             file, lines = re.fullmatch(r"// ([\w.]+)\n(.*)", block, re.DOTALL).groups()
-            with open(os.path.join(ROOT, "samples", file)) as source:
-                self.assertIn(lines, source.read(), f"{name}: {file} has other lines")
+            self.assertIn(lines, Path(ROOT, "samples", file).read_text(), f"{name}: {file} has other lines")
 
 
 class Docs(Case):
@@ -123,8 +120,7 @@ class Docs(Case):
     def test_grades(self):
         """docs/validation.md has the grades that the command has, and README.md their numbers."""
         self.singe("validate", "--only", "grades", "-o", self.path("page"))
-        with open(self.path("page", "grades.csv"), newline="") as file:
-            grades = list(csv.DictReader(file))
+        grades = list(csv.DictReader(Path(self.path("page", "grades.csv")).read_text().splitlines()))
         rows = [[cell.strip(" `") for cell in line.strip().strip("|").split("|")]
                 for line in page("validation.md").splitlines() if line.startswith("| `")]
         self.assertEqual(rows, [[g["item"], g["measure"], g["grade"], g["bar"], g["compared with"]] for g in grades])
@@ -133,8 +129,7 @@ class Docs(Case):
         missing = sum(g["bar"] == "misses" for g in grades)
         said = (f"Of {len(grades)} [checks of the physics](docs/validation.md) {count['independent']} are independent, "
                 f"{count['calibrated']} calibrated and {count['by construction']} by construction; {missing} miss.")
-        with open(os.path.join(ROOT, "README.md")) as file:
-            self.assertIn(said, " ".join(file.read().split()))
+        self.assertIn(said, " ".join(Path(ROOT, "README.md").read_text().split()))
 
     def test_options(self):
         """The synopsis of docs/cli.md has every option of every command, and no other."""

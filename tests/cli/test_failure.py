@@ -5,14 +5,14 @@ import os
 import resource
 import subprocess
 import unittest
+from pathlib import Path
 
 from support import SANITIZED, SINGE, Case
 
 
 class Failure(Case):
     def test_file_in_the_way(self):
-        with open(self.path("file"), "w") as file:
-            file.write("x")
+        Path(self.path("file")).write_text("x")
         for out in "file", "file/inside":
             with self.subTest(out):
                 _, err = self.run_scene(out, expect=1)
@@ -88,8 +88,7 @@ class Failure(Case):
         self.assertGreater(os.path.getsize(self.path("whole", "stats.csv")), limit + 500, "the test's own premise")
         _, err = self.limited("o", limit)
         self.assertIn("stats.csv", err)
-        with open(self.path("o", "stats.csv")) as file:
-            text = file.read()
+        text = Path(self.path("o", "stats.csv")).read_text()
         self.assertTrue(text.endswith("\n"))
         done = self.record("o")["frames_done"]
         self.assertEqual(len(text.splitlines()), done + 1)

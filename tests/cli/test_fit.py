@@ -7,6 +7,7 @@ import shutil
 import signal
 import time
 import unittest
+from pathlib import Path
 
 from support import HAS_EXR, SANITIZED, Case, write_png
 
@@ -33,8 +34,7 @@ RANGE = f"parameters:\n  {RATE}: {{from: 1e-3, to: 3e-2, logarithmic: yes}}\n"
 class Fit(Case):
     def write_scene(self, **_):
         path = self.path("tiny.yaml")
-        with open(path, "w") as file:
-            file.write(SCENE.format(frames=16, cells=18 if SANITIZED else 24))
+        Path(path).write_text(SCENE.format(frames=16, cells=18 if SANITIZED else 24))
         return path
 
     def truth(self, *args):
@@ -42,14 +42,12 @@ class Fit(Case):
         return self.stats("truth")[-1]
 
     def fit(self, plan, *args, out="f", expect=0, **options):
-        with open(self.path("plan.yaml"), "w") as file:
-            file.write(plan)
+        Path(self.path("plan.yaml")).write_text(plan)
         return self.singe("fit", self.path("plan.yaml"), "-o", self.path(out), *args, expect=expect, **options)
 
     def lines(self, out="f"):
         try:
-            with open(self.path(out, "fit.csv"), newline="") as file:
-                return list(csv.DictReader(file))
+            return list(csv.DictReader(Path(self.path(out, "fit.csv")).read_text().splitlines()))
         except FileNotFoundError:
             return []
 
@@ -144,8 +142,7 @@ class Fit(Case):
     def test_bad_plans(self):
         for name, text in (("a.csv", "time,temperature\n0,300\n0,400\n"), ("b.csv", "time,kelvin\n0,300\n1,400\n"),
                            ("c.csv", "time,temperature\n0,300\n1,300\n"), ("d.csv", "time,temperature\n0,300\n1,\n")):
-            with open(self.path(name), "w") as file:
-                file.write(text)
+            Path(self.path(name)).write_text(text)
         for target, expected in (
             ("", "needs 'target'"),
             ("target: {}\n", "a target needs front_speed, temperature or masks"),
@@ -168,15 +165,13 @@ class Fit(Case):
                 self.assertIn(expected, self.fit("scene: tiny.yaml\n" + target + RANGE, expect=2)[1])
         target = "scene: tiny.yaml\ntarget: {front_speed: 1 mm/s}\n"
         self.assertIn("without steps", self.fit(target + f"parameters:\n  {RATE}: [1e-3, 2e-3]\n", expect=2)[1])
-        with open(self.path("plan.yaml"), "w") as file:
-            file.write(target + RANGE)
+        Path(self.path("plan.yaml")).write_text(target + RANGE)
         self.assertIn("belongs to singe fit", self.singe("sweep", self.path("plan.yaml"), expect=2)[1])
 
     def test_what_a_row_lacks(self):
         """A probe that the scene has not, masks of no frame: the fit fails and says so."""
         self.truth()
-        with open(self.path("curve.csv"), "w") as file:
-            file.write("time,temperature\n0,300\n1,400\n")
+        Path(self.path("curve.csv")).write_text("time,temperature\n0,300\n1,400\n")
         _, err = self.fit("scene: tiny.yaml\ntarget: {temperature: {file: curve.csv, probe: q}}\nevaluations: 1\n" + RANGE,
                           expect=1)
         self.assertIn("has no temperatures of probe 'q'", err)

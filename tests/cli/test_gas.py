@@ -3,6 +3,7 @@
 import os
 import shutil
 import subprocess
+from pathlib import Path
 
 from support import Case
 
@@ -19,8 +20,7 @@ class Gas(Case):
         subprocess.run([SAMPLE, self.vdb(frame), "37", "21", "40"], check=True, stdout=subprocess.DEVNULL)
 
     def read(self, path):
-        with open(path, "rb") as file:
-            return file.read()
+        return Path(path).read_bytes()
 
     def vdbs(self, out):
         folder = self.path(out, "gas")

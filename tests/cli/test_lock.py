@@ -5,6 +5,7 @@ import re
 import signal
 import socket
 import time
+from pathlib import Path
 
 from support import Case
 
@@ -61,8 +62,7 @@ class Lock(Case):
 
     def whole_ply(self, path):
         """Whether the file has as many bytes as its head says, of the vertices and at least the faces' counts."""
-        with open(path, "rb") as file:
-            head, mark, body = file.read().partition(b"end_header\n")
+        head, mark, body = Path(path).read_bytes().partition(b"end_header\n")
         properties = re.search(rb"element vertex \d+\n(.*?)element face", head, re.S)[1].count(b"property")
         vertices, faces = (int(n) for n in re.findall(rb"element \w+ (\d+)", head)[:2])
         return mark and len(body) == 4 * properties * vertices + 13 * faces
@@ -76,8 +76,7 @@ class Lock(Case):
                 if re.fullmatch(r"long\.\d+\.ply", name):
                     self.assertTrue(self.whole_ply(self.path("o", "ply", name)), name)
                     looked += 1
-            with open(self.path("o", "stats.csv")) as file:
-                lines = file.read().split("\n")
+            lines = Path(self.path("o", "stats.csv")).read_text().split("\n")
             self.assertEqual({line.count(",") for line in lines[:-1]}, {lines[0].count(",")})
         self.assertGreater(looked, 300)
         shown, _ = self.singe("measure", self.path("o"), "--frames", "1-2")
@@ -86,10 +85,8 @@ class Lock(Case):
         self.assertIsNone(run.poll())
         self.end(run, signal.SIGINT)
         self.singe("verify", self.path("o"))
-        with open(self.path("o", "ply", "long.0002.ply"), "rb") as file:
-            part = file.read()[:-1]
-        with open(self.path("cut.ply"), "wb") as file:
-            file.write(part)
+        part = Path(self.path("o", "ply", "long.0002.ply")).read_bytes()[:-1]
+        Path(self.path("cut.ply")).write_bytes(part)
         self.assertFalse(self.whole_ply(self.path("cut.ply")))  # the test would see it
 
     def test_a_killed_run_holds_nothing(self):
@@ -99,12 +96,10 @@ class Lock(Case):
 
     def test_links_and_pipes_in_the_place_of_a_lock(self):
         os.mkdir(self.path("o"))
-        with open(self.path("theirs"), "w") as file:
-            file.write("theirs")
+        Path(self.path("theirs")).write_text("theirs")
         os.symlink(self.path("theirs"), self.path("o", "cache.lock"))
         self.assertIn("o/cache.lock: cannot write: it is a link", self.run_scene("o", expect=1)[1])
-        with open(self.path("theirs")) as file:
-            self.assertEqual(file.read(), "theirs")
+        self.assertEqual(Path(self.path("theirs")).read_text(), "theirs")
         os.remove(self.path("o", "cache.lock"))
         os.mkfifo(self.path("o", "cache.lock"))
         self.assertIn("cache.lock", self.run_scene("o", expect=1, timeout=20)[1])

@@ -2,6 +2,7 @@
 
 import json
 import os
+from pathlib import Path
 
 from support import Case
 
@@ -15,15 +16,12 @@ measured: {speed: [1 mm/s, 2 mm/s]}
 class Materials(Case):
     def write_mine(self, text=MINE):
         os.makedirs(self.path("materials"), exist_ok=True)
-        with open(self.path("materials", "mine.yaml"), "w") as file:
-            file.write(text)
+        Path(self.path("materials", "mine.yaml")).write_text(text)
 
     def write_scene_of(self, material, name="tiny.yaml"):
         path = self.write_scene(name)
-        with open(path) as file:
-            text = file.read()
-        with open(path, "w") as file:
-            file.write(text.replace("sources:", "    material: %s\nsources:" % material))
+        text = Path(path).read_text()
+        Path(path).write_text(text.replace("sources:", "    material: %s\nsources:" % material))
         return path
 
     def test_check_tells_the_front(self):
@@ -71,8 +69,7 @@ class Materials(Case):
         _, err = self.run_scene("o", "--resume", "--quiet", expect=2)
         self.assertIn("scene", err)
         resolved = self.path("resolved.json")
-        with open(resolved, "w") as file:
-            json.dump(self.record("whole")["scene"], file)
+        Path(resolved).write_text(json.dumps(self.record("whole")["scene"]))
         os.remove(self.path("materials", "mine.yaml"))
         self.singe("run", resolved, "-o", self.path("again"), "--no-preview", "--quiet")
         self.assertEqual(self.plys("again"), self.plys("whole"))

@@ -4,6 +4,7 @@ import os
 import resource
 import subprocess
 import time
+from pathlib import Path
 
 from hostile import GOOD, HOSTILE, SQUARE, TWO, gltf, struct
 from support import SINGE, Case, Ply
@@ -45,8 +46,7 @@ class Meshes(Case):
         return {name: file for name, file in files.items() if HAS_ASSIMP or name.endswith(OWN)}
 
     def write(self, name, content):
-        with open(self.path(name), "wb") as file:
-            file.write(content)
+        Path(self.path(name)).write_bytes(content)
 
     def test_good_files_are_read(self):
         files = self.files(GOOD)
@@ -75,8 +75,7 @@ class Meshes(Case):
         os.mkdir(self.path("in", "deep"))
         os.mkfifo(self.path("in", "pipe.bin"))
         for place in "out.bin", "in/beside.bin", "in/deep/below.bin":
-            with open(self.path(place), "wb") as file:
-                file.write(data)
+            Path(self.path(place)).write_bytes(data)
         os.symlink("../out.bin", self.path("in", "link.bin"))
         os.symlink("deep/below.bin", self.path("in", "good.bin"))
         files = {}
@@ -157,8 +156,7 @@ class Meshes(Case):
     def area(self, name):
         """Of the first frame, as it is drawn."""
         scene = self.path("area.yaml")
-        with open(scene, "w") as file:
-            file.write(f"sheets: [{{mesh: {name}}}]\ngas: no\nframes: 1\n")
+        Path(scene).write_text(f"sheets: [{{mesh: {name}}}]\ngas: no\nframes: 1\n")
         self.singe("run", scene, "-o", self.path("area"), "--no-preview", "--quiet")
         frame = Ply(self.path("area", "ply", "area.0001.ply"))
         total = 0

@@ -3,6 +3,7 @@
 import math
 import os
 import struct
+from pathlib import Path
 
 from support import Case
 
@@ -69,14 +70,12 @@ class Motion(Case):
         self.scene = self.write("moving.yaml")
 
     def write(self, name, follows="cape.###.obj", frames=FRAMES, replace=("", "")):
-        with open(self.path(name), "w", encoding="utf-8") as file:
-            file.write(SCENE.format(frames=frames, follows=follows).replace(*replace))
+        Path(self.path(name)).write_text(SCENE.format(frames=frames, follows=follows).replace(*replace), encoding="utf-8")
         return self.path(name)
 
     def vertices(self, out, frame):
         """x, y, z of the cape's vertices by their numbers in its file."""
-        with open(self.path(out, "ply", "moving.%04d.ply" % frame), "rb") as file:
-            header, rest = file.read().split(b"end_header\n", 1)
+        header, rest = Path(self.path(out, "ply", "moving.%04d.ply" % frame)).read_bytes().split(b"end_header\n", 1)
         sizes = {"float": ("f", 4), "int": ("i", 4), "uint": ("I", 4), "uchar": ("B", 1), "double": ("d", 8)}
         names, form, count = [], "<", 0
         for line in header.decode().split("\n"):

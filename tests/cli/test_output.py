@@ -4,6 +4,7 @@ import json
 import os
 import shutil
 import unittest
+from pathlib import Path
 
 from support import COLUMNS, HAS_FFMPEG, VERSION, Case
 
@@ -84,8 +85,7 @@ class Output(Case):
         scene = {"frames": 3, "steps": 2, "sheets": [{"grid": {"size": [0.06, 0.06], "cells": [36, 36]}}],
                  "wind": {"velocity": [1000, 0, 0], "gust": 1000}, "pins": [{"vertices": [0, 36]}],
                  "tearing": False, "solver": {"substeps": 3}}
-        with open(self.path("storm.json"), "w") as file:
-            json.dump(scene, file)
+        Path(self.path("storm.json")).write_text(json.dumps(scene))
         self.assertIn(": good", self.singe("check", self.path("storm.json"))[0])
         _, err = self.singe("run", self.path("storm.json"), "-o", self.path("o"), "--no-preview")
         self.assertEqual(err.count("so all sheets were held still"), 1)
@@ -146,10 +146,8 @@ class Output(Case):
         self.run_scene("o", preview=True)
         os.makedirs(self.path("o", "frames"), exist_ok=True)
         for name in "keep.txt", "ply/other.0001.ply", "ply/tiny.1.ply", "frames/tiny.0001.png.bak":
-            with open(self.path("o", name), "w") as file:
-                file.write("mine")
-        with open(self.path("o", "ply", "tiny.0003.ply.123-0.tmp"), "w") as file:
-            file.write("half written by a run that was killed")
+            Path(self.path("o", name)).write_text("mine")
+        Path(self.path("o", "ply", "tiny.0003.ply.123-0.tmp")).write_text("half written by a run that was killed")
         _, err = self.run_scene("o", "--frames", "2")
         self.assertIn("of an earlier run", err)
         self.assertEqual(list(self.plys("o")), ["other.0001.ply", "tiny.0001.ply", "tiny.0002.ply", "tiny.1.ply"])
@@ -213,8 +211,7 @@ class Output(Case):
         shutil.copy(self.scene, scene)
         out = os.path.join(folder, b"o\x80")
         self.singe("run", scene, "-o", out, "--frames", "2", "--no-preview", errors="surrogateescape")
-        with open(os.path.join(out, b"run.json"), encoding="utf-8") as file:
-            record = json.load(file)
+        record = json.loads(Path(os.fsdecode(os.path.join(out, b"run.json"))).read_text(encoding="utf-8"))
         self.assertEqual(os.fsencode(record["scene_file"]), scene)
         self.assertEqual(os.fsencode(record["scene_folder"]), os.path.realpath(folder))
         self.assertEqual(record["name"], "b_r")
@@ -226,8 +223,7 @@ class Output(Case):
     def test_files_read_back(self):
         """Header of a PLY, and as many bytes as it announces."""
         self.run_scene("o", "--frames", "2")
-        with open(self.path("o", "ply", "tiny.0002.ply"), "rb") as file:
-            data = file.read()
+        data = Path(self.path("o", "ply", "tiny.0002.ply")).read_bytes()
         header = data[: data.index(b"end_header")].decode().split("\n")
         self.assertEqual(header[0], "ply")
         self.assertIn("binary_little_endian", header[1])

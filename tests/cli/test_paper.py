@@ -5,6 +5,7 @@ import json
 import math
 import os
 import re
+from pathlib import Path
 
 from support import Case
 from test_docs import ROOT
@@ -15,12 +16,9 @@ TABLE1 = "0.4306 0.4401 0.5527 0.4954 0.5767 0.5038 0.5804 0.5050 0.5810 0.5052"
 class Paper(Case):
     def check_page(self, folder, items, failed=0, bad_cases=True):
         """The page and its data agree, and all pictures exist."""
-        with open(self.path(folder, "measures.json")) as file:
-            data = json.load(file)
-        with open(self.path(folder, "measures.csv"), newline="") as file:
-            rows = list(csv.DictReader(file))
-        with open(self.path(folder, "index.html")) as file:
-            page = file.read()
+        data = json.loads(Path(self.path(folder, "measures.json")).read_text())
+        rows = list(csv.DictReader(Path(self.path(folder, "measures.csv")).read_text().splitlines()))
+        page = Path(self.path(folder, "index.html")).read_text()
         self.assertEqual(data["failed"], failed)
         self.assertEqual([m["item"] for m in data["measures"]], [r["item"] for r in rows])
         self.assertEqual([m["holds"] for m in data["measures"]], [r["verdict"] == "holds" for r in rows])
@@ -91,16 +89,14 @@ class Paper(Case):
         out, _ = self.singe("paper", "fig8", "-o", self.path("new", "fig"), timeout=600)
         self.check_page(os.path.join("new", "fig"), ["fig8"])
         for state in "swing", "shrink":
-            with open(self.path("new", "fig", f"fig8-{state}.csv")) as file:
-                rows = list(csv.DictReader(file))
+            rows = list(csv.DictReader(Path(self.path("new", "fig", f"fig8-{state}.csv")).read_text().splitlines()))
             sums = [float(row["sum"]) for row in rows]
             self.assertEqual(len(rows), 21)
             self.assertEqual(sums, sorted(sums, reverse=True))
             for row in rows:
                 self.assertAlmostEqual(sum(float(row[c]) for c in ("red", "green", "blue", "yellow")) /
                                        float(row["sum"]), 1, 6)
-            with open(self.path("new", "fig", f"fig8-{state}.svg")) as file:
-                svg = file.read()
+            svg = Path(self.path("new", "fig", f"fig8-{state}.svg")).read_text()
             self.assertTrue(svg.startswith("<svg ") and svg.rstrip().endswith("</svg>"))
             self.assertEqual(svg.count("<path "), 5)
 
@@ -112,8 +108,7 @@ class Paper(Case):
 
     def test_all_at_once(self):
         self.singe("paper", "all-at-once", "-o", self.path("page"), timeout=600)
-        with open(self.path("page", "index.html")) as file:
-            out = file.read()
+        out = Path(self.path("page", "index.html")).read_text()
         self.assertIn("360 constraints, 249 degrees of freedom", out)
 
     def test_scene_with_the_method(self):
@@ -122,7 +117,6 @@ class Paper(Case):
             with self.subTest(setting=setting):
                 _, err = self.singe("run", small, "-o", self.path("out"), "--no-preview", "--set", setting)
                 self.assertIn("solver: up to 7 projections", err)
-                with open(self.path("out", "run.json")) as file:
-                    self.assertIn('"method": "paper"', file.read())
+                self.assertIn('"method": "paper"', Path(self.path("out", "run.json")).read_text())
         _, err = self.singe("check", small, "--set", "solver=papers", expect=2)
         self.assertIn("did you mean 'paper'?", err)

@@ -8,6 +8,7 @@ import shutil
 import struct
 import subprocess
 import unittest
+from pathlib import Path
 
 import exr
 from support import HAS_EXR, HAS_FFMPEG, SANITIZED, SINGE, Case
@@ -21,8 +22,7 @@ def png_size(path):
 
 
 def digest(path):
-    with open(path, "rb") as file:
-        return hashlib.sha256(file.read()).hexdigest()
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
 def murmur(text):
@@ -172,8 +172,7 @@ class Render(Case):
     def test_bad_caches(self):
         self.assertIn("run.json", self.singe("render", self.path("none"), expect=2)[1])
         os.mkdir(self.path("empty"))
-        with open(self.path("empty", "run.json"), "w") as file:
-            file.write("{}")
+        Path(self.path("empty", "run.json")).write_text("{}")
         self.assertIn("not the record of a run", self.singe("render", self.path("empty"), expect=2)[1])
         self.assertIn("1-6", self.singe("render", self.path("o"), "--frames", "5-9", expect=2)[1])
         with open(self.path("o", "ply", "tiny.0004.ply"), "r+b") as file:

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 from support import ROOT, Case
 
@@ -19,11 +20,9 @@ class Replay(Case):
         return path
 
     def changed(self, path, change):
-        with open(path, "rb") as file:
-            data = bytearray(file.read())
+        data = bytearray(Path(path).read_bytes())
         other = self.path("changed")
-        with open(other, "wb") as file:
-            file.write(change(data))
+        Path(other).write_bytes(change(data))
         return other
 
     def records(self, data):
@@ -90,8 +89,7 @@ class Replay(Case):
         call = [sys.executable, MINIMISE, path]
         done = subprocess.run([*call, *command], capture_output=True, text=True)
         self.assertRegex(done.stdout, r": 2 of \d+ calls, ", done.stderr)
-        with open(path + ".min", "rb") as file:
-            self.assertEqual([kind for _, kind, _ in self.records(file.read()) if kind >= 16], [18, 36])
+        self.assertEqual([kind for _, kind, _ in self.records(Path(path + ".min").read_bytes()) if kind >= 16], [18, 36])
         done = subprocess.run([*call, "true"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn("does not fail", done.stderr)

@@ -7,6 +7,7 @@ import resource
 import shutil
 import signal
 import time
+from pathlib import Path
 
 from support import HAS_FFMPEG, SANITIZED, Case, write_png
 
@@ -20,8 +21,7 @@ class Resume(Case):
 
     def lines(self, out):
         try:
-            with open(self.path(out, "stats.csv"), "rb") as file:
-                return file.read().count(b"\n") - 1
+            return Path(self.path(out, "stats.csv")).read_bytes().count(b"\n") - 1
         except FileNotFoundError:
             return -1
 
@@ -72,11 +72,9 @@ class Resume(Case):
         self.run_scene("k", "--frames", "9", "--quiet")
         with open(self.path("k", "stats.csv"), "a") as file:
             file.write("10,0.375,1,2\n11,0.4")
-        with open(self.path("k", "ply", "tiny.0010.ply"), "w") as file:
-            file.write("not a frame")
+        Path(self.path("k", "ply", "tiny.0010.ply")).write_text("not a frame")
         for name in "ply/tiny.0011.ply.4711-0.tmp", "checkpoint.singe.4711-0.tmp":
-            with open(self.path("k", name), "w") as file:
-                file.write("half")
+            Path(self.path("k", name)).write_text("half")
         _, err = self.run_scene("k", "--resume")
         self.assertIn("continuing from frame 9", err)
         self.same_as_whole("k")
@@ -226,8 +224,7 @@ class Resume(Case):
                         file.write(f"f {a} {a + 1} {a + 5} {a + 4}\n")
 
         self.scene = self.path("mesh.yaml")
-        with open(self.scene, "w") as file:
-            file.write("frames: 5\nsheets: [{mesh: square.obj}]\n")
+        Path(self.scene).write_text("frames: 5\nsheets: [{mesh: square.obj}]\n")
         mesh(0)
         self.run_scene("o", "--frames", "3", "--quiet")
         self.run_scene("o", "--resume", "--frames", "4")
@@ -251,21 +248,18 @@ class Resume(Case):
     def test_other_files_are_refused(self):
         """Every file that a scene reads, but for the preview's."""
         def material(thickness):
-            with open(self.path("m.yaml"), "w") as file:
-                file.write(f"base: newsprint\nthickness: {thickness} mm\n"
-                           "grammage: {from: 50 g/m2, to: 60 g/m2, texture: rate.png}\n")
+            Path(self.path("m.yaml")).write_text(f"base: newsprint\nthickness: {thickness} mm\n"
+                                                 "grammage: {from: 50 g/m2, to: 60 g/m2, texture: rate.png}\n")
 
         extra = ("colliders:\n  - {kind: mesh, mesh: c.obj, position: [0, 0, -10 cm]}\n"
                  "  - {kind: heightfield, picture: heights.png, size: [1, 1], heights: [-30 cm, -20 cm]}\n")
         self.scene = self.write_scene(frames=5, extra=extra)
-        with open(self.scene) as file:
-            text = file.read()
+        text = Path(self.scene).read_text()
         text = text.replace("    translate:",
                             "    material: {base: ./m.yaml}\n    picture: print.png\n    translate:", 1)
         text = text.replace("sources:\n", "sources:\n  - {kind: texture, texture: flux.png, flux: 100}\n", 1)
         text = text.replace("samples: 1}", "samples: 1, environment: {picture: sky.png}}")
-        with open(self.scene, "w") as file:
-            file.write(text)
+        Path(self.scene).write_text(text)
         pictures = ["rate.png", "flux.png", "heights.png", "print.png", "sky.png"]
         for name in pictures:
             self.picture(name, 100)
@@ -309,8 +303,7 @@ class Resume(Case):
         def pictures(out):
             found = {}
             for name in sorted(os.listdir(self.path(out, "frames"))):
-                with open(self.path(out, "frames", name), "rb") as file:
-                    found[name] = file.read()
+                found[name] = Path(self.path(out, "frames", name)).read_bytes()
             return found
 
         self.run_scene("whole", "--frames", "8", "--quiet", preview=True)
@@ -343,13 +336,11 @@ class Resume(Case):
     def test_damaged_checkpoint(self):
         self.run_scene("o", "--frames", "3", "--quiet")
         path = self.path("o", "checkpoint.singe")
-        with open(path, "rb") as file:
-            good = file.read()
+        good = Path(path).read_bytes()
         for name, data in self.damage(good).items():
             with self.subTest(name):
                 for file_name in "checkpoint.singe", "checkpoint.previous.singe":
-                    with open(self.path("o", file_name), "wb") as file:
-                        file.write(data)
+                    Path(self.path("o", file_name)).write_bytes(data)
                 _, err = self.run_scene("o", "--resume", expect=2)
                 self.assertIn("checkpoint", err)
                 self.assertIn("without --resume", err)
@@ -360,8 +351,7 @@ class Resume(Case):
         self.run_scene("whole", "--quiet")
         self.run_scene("a", "--frames", "5", "--quiet")
         self.run_scene("a", "--frames", "9", "--resume", "--quiet")
-        with open(self.path("a", "checkpoint.singe"), "rb") as file:
-            good = file.read()
+        good = Path(self.path("a", "checkpoint.singe")).read_bytes()
         cases = list({**self.damage(good), "missing": None}.items())
         if SANITIZED:  # each takes five seconds there
             cases = cases[::4] + cases[-1:]
@@ -371,8 +361,7 @@ class Resume(Case):
                 shutil.copytree(self.path("a"), self.path("o"))
                 os.remove(self.path("o", "checkpoint.singe"))
                 if data is not None:
-                    with open(self.path("o", "checkpoint.singe"), "wb") as file:
-                        file.write(data)
+                    Path(self.path("o", "checkpoint.singe")).write_bytes(data)
                 _, err = self.run_scene("o", "--resume")
                 frame = int(re.search(r"continuing from frame (\d+)", err).group(1))
                 self.assertLess(frame, 9)
@@ -399,8 +388,7 @@ class Resume(Case):
         self.assertEqual(before, [self.bytes_of("o", n) for n in ("checkpoint.singe", "checkpoint.previous.singe")])
 
     def bytes_of(self, *parts):
-        with open(self.path(*parts), "rb") as file:
-            return file.read()
+        return Path(self.path(*parts)).read_bytes()
 
     def test_stats_lost(self):
         self.run_scene("o", "--frames", "3", "--quiet")

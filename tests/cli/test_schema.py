@@ -6,8 +6,9 @@ import os
 import shutil
 import subprocess
 import unittest
+from pathlib import Path
 
-from support import ROOT, SINGE, Case
+from support import ROOT, Case
 
 SHEETS = "sheets:\n  - grid: {size: [6 cm, 6 cm], cells: [12, 12]}\n"
 SPOT = "sources:\n  - {kind: spot, position: [0, 0, 0], radius: 1 cm, temperature: 900 C, end: 1 s}\n"
@@ -43,15 +44,13 @@ class Schema(Case):
     def setUp(self):
         super().setUp()
         self.schema = self.path("schema.json")
-        with open(self.schema, "w", encoding="utf-8") as file:
-            file.write(self.singe("scene-schema")[0])
+        Path(self.schema).write_text(self.singe("scene-schema")[0], encoding="utf-8")
 
     def write_broken(self):
         names = []
         for number, text in enumerate(BROKEN):
             names.append(self.path(f"broken{number}.yaml"))
-            with open(names[-1], "w") as file:
-                file.write(text)
+            Path(names[-1]).write_text(text)
         return names
 
     def refused(self, files):
@@ -62,8 +61,7 @@ class Schema(Case):
         return {error["filename"] for error in report.get("errors", [])}
 
     def test_the_schema_is_json_and_knows_the_keys(self):
-        with open(self.schema, encoding="utf-8") as file:
-            schema = json.load(file)
+        schema = json.loads(Path(self.schema).read_text(encoding="utf-8"))
         self.assertEqual(schema["required"], ["sheets"])
         with open(os.path.join(ROOT, "docs", "scene.md"), encoding="utf-8") as file:
             scene = file.read().split("\n## Scene\n")[1].split("\n## ")[0]
@@ -94,8 +92,7 @@ class Schema(Case):
                 files = []
                 for number, value in enumerate(values):
                     files.append(self.path(f"{key}{expected}{number}.yaml"))
-                    with open(files[-1], "w") as file:
-                        file.write(SHEETS + f"{key}: {value}\n")
+                    Path(files[-1]).write_text(SHEETS + f"{key}: {value}\n")
                 self.assertEqual(len(self.refused(files)), expected * len(files), (key, values))
 
 
@@ -115,17 +112,14 @@ class New(Case):
         with open(self.path("letter.yaml"), "a") as file:
             file.write("# mine\n")
         self.assertEqual(self.singe("new", "sweep", cwd=self.dir)[0], "sweep.yaml\n")
-        with open(self.path("letter.yaml")) as file:
-            self.assertTrue(file.read().endswith("# mine\n"))
+        self.assertTrue(Path(self.path("letter.yaml")).read_text().endswith("# mine\n"))
         printed = self.singe("sweep", "sweep.yaml", "--print", cwd=self.dir)[0]
         self.assertEqual(len(printed.strip().splitlines()), 6)
 
     def test_new_replaces_nothing_unless_it_is_told_to(self):
-        with open(self.path("letter.yaml"), "w") as file:
-            file.write("mine\n")
+        Path(self.path("letter.yaml")).write_text("mine\n")
         self.assertIn("already exists", self.singe("new", "letter", "-o", self.dir, expect=2)[1])
-        with open(self.path("letter.yaml")) as file:
-            self.assertEqual(file.read(), "mine\n")
+        self.assertEqual(Path(self.path("letter.yaml")).read_text(), "mine\n")
         self.singe("new", "letter", "-o", self.dir, "--force")
         self.assertIn("did you mean 'letter'?", self.singe("new", "leter", expect=2)[1])
         self.assertIn("cannot make the folder", self.singe("new", "cloth", "-o", self.path("letter.yaml"), expect=1)[1])

@@ -11,6 +11,7 @@ import subprocess
 import time
 import unittest
 import xml.etree.ElementTree
+from pathlib import Path
 
 from support import HAS_FFMPEG, SANITIZED, SINGE, Case, write_png
 
@@ -25,8 +26,7 @@ class Sweep(Case):
         self.scene = self.write_scene(frames=self.FRAMES, gas="no")
 
     def write_plan(self, text, name="plan.yaml"):
-        with open(self.path(name), "w") as file:
-            file.write("scene: tiny.yaml\n" + text)
+        Path(self.path(name)).write_text("scene: tiny.yaml\n" + text)
         return self.path(name)
 
     def sweep(self, *args, out="s", expect=0, preview=False, **options):
@@ -34,8 +34,7 @@ class Sweep(Case):
         return self.singe("sweep", self.path("plan.yaml"), "-o", self.path(out), *args, expect=expect, **options)
 
     def table(self, name, out="s"):
-        with open(self.path(out, name), newline="") as file:
-            return list(csv.DictReader(file))
+        return list(csv.DictReader(Path(self.path(out, name)).read_text().splitlines()))
 
     def rows(self, plan, out="p"):
         """The rows that a plan makes; nothing is run."""
@@ -140,11 +139,9 @@ class Sweep(Case):
                 self.assertRegex(err, rf"plan.yaml:{line}:\d+: error: .*" + re.escape(expected))
                 self.assertEqual(err.count(": error: "), 1, err)
                 self.assertFalse(os.path.exists(self.path("s")))
-        with open(self.path("plan.yaml"), "w") as file:
-            file.write("- 1\n")
+        Path(self.path("plan.yaml")).write_text("- 1\n")
         self.assertIn("expected a map", self.sweep(expect=2)[1])
-        with open(self.path("plan.yaml"), "w") as file:
-            file.write("parameters: {pace: [1]}\n")
+        Path(self.path("plan.yaml")).write_text("parameters: {pace: [1]}\n")
         self.assertIn("needs 'scene'", self.sweep(expect=2)[1])
         self.assertIn("No such file", self.singe("sweep", self.path("none.yaml"), expect=2)[1])
 
@@ -160,8 +157,7 @@ class Sweep(Case):
                 file.write(text)
                 file.flush()
                 self.write_plan("parameters: {pace: [1]}\n")
-                with open(self.path("plan.yaml"), "w") as plan:
-                    plan.write("scene: secret\nparameters: {pace: [1], sheets.0.name: [a]}\n")
+                Path(self.path("plan.yaml")).write_text("scene: secret\nparameters: {pace: [1], sheets.0.name: [a]}\n")
                 out, err = self.sweep("--print", expect=2)
                 self.assertNotIn("hunter2", out + err)
                 self.assertIn("secret, which", err)
@@ -281,8 +277,7 @@ class Sweep(Case):
 
     def lines(self, row):
         try:
-            with open(self.path("s", "unfinished", row, "stats.csv"), "rb") as file:
-                return file.read().count(b"\n")
+            return Path(self.path("s", "unfinished", row, "stats.csv")).read_bytes().count(b"\n")
         except FileNotFoundError:
             return 0
 
@@ -305,8 +300,7 @@ class Sweep(Case):
     def test_ctrl_c(self):
         """As a terminal does: the signal reaches the whole group."""
         self.stop_and_continue(lambda sweep: os.killpg(sweep.pid, signal.SIGINT))
-        with open(self.path("s", "rows", "0001", "log.txt")) as file:
-            self.assertIn("continuing from frame", file.read())
+        self.assertIn("continuing from frame", Path(self.path("s", "rows", "0001", "log.txt")).read_text())
 
     @unittest.skipIf(SANITIZED, "the same code as Ctrl-C runs")
     def test_terminate(self):
@@ -330,14 +324,12 @@ class Sweep(Case):
 
     def test_failed_rows(self):
         self.write_plan("parameters:\n  sheets.0.material.mass_rate: [4e-3, {from: 1e-3, to: 2e-3, texture: m.png}, 6e-3]\n")
-        with open(self.path("m.png"), "w") as file:
-            file.write("no picture")
+        Path(self.path("m.png")).write_text("no picture")
         _, err = self.sweep(expect=1)
         self.assertIn("row 2: singe run ended with exit code 2", err)
         self.assertIn("--retry", err)
         self.assertEqual(self.complete(), ["0001", "0003"])
-        with open(self.path("s", "unfinished", "0002", "log.txt")) as file:
-            self.assertIn("m.png", file.read())
+        self.assertIn("m.png", Path(self.path("s", "unfinished", "0002", "log.txt")).read_text())
         self.assertEqual([r["state"] for r in self.table("report.csv")], ["complete", "missing", "complete"])
         write_png(self.path("m.png"), GREY)
         self.assertIn("1 failed", self.sweep(expect=1)[1])  # it is not run again by itself
@@ -361,8 +353,7 @@ class Sweep(Case):
     # ---- the report
 
     def report(self, out="s"):
-        with open(self.path(out, "index.html"), encoding="utf-8") as file:
-            page = file.read()
+        page = Path(self.path(out, "index.html")).read_text(encoding="utf-8")
         found = re.search(r'<script id="data" type="application/json">(.*?)</script>', page, re.S)
         return page, json.loads(found.group(1))
 
@@ -429,15 +420,13 @@ class Sweep(Case):
         self.sweep("--row", "3")
         self.sweep("--slurm", "--max-running", "2", "--slurm-option=--partition=low", "--render-frames", "3",
                    env=self.fake_sbatch())
-        with open(self.path("asked")) as file:
-            asked = file.read()
+        asked = Path(self.path("asked")).read_text()
         self.assertIn("#SBATCH --array=1-2,4-6%2\n", asked)
         for option in "--requeue", "--open-mode=append", "--signal=B:TERM@10", "--partition=low":
             self.assertIn(f"#SBATCH {option}\n", asked)
         self.assertIn("#SBATCH --array=0-11\n", asked)  # 6 rows of 4 frames, in parts of 3
         self.assertEqual(len(re.findall(r"--dependency=afterany:\d+ ", asked)), 2)
-        with open(self.path("s", "slurm", "render.sh")) as file:
-            render = file.read()
+        render = Path(self.path("s", "slurm", "render.sh")).read_text()
         for task, expected in ((0, None), (4, (3, 1, 3)), (5, (3, 4, 4))):
             script = render.replace(os.path.realpath(SINGE), "echo")
             done = subprocess.run(["bash", "-c", script], env={**os.environ, "SLURM_ARRAY_TASK_ID": str(task)},

@@ -5,6 +5,7 @@ import os
 import signal
 import struct
 import time
+from pathlib import Path
 
 from support import SANITIZED, Case, Ply
 
@@ -24,14 +25,12 @@ class Tables(Case):
         self.scene = self.write_scene(frames=16, steps=6, extra=PROBES)
 
     def table(self, out, name):
-        with open(self.path(out, name), newline="") as file:
-            return list(csv.DictReader(file))
+        return list(csv.DictReader(Path(self.path(out, name)).read_text().splitlines()))
 
     def bytes(self, out):
         found = []
         for name in ("events.csv", "probes.csv"):
-            with open(self.path(out, name), "rb") as file:
-                found.append(file.read())
+            found.append(Path(self.path(out, name)).read_bytes())
         return found
 
     def test_events(self):
@@ -118,11 +117,9 @@ class Tables(Case):
         """The lines that a checkpoint relies on must exist."""
         self.run_scene("o", "--quiet", "--frames", "8")
         for name, lines in (("events.csv", "events up to frame 8"), ("probes.csv", "frames 1 to 8")):
-            with open(self.path("o", name), "rb") as file:
-                whole = file.read()
+            whole = Path(self.path("o", name)).read_bytes()
             for broken in (whole[: len(whole) // 2], whole.replace(b"frame", b"Frame", 1), b""):
-                with open(self.path("o", name), "wb") as file:
-                    file.write(broken)
+                Path(self.path("o", name)).write_bytes(broken)
                 error = self.run_scene("o", "--resume", expect=2)[1]
                 self.assertIn(name, error)
                 self.assertIn(lines, error)
@@ -142,12 +139,10 @@ class Tables(Case):
 
     def test_links_are_refused(self):
         os.mkdir(self.path("o"))
-        with open(self.path("mine"), "w") as file:
-            file.write("mine")
+        Path(self.path("mine")).write_text("mine")
         os.symlink(self.path("mine"), self.path("o", "events.csv"))
         self.assertIn("events.csv", self.run_scene("o", expect=1)[1])
-        with open(self.path("mine")) as file:
-            self.assertEqual(file.read(), "mine")
+        self.assertEqual(Path(self.path("mine")).read_text(), "mine")
 
     def test_mistakes(self):
         def complaint(extra, expect=2):
@@ -161,10 +156,8 @@ class Tables(Case):
                       complaint("probes: [{kind: uv, at: [0, 0], sheet: shet1}]\n"))
         self.assertIn("two probes are called 'a'",
                       complaint("probes: [{kind: uv, at: [0, 0], name: a}, {kind: uv, at: [0, 1], name: a}]\n"))
-        with open(self.path("bare.obj"), "w") as file:
-            file.write("v 0 0 0\nv .01 0 0\nv .01 .01 0\nv 0 .01 0\nf 1 2 3 4\n")
-        with open(self.path("bare.yaml"), "w") as file:
-            file.write("sheets: [{mesh: bare.obj}]\nprobes: [{kind: uv, at: [0, 0]}]\n")
+        Path(self.path("bare.obj")).write_text("v 0 0 0\nv .01 0 0\nv .01 .01 0\nv 0 .01 0\nf 1 2 3 4\n")
+        Path(self.path("bare.yaml")).write_text("sheets: [{mesh: bare.obj}]\nprobes: [{kind: uv, at: [0, 0]}]\n")
         self.assertIn("the mesh has none", self.singe("check", self.path("bare.yaml"), expect=2)[1])
         self.assertIn("the sheet has no uv [2, 0.5]: the probe takes the nearest, 1 away",
                       complaint("probes: [{kind: uv, at: [2, 0.5]}]\n", expect=0))

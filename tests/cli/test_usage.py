@@ -8,6 +8,7 @@ import struct
 import subprocess
 import time
 import unittest
+from pathlib import Path
 
 from support import ROOT, SANITIZED, SINGE, VERSION, Case
 
@@ -74,8 +75,7 @@ class Usage(Case):
     def test_bad_scenes(self):
         unknown = self.write_scene("unknown.yaml", extra="colour: red\n")
         mesh = self.path("mesh.yaml")
-        with open(mesh, "w") as file:
-            file.write("sheets:\n  - mesh: nowhere.obj\n")
+        Path(mesh).write_text("sheets:\n  - mesh: nowhere.obj\n")
         empty = self.path("empty.yaml")
         open(empty, "w").close()
         for path, hint in (
@@ -124,10 +124,8 @@ class Usage(Case):
         long = "é" * 3000
         self.write_scene(bad + ".yaml", extra="fps: 0\n")
         mesh = f'sheets: [{{mesh: "{bad}.obj"}}]\n'.replace("\x1b", "\\x1b").replace("\n", "\\n", 1)
-        with open(self.path("mesh.yaml"), "w") as file:
-            file.write(mesh)
-        with open(self.path(bad + ".obj"), "w") as file:
-            file.write("v SECRET 0 0\n")
+        Path(self.path("mesh.yaml")).write_text(mesh)
+        Path(self.path(bad + ".obj")).write_text("v SECRET 0 0\n")
         for args in (
             ["check", bad + ".yaml"], ["check", bad], ["check", "mesh.yaml"], ["run", bad], ["render", bad],
             ["verify", bad], ["measure", bad], ["run", self.scene, "--set", bad], ["run", self.scene, "--" + bad],
@@ -163,11 +161,9 @@ class Usage(Case):
             self.assertLess(time.monotonic() - begun, 10)
             self.assertRegex(err, r"tiny.yaml:6:5: error: the scene needs about 6\d\d\.\d GB of memory, but only")
         self.assertFalse(os.path.exists(self.path("large")))
-        with open(self.path("two.obj"), "w") as file:
-            file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        Path(self.path("two.obj")).write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
         mesh = self.write_scene("mesh.yaml").replace("mesh.yaml", "with_mesh.yaml")
-        with open(mesh, "w") as file:
-            file.write("sheets: [{mesh: two.obj}]\n")
+        Path(mesh).write_text("sheets: [{mesh: two.obj}]\n")
         out, _ = self.singe("check", mesh)
         self.assertRegex(out, r"^needs +about \d\.\d\d GB of memory for 0 cells and those of 1 mesh file\n"
                               r"needs +about \d\.\d\d GB of memory for 1 cells\n")

@@ -7,6 +7,7 @@ import os
 import random
 import signal
 import struct
+from pathlib import Path
 from fractions import Fraction
 
 from support import Case, Ply
@@ -206,8 +207,7 @@ class Verify(Case):
     def verify(self, *args, expect=0):
         path = self.path("counts.csv")
         out, err = self.singe("verify", self.path("o"), "--csv", path, *args, expect=expect)
-        with open(path, newline="") as file:
-            return out, err, [{k: int(v) for k, v in row.items()} for row in csv.DictReader(file)]
+        return out, err, [{k: int(v) for k, v in row.items()} for row in csv.DictReader(Path(path).read_text().splitlines())]
 
     def damage(self, change, number=3):
         surface = Surface(self.frame(number))
@@ -216,8 +216,7 @@ class Verify(Case):
 
     def finds(self, kind, change, *messages, others=()):
         """Checks that a change causes a fault of this kind in frame 3, and no others except `others`."""
-        with open(self.frame(), "rb") as file:
-            whole = file.read()
+        whole = Path(self.frame()).read_bytes()
         with self.subTest(kind, change=change.__name__):
             self.damage(change)
             out, err, rows = self.verify(expect=1)
@@ -230,8 +229,7 @@ class Verify(Case):
             self.assertIn("tiny.0003.ply", err)
             for message in messages:
                 self.assertIn(message, err)
-        with open(self.frame(), "wb") as file:
-            file.write(whole)
+        Path(self.frame()).write_bytes(whole)
 
     def test_good(self):
         out, err, rows = self.verify()
@@ -320,11 +318,9 @@ class Verify(Case):
             self.damage(pierce(0), number)
         _, _, rows = self.verify("--stretch", "1e9", expect=1) # the run has reported none
         self.assertEqual(sum(total(rows, "initial_crossings")), 0)
-        with open(self.path("o", "run.json")) as file:
-            record = file.read()
+        record = Path(self.path("o", "run.json")).read_text()
         self.assertIn('"crossed_at_start": 0', record)
-        with open(self.path("o", "run.json"), "w") as file:
-            file.write(record.replace('"crossed_at_start": 0', '"crossed_at_start": 7'))
+        Path(self.path("o", "run.json")).write_text(record.replace('"crossed_at_start": 0', '"crossed_at_start": 7'))
         out, err, rows = self.verify("--stretch", "1e9")
         start = total(rows, "initial_crossings")
         self.assertGreater(start[0], 0)
@@ -355,9 +351,8 @@ class Verify(Case):
                     file.writelines("v %g %g %g\n" % p for p in corner)
                     file.writelines("f %d %d %d\n" % tuple(i + 1 for i in face) for face in given)
                 scene = self.path(name + ".yaml")
-                with open(scene, "w") as file:
-                    file.write("frames: 2\nsteps: 1\nsheets:\n  - grid: {size: [4 cm, 4 cm], cells: [4, 4]}\n"
-                               f"    render_mesh: {{mesh: {name}.obj}}\n")
+                Path(scene).write_text("frames: 2\nsteps: 1\nsheets:\n  - grid: {size: [4 cm, 4 cm], cells: [4, 4]}\n"
+                                       f"    render_mesh: {{mesh: {name}.obj}}\n")
                 _, err = self.singe("check", scene)
                 lines = [line for line in err.splitlines() if "render mesh" in line]
                 self.assertEqual(len(lines), 1 if warning else 0, err)
@@ -384,15 +379,13 @@ class Verify(Case):
 
     def test_stats(self):
         path = self.path("o", "stats.csv")
-        with open(path) as file:
-            lines = file.read().splitlines()
+        lines = Path(path).read_text().splitlines()
         names, third = lines[0].split(","), lines[3].split(",")
 
         def rewrite(name, value):
             cells = list(third)
             cells[names.index(name)] = value
-            with open(path, "w") as file:
-                file.write("\n".join(lines[:3] + [",".join(cells)] + lines[4:]) + "\n")
+            Path(path).write_text("\n".join(lines[:3] + [",".join(cells)] + lines[4:]) + "\n")
 
         for name, value, kind, count in (("inverted_cells", "4", "inverted_cells", 4), ("triangles", "1", "stats", 1),
                                          ("time", "7", "stats", 1)):
@@ -402,8 +395,7 @@ class Verify(Case):
             self.assertIn("stats.csv", err)
         rewrite("time", "soon")
         self.assertIn("stats.csv:4", self.singe("verify", self.path("o"), expect=2)[1])
-        with open(path, "w") as file:
-            file.write("\n".join(lines[:-1]) + "\n")
+        Path(path).write_text("\n".join(lines[:-1]) + "\n")
         self.assertIn("no line of frame 6", self.verify(expect=1)[1])
         os.remove(path)
         out, err, _ = self.verify()
@@ -518,12 +510,10 @@ gas: no
             for first in (1, 1 + (n + 1) ** 2):
                 corners = [first + k // n * (n + 1) + k % n for k in range(n * n)]
                 file.writelines("f %d %d %d %d\n" % (v, v + 1, v + n + 2, v + n + 1) for v in corners)
-        with open(self.scene, "w") as file:
-            file.write(self.SCENE.format(mesh=f", render_mesh: {{mesh: layers.obj{more}}}" if height else ""))
+        Path(self.scene).write_text(self.SCENE.format(mesh=f", render_mesh: {{mesh: layers.obj{more}}}" if height else ""))
         self.run_scene("o", "--force", "--quiet")
         self.singe("verify", self.path("o"), "--csv=" + self.path("v.csv"), expect=expect)
-        with open(self.path("v.csv")) as file:
-            return sum(int(row["crossings"]) for row in csv.DictReader(file))
+        return sum(int(row["crossings"]) for row in csv.DictReader(Path(self.path("v.csv")).read_text().splitlines()))
 
     def test_no_crossings_are_added(self):
         self.assertEqual(self.crossings(0), 0)

@@ -8,6 +8,7 @@ import socket
 import struct
 import subprocess
 import time
+from pathlib import Path
 
 from support import SANITIZED, SINGE, Case
 
@@ -91,8 +92,7 @@ class Cache(Case):
         frame = self.view.ask("run/1/frame/1")[1]
         drawn = {frame[at + 16 : at + 28] for at in range(592, 592 + 64 * struct.unpack_from("<I", frame, 4)[0], 64)}
         self.assertLessEqual({mesh[at : at + 12] for at in range(8, 8 + 12 * vertices, 12)}, drawn)
-        with open(self.path("out", "stats.csv"), "rb") as file:
-            self.assertEqual(self.view.ask("run/1/stats.csv"), (200, file.read()))
+        self.assertEqual(self.view.ask("run/1/stats.csv"), (200, Path(self.path("out", "stats.csv")).read_bytes()))
         status, page = self.view.ask("")
         self.assertEqual(status, 200)
         self.assertIn(b"view.js", page)
@@ -175,10 +175,8 @@ class Cache(Case):
     def test_a_damaged_frame_is_told_of(self):
         for number, damage in ((2, b"no mesh"), (3, None)):
             path = self.path("out", "ply", f"tiny.{number:04d}.ply")
-            with open(path, "rb") as file:
-                whole = file.read()
-            with open(path, "wb") as file:
-                file.write(damage or whole[: len(whole) // 2])
+            whole = Path(path).read_bytes()
+            Path(path).write_bytes(damage or whole[: len(whole) // 2])
             status, text = self.view.ask(f"run/1/frame/{number}")
             self.assertEqual(status, 500)
             self.assertIn(b".ply", text)
@@ -202,8 +200,7 @@ class Live(Case):
 
     def save(self, text):
         """By a new file in place of the old one, as editors do. Returns when."""
-        with open(self.scene + "~", "w") as file:
-            file.write(text)
+        Path(self.scene + "~").write_text(text)
         saved = time.monotonic()
         os.replace(self.scene + "~", self.scene)
         return saved
@@ -226,8 +223,7 @@ class Live(Case):
         self.assertEqual((state["run"], state["live"], state["exit"]), (1, True, 0))
 
         # a save that is wrong: the message, and the frames of before
-        with open(self.scene) as file:
-            good = file.read()
+        good = Path(self.scene).read_text()
         self.save(good + "nonsense: 1\n")
         state = self.view.wait(lambda s: s["newest"] == 2 and not s["burning"])
         self.assertEqual((state["run"], state["last"], state["exit"]), (1, 4, 2))

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import tempfile
 import unittest
+from pathlib import Path
 
 from support import SINGE, Case
 
@@ -53,8 +54,7 @@ class Words(Case):
         pages = sorted(os.listdir(self.path("man")))
         self.assertEqual(pages, sorted(["singe.1", *(f"singe-{command}.1" for command in self.commands)]))
         for command in self.commands:
-            with open(self.path("man", f"singe-{command}.1"), encoding="utf-8") as file:
-                page = file.read().replace("\\-", "-")
+            page = Path(self.path("man", f"singe-{command}.1")).read_text(encoding="utf-8").replace("\\-", "-")
             self.assertEqual(page, self.singe("manual", command)[0].replace("\\-", "-"))
             for option in re.findall(r"^  (?:-\w, |    )--([a-z-]+)", self.help_of(command), re.M):
                 self.assertIn(f"\\fB--{option}\\fR", page)
@@ -98,8 +98,7 @@ class Words(Case):
     @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
     def test_zsh_completes_commands_and_options(self):
         os.mkdir(self.path("functions"))
-        with open(self.path("functions", "_singe"), "w") as file:
-            file.write(self.singe("completion", "zsh")[0])
+        Path(self.path("functions", "_singe")).write_text(self.singe("completion", "zsh")[0])
         # zsh has no call for this: a shell at a terminal of its own is typed into
         script = """
 zmodload zsh/zpty

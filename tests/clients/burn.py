@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 
@@ -85,9 +86,8 @@ def write_picture(path, width=96, height=144):
 
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)) +
-                   chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+    Path(path).write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)) +
+                           chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 def body(frame):
@@ -124,8 +124,7 @@ def make(singe, folder, formats, *extra):
     write_picture(os.path.join(folder, "print.png"))
     write_body(folder)
     scene = os.path.join(folder, "burn.yaml")
-    with open(scene, "w") as file:
-        file.write(SCENE.format(frames=FRAMES, formats=", ".join(formats)))
+    Path(scene).write_text(SCENE.format(frames=FRAMES, formats=", ".join(formats)))
     out = os.path.join(folder, "out")
     subprocess.run([singe, "run", scene, "-o", out, "--quiet", *extra], check=True, stdout=subprocess.DEVNULL)
     return out
@@ -134,8 +133,7 @@ def make(singe, folder, formats, *extra):
 def make_gone(singe, folder, formats):
     """Burns GONE in folder/gone, 12 frames, and says where its files are."""
     scene, out = os.path.join(folder, "gone.yaml"), os.path.join(folder, "gone")
-    with open(scene, "w") as file:
-        file.write(GONE.replace("output: {}", "output: {formats: [%s]}" % ", ".join(formats)))
+    Path(scene).write_text(GONE.replace("output: {}", "output: {formats: [%s]}" % ", ".join(formats)))
     subprocess.run([singe, "run", scene, "-o", out, "--quiet", "--no-preview"], check=True, stdout=subprocess.DEVNULL)
     return out
 
@@ -144,8 +142,7 @@ class Frame:
     """A PLY of the cache: `column(name)`, `stack("x y z")`, `triangles`; of one sheet, numbered from 0, if asked for."""
 
     def __init__(self, out, number, name="burn", sheet=None):
-        with open(os.path.join(out, "ply", "%s.%04d.ply" % (name, number)), "rb") as file:
-            header, body = file.read().split(b"end_header\n", 1)
+        header, body = Path(os.path.join(out, "ply", "%s.%04d.ply" % (name, number))).read_bytes().split(b"end_header\n", 1)
         header = header.decode()
         self.time = float(re.search(r"time (\S+)", header).group(1))
         vertices = int(re.search(r"element vertex (\d+)", header).group(1))

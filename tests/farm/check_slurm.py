@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from pathlib import Path
 
 SCENE = """\
 frames: 40
@@ -84,13 +85,11 @@ class Slurm:
         self.processes = []
         for name in "spool", "ctld", "munge":
             os.makedirs(os.path.join(at, name), mode=0o700)
-        with open(os.path.join(at, "munge", "key"), "wb") as file:
-            file.write(os.urandom(1024))
+        Path(at, "munge", "key").write_bytes(os.urandom(1024))
         os.chmod(file.name, 0o400)
         host = os.uname().nodename.split(".")[0]
         os.environ["SLURM_CONF"] = os.path.join(at, "slurm.conf")
-        with open(os.environ["SLURM_CONF"], "w") as file:
-            file.write(CONF.format(at=at, host=host, cpus=os.cpu_count()))
+        Path(os.environ["SLURM_CONF"]).write_text(CONF.format(at=at, host=host, cpus=os.cpu_count()))
         munge = os.path.join(at, "munge")
         self.start("munged", "--force", "--foreground", f"--key-file={munge}/key", f"--socket={munge}/sock",
                    f"--pid-file={munge}/pid", f"--log-file={munge}/log", f"--seed-file={munge}/seed")
@@ -139,8 +138,7 @@ def run(*command):
 
 def frames_done(out, row):
     try:
-        with open(os.path.join(out, "unfinished", f"{row:04}", "stats.csv"), "rb") as file:
-            return file.read().count(b"\n") - 1
+        return Path(out, "unfinished", f"{row:04}", "stats.csv").read_bytes().count(b"\n") - 1
     except FileNotFoundError:
         return 0
 
@@ -148,8 +146,7 @@ def frames_done(out, row):
 def check(program, at):
     plan, local, farm = (os.path.join(at, name) for name in ("plan.yaml", "local", NAME))
     for name, text in (("scene.yaml", SCENE), ("plan.yaml", PLAN)):
-        with open(os.path.join(at, name), "w") as file:
-            file.write(text)
+        Path(at, name).write_text(text)
     begun = time.monotonic()
     run(program, "sweep", plan, "-o", local, "--no-preview")
     print(f"4 rows without Slurm: {time.monotonic() - begun:.1f} s")

@@ -15,6 +15,7 @@ import statistics
 import subprocess
 import tempfile
 import time
+from pathlib import Path
 
 LETTER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "examples", "letter", "letter.yaml")
 CELLS = "[42, 60]"
@@ -40,8 +41,7 @@ def seconds(function):
 
 def rows_an_hour(program, folder, jobs):
     plan = os.path.join(folder, "plan.yaml")
-    with open(plan, "w") as file:
-        file.write(PLAN.format(scene=os.path.abspath(LETTER), frames=FRAMES, cells=CELLS))
+    Path(plan).write_text(PLAN.format(scene=os.path.abspath(LETTER), frames=FRAMES, cells=CELLS))
     out = os.path.join(folder, "sweep")
     shutil.rmtree(out, ignore_errors=True)
     took = seconds(lambda: run(program, "sweep", plan, "-o", out, "--no-preview", "--jobs", str(jobs)))

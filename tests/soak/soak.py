@@ -22,6 +22,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import extremes
 
@@ -166,8 +167,7 @@ class Soak:
             kept = os.path.join(self.work, "findings", str(seed))
             shutil.rmtree(kept, ignore_errors=True)
             shutil.copytree(folder, kept)
-            with open(os.path.join(kept, "finding.txt"), "w", encoding="utf-8") as file:
-                file.write(f"{finding}\n")
+            Path(kept, "finding.txt").write_text(f"{finding}\n", encoding="utf-8")
             print(f"seed {seed}: {finding}; see {kept}", flush=True)
             became = "found"
         if became == "faulty" or self.ends and became in ("stopped", "refused"):

@@ -8,6 +8,7 @@ import os
 import re
 import struct
 import zlib
+from pathlib import Path
 
 HAS_EXR = os.environ.get("SINGE_EXR", "1") == "1"
 
@@ -69,8 +70,7 @@ def picture(side=8):
 def write_scene(folder):
     for name, data in (("tiny.yaml", SCENE.encode()), ("square.obj", square().encode()),
                        ("block.obj", block().encode()), ("dots.png", picture())):
-        with open(os.path.join(folder, name), "wb") as file:
-            file.write(data)
+        Path(folder, name).write_bytes(data)
 
 
 def write_ffmpeg(folder):
@@ -120,8 +120,7 @@ def scenarios():
 # ---- what is left, in a form that can be compared
 
 def read(path):
-    with open(path, "rb") as file:
-        return file.read()
+    return Path(path).read_bytes()
 
 
 def stats_rows(data):

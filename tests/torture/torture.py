@@ -18,6 +18,7 @@ import sys
 import tempfile
 import threading
 import time
+from pathlib import Path
 
 from scenarios import CHECKPOINTS, comparable, contents, printed, scenarios, write_ffmpeg, write_scene
 
@@ -95,15 +96,13 @@ class Place:
 
     def tortured(self, command, variables):
         """The command under the shim, and its counters: failed, then calls by kind."""
-        with open(self.state, "wb") as file:
-            file.write(bytes(8 * (1 + len(KINDS))))
+        Path(self.state).write_bytes(bytes(8 * (1 + len(KINDS))))
         asan = os.environ.get("ASAN_OPTIONS", "") + ":verify_asan_link_order=0:exitcode=99"
         known = os.path.join(os.path.dirname(os.path.abspath(__file__)), "leaks.txt")
         lsan = os.environ.get("LSAN_OPTIONS", "") + ":print_suppressions=0:suppressions=" + known
         done = self.singe(command, check=False, **{"SINGE_TORTURE_STATE": self.state, "LD_PRELOAD": SHIM,
                                                    "ASAN_OPTIONS": asan, "LSAN_OPTIONS": lsan, **variables})
-        with open(self.state, "rb") as file:
-            return done, struct.unpack(f"{1 + len(KINDS)}Q", file.read())
+        return done, struct.unpack(f"{1 + len(KINDS)}Q", Path(self.state).read_bytes())
 
     def fill(self, template):
         shutil.rmtree(self.folder, ignore_errors=True)
