@@ -1,4 +1,4 @@
-#include "bench/bench_args.h"
+#include "bench/bench.h"
 
 #include <errno.h>
 #include <math.h>
@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/job.h"
+#include "cli/text.h"
 #include "common/printable.h"
 
 #define FIELD(name) offsetof(BenchRequest, options.name)
@@ -111,4 +112,72 @@ bool bench_args_read(const char *name, const char *summary, const char *accepted
         if (bench_takes(accepted, bench_all_options[i].name)) options[command.option_count++] = bench_all_options[i];
     *request = (BenchRequest){.options = bench_options()};
     return args_read(&command, argc, argv, request, code);
+}
+
+// ----
+
+int options_cells(double springs) {
+    double cells = round(sqrt(springs / 10));
+    return cells < 2 ? 2 : (int)cells;
+}
+
+int options_substeps(const BenchOptions *options) { return options->substeps ? options->substeps : 3; }
+
+BenchList bench_list(const BenchList *asked, int count, const double *defaults) {
+    if (asked->count) return *asked;
+    BenchList list = {.count = count};
+    for (int i = 0; i < count; i++) list.values[i] = defaults[i];
+    return list;
+}
+
+// ---- materials
+
+BenchMaterial bench_material(const SceneMaterial *material) {
+    BenchMaterial bench = {.name = material->name ? material->name : "-",
+                           .def = material->def,
+                           .calibrated = material->measured.given && material->measured.calibrated};
+    memcpy(bench.speed, material->measured.speed, sizeof bench.speed);
+    memcpy(bench.temperature, material->measured.temperature, sizeof bench.temperature);
+    memcpy(bench.residue, material->measured.residue, sizeof bench.residue);
+    return bench;
+}
+
+/// A material is read as the material of a sheet in a scene, so that its errors are reported in the same way.
+static ExitCode read_one(const char *name, size_t length, BenchMaterials *materials) {
+    static const char text[] = "sheets: [{grid: {size: [1, 1], cells: [1, 1]}}]";
+    char *set = text_format("sheets.0.material.base=%.*s", (int)length, name);
+    const char *sets[] = {set};
+    SceneMessages messages = {0};
+    Scene **scene = &materials->scenes[materials->count];
+    SingeResult result = scene_parse("material", text, sizeof text - 1, ".", sets, 1, scene, &messages);
+
+    scene_messages_print(&messages, stderr);
+    scene_messages_free(&messages);
+    free(set);
+    if (!result) materials->items[materials->count++] = bench_material(&(*scene)->sheets[0].material);
+    return job_exit(result);
+}
+
+ExitCode bench_materials_open(const char *list, BenchMaterials *materials) {
+    ExitCode code = EXIT_GOOD;
+    const char *name;
+    *materials = (BenchMaterials){0};
+    for (int i = 0; !list && !code && (name = scene_material_name(i)) && i < BENCH_MATERIALS_MAX; i++)
+        code = read_one(name, strlen(name), materials);
+    while (list && !code) {
+        size_t length = strcspn(list, ",");
+        if (materials->count == BENCH_MATERIALS_MAX) {
+            fprintf(stderr, "singe bench: error: at most %d materials\n", BENCH_MATERIALS_MAX);
+            return EXIT_INPUT;
+        }
+        code = read_one(list, length, materials);
+        list = list[length] ? list + length + 1 : NULL;
+    }
+
+    return code;
+}
+
+void bench_materials_close(BenchMaterials *materials) {
+    for (int i = 0; i < BENCH_MATERIALS_MAX; i++) scene_free(materials->scenes[i]);
+    *materials = (BenchMaterials){0};
 }

@@ -3,11 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/bench.h"
 #include "cli/text.h"
 #include "cli/args.h"
-#include "bench/bench_args.h"
-#include "bench/bench_materials.h"
+#include "bench/bench.h"
 #include "cli/cli.h"
 #include "cli/console.h"
 #include "common/printable.h"

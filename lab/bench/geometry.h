@@ -1,6 +1,9 @@
-// The geometry of a square sheet with `cells` per side, from its vertices.
+// Measures of a square sheet with `cells` per side, from its vertices.
 #pragma once
 
+#include <stdbool.h>
+
+#include "bench/table.h"
 #include "singe/singe.h"
 
 /// The cells of a grid of across x along cells, whose vertices lie in rows of across + 1: cells[4 * across * along].
@@ -47,3 +50,27 @@ double geometry_window(double *line, int count);
 
 /// Its power at k waves over its length.
 double geometry_power(const double *line, int count, int k);
+
+// ---- strain of springs, |length/target - 1|, over any number of samples: max, mean, 99th percentile.
+
+/// A histogram over the top bits of the strain as a float, without the sign: 8 of the exponent and 7 of the mantissa,
+/// so that a percentile has a relative error of 1/128.
+enum { STRAIN_BINS = 1 << 15 };
+
+typedef struct Strain {
+    uint64_t count, bins[STRAIN_BINS];
+    double sum, max;
+    bool finite; ///< no length was NaN or infinite
+} Strain;
+
+void strain_clear(Strain *strain);
+
+/// Adds every remaining spring of a colour, except springs between two held particles: no solver can change them.
+void strain_add(Strain *strain, const SingeView *view, SingeColour colour);
+
+/// Adds the samples of another.
+void strain_merge(Strain *strain, const Strain *other);
+
+/// Max, p99 and mean in percent: of the samples, and of a simulation.
+BenchValue strain_percent(const Strain *strain);
+BenchValue strain_of(const SingeStats *stats);

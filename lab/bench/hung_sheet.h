@@ -1,7 +1,7 @@
 // The sheet that most measurements use: 1 m x 1 m, 0.1 kg/m2, n x n cells, no drag, no damping, held at corners.
 #pragma once
 
-#include "bench/options.h"
+#include "bench/bench.h"
 
 typedef struct BenchSetup {
     BenchState state;
@@ -40,3 +40,10 @@ SingeResult bench_give_up(SingeSim **sim, SingeResult result, SingeError *error)
 
 /// Creates a simulation and commits it. On failure *sim is NULL.
 SingeResult sheet_build(const BenchSetup *setup, SingeSim **sim, SingeError *error);
+
+// A burning sheet: it hangs upright from two corners while a hot ball crosses it. Its lower edge lies on the ground,
+// and a sphere touches it from behind.
+
+/// Creates and commits it; `pace` is the fire's. On failure *sim is NULL.
+SingeResult burning_build(const BenchOptions *options, const SingeAllocator *allocator, double springs, float pace,
+                          SingeSim **sim, SingeError *error);

@@ -1,4 +1,4 @@
-// The machine of the measurement: its name and its clocks.
+// The machine of the measurement: its name, its clocks, and its threads.
 #pragma once
 
 #include <stddef.h>
@@ -24,3 +24,10 @@ typedef struct MachineHeld {
 
 /// A SingeAllocator's resize, which counts; `context` is a MachineHeld.
 void *machine_resize(void *context, void *block, size_t old_size, size_t new_size);
+
+// ---- independent cases
+
+/// Calls run(context, i) for all i below `count`, on `threads` threads; and done(context, i) in the order of i, one at
+/// a time, as soon as case i and all before it have run.
+void workers_run(int count, int threads, void (*run)(void *context, int i), void (*done)(void *context, int i),
+                 void *context);

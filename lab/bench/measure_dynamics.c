@@ -5,7 +5,7 @@
 #include "bench/bench.h"
 #include "bench/peaks.h"
 #include "bench/hung_sheet.h"
-#include "bench/strain.h"
+#include "bench/geometry.h"
 #include "bench/timing.h"
 
 static SingeResult dynamics_add_row(BenchTable *table, const BenchSetup *setup, const Peaks *peaks, const SingeSim *sim,

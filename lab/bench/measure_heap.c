@@ -7,7 +7,6 @@
 #include "bench/geometry.h"
 #include "bench/hung_sheet.h"
 #include "bench/machine.h"
-#include "bench/strain.h"
 #include "analysis/numbers.h"
 
 enum { STEPS = 20, ROOM = 4096 };

@@ -1,6 +1,6 @@
 // Bytes per spring by size: of a simulation, added by contact, the peak while building it, and of its drawn mesh.
 #include "bench/bench.h"
-#include "bench/burning.h"
+#include "bench/hung_sheet.h"
 #include "bench/machine.h"
 #include "bench/timing.h"
 

@@ -20,8 +20,6 @@
 #include "bench/geometry.h"
 #include "bench/machine.h"
 #include "bench/hung_sheet.h"
-#include "bench/strain.h"
-#include "bench/workers.h"
 
 static const double gravity = 9.81, speed_limit = 100, reach_limit = 1.5, gyration_limit = 0.35, folded_limit = 0.25;
 

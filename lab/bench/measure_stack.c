@@ -5,7 +5,6 @@
 #include "bench/bench.h"
 #include "bench/geometry.h"
 #include "bench/machine.h"
-#include "bench/strain.h"
 
 enum { STEPS_FRAME = 20, FPS = 24 };
 static const float side = 0.35f, ball = 0.1f, lowest = 0.21f, apart = 0.01f; // m

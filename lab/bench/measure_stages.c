@@ -1,6 +1,6 @@
 // Whole burning steps, stage by stage.
 #include "bench/bench.h"
-#include "bench/burning.h"
+#include "bench/hung_sheet.h"
 #include "bench/timing.h"
 #include "common/store.h"
 

@@ -1,6 +1,6 @@
 // The cost of the drawn surface of a burning sheet, with plain cells and refined near the front.
 #include "bench/bench.h"
-#include "bench/burning.h"
+#include "bench/hung_sheet.h"
 #include "bench/machine.h"
 #include "analysis/numbers.h"
 #include "bench/timing.h"

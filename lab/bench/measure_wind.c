@@ -5,7 +5,6 @@
 #include "bench/bench.h"
 #include "bench/geometry.h"
 #include "bench/machine.h"
-#include "bench/strain.h"
 
 enum { STEPS = 40, STEPS_SECOND = 240 };
 static const float side = 0.1f; // m

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bench/machine.h"
+#include "cli/text.h"
 
 void table_fact(BenchTable *table, const char *name, double number) {
     if (table->fact_count == BENCH_FACTS_MAX) return;
@@ -100,22 +101,13 @@ static void write_number(FILE *file, double number, const char *nothing) {
     else fputs(nothing, file);
 }
 
-static void write_json_text(FILE *file, const char *text) {
-    fputc('"', file);
-    for (; *text; text++) {
-        if (*text == '"' || *text == '\\') fputc('\\', file);
-        if ((unsigned char)*text >= ' ') fputc(*text, file);
-    }
-    fputc('"', file);
-}
-
 void table_write_json(const BenchTable *table, FILE *file) {
     fputs("{\"command\": ", file);
-    write_json_text(file, table->command);
+    text_json_string(file, table->command);
     fputs(", \"machine\": ", file);
-    write_json_text(file, machine_name());
+    text_json_string(file, machine_name());
     fputs(", \"version\": ", file);
-    write_json_text(file, singe_version());
+    text_json_string(file, singe_version());
     for (int f = 0; f < table->fact_count; f++) {
         fprintf(file, ", \"%s\": ", table->facts[f].name);
         write_number(file, table->facts[f].number, "null");
@@ -132,7 +124,7 @@ void table_write_json(const BenchTable *table, FILE *file) {
                 fprintf(file, "%s\"", comma);
                 write_key(file, &table->columns[c], part);
                 fputs("\": ", file);
-                if (row[c].text) write_json_text(file, row[c].text);
+                if (row[c].text) text_json_string(file, row[c].text);
                 else write_number(file, row[c].number[part], "null");
                 comma = ", ";
             }

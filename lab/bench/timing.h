@@ -3,7 +3,6 @@
 
 #include <stdbool.h>
 
-#include "bench/yardstick.h"
 #include "singe/singe.h"
 
 /// The timed parts of a step, in milliseconds of wall clock; the stages come first, in order.
@@ -20,6 +19,16 @@ typedef struct Timing {
     double *ms[TIMED_COUNT]; ///< [steps] each, ascending when measured
     SingeTimers total;       ///< over the timed steps only
 } Timing;
+
+/// The current speed of this machine: a fixed workload similar to a step.
+typedef struct Yardstick Yardstick;
+
+/// NULL when out of memory.
+Yardstick *yardstick_create(void);
+void yardstick_destroy(Yardstick *yardstick);
+
+/// Does the work once; returns its time in milliseconds.
+double yardstick_run(Yardstick *yardstick);
 
 /// The yardstick's time on the reference machine, ms.
 double timing_yardstick_reference(void);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/hung_sheet.h"
-#include "bench/strain.h"
+#include "bench/geometry.h"
 
 /// Times at which the height of the centre of mass is recorded, s: frames 8, 12 and 16.
 enum { TRAJECTORY_MARKS = 3 };

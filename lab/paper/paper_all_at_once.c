@@ -6,7 +6,7 @@
 
 #include "paper/paper.h"
 #include "paper/paper_states.h"
-#include "analysis/singular.h"
+#include "analysis/numbers.h"
 
 enum { CELLS = 6, WARM_STEPS = 200, STEPS = 7 };
 

@@ -5,7 +5,7 @@
 
 #include "page/appearance.h"
 #include "paper/paper.h"
-#include "page/show_texture.h"
+#include "page/lab.h"
 
 static const char *const small_grid = "sheets.0.grid.cells=[30, 42]";
 

@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "analysis/strip.h"
-#include "page/hot_spot.h"
+#include "page/lab.h"
 #include "paper/paper.h"
 #include "paper/paper_states.h"
 

@@ -5,7 +5,7 @@
 
 #include "page/appearance.h"
 #include "paper/paper.h"
-#include "page/show_texture.h"
+#include "page/lab.h"
 
 // ---- a heat texture
 

@@ -4,9 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bench/bench.h"
 #include "analysis/strip.h"
-#include "bench/bench_materials.h"
+#include "bench/bench.h"
 #include "validate/validate.h"
 
 static const BenchValue *cell(const BenchTable *table, int row, const char *column) {

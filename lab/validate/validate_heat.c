@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "page/hot_spot.h"
+#include "page/lab.h"
 #include "validate/validate.h"
 
 static const double slab = 0.08; // m

@@ -11,6 +11,9 @@
 // numbers of a table of the values that occur (crate_floats). All is little-endian.
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "formats/sink.h"
 
 typedef uint64_t CrateValue;
@@ -94,3 +97,11 @@ void crate_spec(Crate *crate, uint32_t path, CrateSpec kind, const CrateField *f
 bool crate_take(Crate *crate, Sink *bytes);
 /// Ends the file, writes it whole or not at all, and frees the crate.
 SINGE_NODISCARD SingeResult crate_write(Crate *crate, const char *path, SingeError *error);
+
+// LZ4's block format: OpenUSD compresses integers and names with it.
+
+/// Max compressed size of `size` bytes.
+static inline size_t lz4_size_max(size_t size) { return size + size / 255 + 16; }
+
+/// Compresses a block and returns its length; `out` has room for lz4_size_max(size).
+size_t lz4_pack(const uint8_t *in, size_t size, uint8_t *out);

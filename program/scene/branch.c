@@ -7,7 +7,7 @@
 #include "scene/dump.h"
 #include "scene/faults.h"
 #include "scene/schema_rows.h"
-#include "scene/sequence.h"
+#include "scene/assets.h"
 
 #include <stdlib.h>
 #include <string.h>

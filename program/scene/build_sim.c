@@ -3,7 +3,7 @@
 #include "common/store.h"
 #include "scene/builder.h"
 #include "scene/faults.h"
-#include "scene/rotation.h"
+#include "scene/space.h"
 #include "scene/schema.h"
 #include "scene/warnings.h"
 

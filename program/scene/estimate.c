@@ -2,9 +2,9 @@
 // of 10,000 to 490,000 cells, which differ by 5 % (tests/cli/test_usage.py compares the estimate with a run).
 #include "formats/formats.h"
 #include "scene/messages.h"
-#include "scene/rotation.h"
+#include "scene/space.h"
 #include "scene/scene.h"
-#include "scene/sequence.h"
+#include "scene/assets.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,12 +2,9 @@
 #include "common/printable.h"
 #include "common/store.h"
 #include "scene/faults.h"
-#include "scene/probes.h"
-#include "scene/render_file.h"
-#include "scene/rotation.h"
+#include "scene/space.h"
 #include "scene/schema.h"
-#include "scene/sequence.h"
-#include "scene/solid.h"
+#include "scene/assets.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 // Finds the point of a sheet nearest to a probe, in space or in uv. A cell is four triangles around the mean of its
 // corners, as drawn if it is flat.
-#include "scene/probes.h"
+#include "scene/assets.h"
 
-#include "scene/closest_point.h"
+#include "scene/space.h"
 
 #include <math.h>
 #include <string.h>

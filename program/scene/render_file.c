@@ -1,7 +1,6 @@
 // Meshes that are drawn in place of sheets: a file's polygons become triangles, each corner's uv one of a vertex.
-#include "scene/render_file.h"
 #include "common/store.h"
-#include "scene/solid.h"
+#include "scene/assets.h"
 
 #include <stdlib.h>
 #include <string.h>

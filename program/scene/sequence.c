@@ -6,13 +6,12 @@
 //   x = sum_k w_k v_k + sum_i d_i e_i,   e_0 along the first side, e_2 the normal, e_1 = e_2 x e_0.
 //
 // A pin can thus follow the mesh that its sheet was made from, vertex by vertex, or another mesh, of a body.
-#include "scene/sequence.h"
 
 #include "common/store.h"
 #include "scene/faults.h"
-#include "scene/closest_point.h"
+#include "scene/space.h"
 #include "scene/schema.h"
-#include "scene/solid.h"
+#include "scene/assets.h"
 
 #include <math.h>
 #include <stdlib.h>

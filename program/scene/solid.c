@@ -2,7 +2,7 @@
 //
 // A face is triangulated by clipping ears in the plane across its mean normal (Newell's): the ear with the shortest new
 // edge first, so that a quad is cut along its shorter diagonal if both are inside.
-#include "scene/solid.h"
+#include "scene/assets.h"
 
 #include <math.h>
 #include <stdlib.h>

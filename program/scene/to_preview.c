@@ -1,6 +1,6 @@
 // From a scene to its preview: the Def, the default camera, and the shapes of a time.
 #include "common/float3.h"
-#include "scene/rotation.h"
+#include "scene/space.h"
 #include "scene/scene.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "scene/values.h"
 
 #include "common/printable.h"
-#include "scene/sequence.h"
+#include "scene/assets.h"
 #include "scene/words.h"
 
 #include <math.h>

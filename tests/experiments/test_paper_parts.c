@@ -6,7 +6,7 @@
 #include "support/test.h"
 
 #include "paper/paper_states.h"
-#include "analysis/singular.h"
+#include "analysis/numbers.h"
 
 TEST(singular_values_match_known_ones) {
     // a product of two rotations with diag(3, 2, 1e-9) between them, and a row that is twice another

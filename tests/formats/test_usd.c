@@ -1,7 +1,7 @@
 // Frames of the USD format: every value comes back by a reader of the tests' own, in the bytes and the time promised.
 #include "crate_reader.h"
 
-#include "formats/lz4.h"
+#include "formats/usd_crate.h"
 #include "formats/output.h"
 
 #include <math.h>

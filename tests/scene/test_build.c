@@ -7,8 +7,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "scene/rotation.h"
-#include "scene/solid.h"
+#include "scene/space.h"
+#include "scene/assets.h"
 #include "scene/warnings.h"
 
 /// A scene and what it refers to.
