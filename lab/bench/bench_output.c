@@ -19,11 +19,6 @@
 enum { SIDE = 158, COUNT = SIDE * SIDE, FACES = 2 * (SIDE - 1) * (SIDE - 1), FRAMES = 20, REPEATS = 5 };
 
 typedef struct OutputBench {
-    float position[COUNT][3], normal[COUNT][3], uv[COUNT][2], velocity[COUNT][3], rest[COUNT][3];
-    float temperature[COUNT], peak[COUNT], mass[COUNT], rate[COUNT], coal[COUNT], ash[COUNT], burn[COUNT],
-        ignited[COUNT];
-    int32_t piece[COUNT], source[COUNT], sheet[COUNT];
-    uint32_t triangles[FACES][3];
     SingeSurface surface;
     char *path;
     int format;
@@ -38,57 +33,37 @@ static float output_noise(uint32_t *seed) {
     return (float)(*seed >> 8) * 0x1p-24f;
 }
 
-static void output_fill(OutputBench *b) {
+static void output_fill(SingeSurface *s) {
     uint32_t seed = 1, t = 0;
     for (uint32_t v = 0; v < COUNT; v++) {
         const float x = (float)(v % SIDE), y = (float)(v / SIDE), hot = y > 0.5f * SIDE ? y / SIDE : 0;
         const float flat[3] = {1e-3f * x, 1e-3f * y, 0}, noise = output_noise(&seed);
         for (int c = 0; c < 3; c++) {
-            b->rest[v][c] = flat[c];
-            b->position[v][c] = flat[c] + 1e-4f * output_noise(&seed);
-            b->velocity[v][c] = output_noise(&seed) - 0.5f;
-            b->normal[v][c] = (float)(c == 2) + 0.01f * output_noise(&seed);
+            s->rest_position[v][c] = flat[c];
+            s->position[v][c] = flat[c] + 1e-4f * output_noise(&seed);
+            s->velocity[v][c] = output_noise(&seed) - 0.5f;
+            s->normal[v][c] = (float)(c == 2) + 0.01f * output_noise(&seed);
         }
 
-        b->uv[v][0] = x / (SIDE - 1);
-        b->uv[v][1] = y / (SIDE - 1);
-        b->temperature[v] = hot > 0 ? 400 + 800 * noise * hot : 293.15f;
-        b->peak[v] = b->temperature[v] + hot;
-        b->mass[v] = 1 - 0.5f * hot * noise;
-        b->rate[v] = hot * noise;
-        b->coal[v] = 0.3f * hot;
-        b->ash[v] = 0.1f * hot * noise;
-        b->burn[v] = 1 - b->mass[v];
-        b->ignited[v] = hot > 0 ? 0.5f + noise : -1;
-        b->piece[v] = hot > 0.9f ? 1 + (int32_t)(v % 7) : 0;
-        b->source[v] = v % 5 ? (int32_t)v : -1;
-        b->sheet[v] = 0;
+        s->uv[v][0] = x / (SIDE - 1);
+        s->uv[v][1] = y / (SIDE - 1);
+        s->temperature[v] = hot > 0 ? 400 + 800 * noise * hot : 293.15f;
+        s->temperature_peak[v] = s->temperature[v] + hot;
+        s->mass[v] = 1 - 0.5f * hot * noise;
+        s->burn_rate[v] = hot * noise;
+        s->char_fraction[v] = 0.3f * hot;
+        s->ash_fraction[v] = 0.1f * hot * noise;
+        s->burn[v] = 1 - s->mass[v];
+        s->time_ignited[v] = hot > 0 ? 0.5f + noise : -1;
+        s->piece[v] = hot > 0.9f ? 1 + (int32_t)(v % 7) : 0;
+        s->source_vertex[v] = v % 5 ? (int32_t)v : -1;
     }
 
     for (uint32_t y = 0; y + 1 < SIDE; y++)
         for (uint32_t x = 0; x + 1 < SIDE; x++, t += 2) {
             const uint32_t a = y * SIDE + x, two[2][3] = {{a, a + 1, a + SIDE + 1}, {a, a + SIDE + 1, a + SIDE}};
-            memcpy(b->triangles[t], two, sizeof two);
+            memcpy(s->triangles[t], two, sizeof two);
         }
-    b->surface = (SingeSurface){.vertex_count = COUNT,
-                                .triangle_count = FACES,
-                                .position = b->position,
-                                .normal = b->normal,
-                                .uv = b->uv,
-                                .velocity = b->velocity,
-                                .rest_position = b->rest,
-                                .temperature = b->temperature,
-                                .temperature_peak = b->peak,
-                                .mass = b->mass,
-                                .burn_rate = b->rate,
-                                .char_fraction = b->coal,
-                                .ash_fraction = b->ash,
-                                .burn = b->burn,
-                                .time_ignited = b->ignited,
-                                .piece = b->piece,
-                                .source_vertex = b->source,
-                                .sheet = b->sheet,
-                                .triangles = b->triangles};
 }
 
 static void *output_write(void *argument) {
@@ -156,9 +131,9 @@ SingeResult bench_output(const BenchOptions *options, BenchTable *table, SingeEr
     char folder[] = "/dev/shm/singe-bench-XXXXXX"; // of a name that nobody can know beforehand
     OutputBench *b = calloc(1, sizeof *b);
     double ply = 0;
-    SingeResult result = b ? SINGE_OK : SINGE_ERROR_MEMORY;
-    if (b) {
-        output_fill(b);
+    SingeResult result = b && surface_new(&b->surface, COUNT, FACES) ? SINGE_OK : SINGE_ERROR_MEMORY;
+    if (!result) {
+        output_fill(&b->surface);
         b->scene = &scene;
         if (access("/dev/shm", W_OK)) strcpy(folder, "/tmp/singe-bench-XXXXXX");
         if (!mkdtemp(folder))
@@ -174,6 +149,7 @@ SingeResult bench_output(const BenchOptions *options, BenchTable *table, SingeEr
 
     if (b) {
         rmdir(folder);
+        singe_surface_free(&b->surface);
         free(b->path);
     }
     free(b);

@@ -127,6 +127,9 @@ SINGE_NODISCARD SingeResult image_luminance(const Image *image, SingeAllocator a
 
 // ---- the cache: one binary PLY per frame (docs/formats.md)
 
+/// Makes a surface with all that a frame has, zeroed; free with singe_surface_free. False when out of memory.
+SINGE_NODISCARD bool surface_new(SingeSurface *surface, uint32_t vertices, uint32_t triangles);
+
 /// Bytes of its file, nearly.
 uint64_t ply_surface_size(const SingeSurface *surface);
 SINGE_NODISCARD SingeResult ply_write_surface(const char *path, const SingeSurface *surface, double time,

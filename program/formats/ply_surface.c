@@ -62,6 +62,34 @@ static uint8_t *column_array(const SingeSurface *surface, const Column *column) 
     return array;
 }
 
+/// Allocates the arrays. False when out of memory; those before it are there.
+static bool surface_arrays(SingeSurface *surface) {
+    surface->vertex_capacity = surface->vertex_count ? surface->vertex_count : 1;
+    surface->triangle_capacity = surface->triangle_count ? surface->triangle_count : 1;
+    for (size_t i = 0; i < column_count(surface); i++) {
+        if (columns[i].index) continue;
+        void *array = store_new(surface->allocator, surface->vertex_capacity, 4 * (size_t)columns[i].width);
+        memcpy((uint8_t *)surface + columns[i].array, &array, sizeof array);
+        if (!array) return false;
+    }
+    surface->triangles = store_new(surface->allocator, surface->triangle_capacity, sizeof *surface->triangles);
+    return surface->triangles;
+}
+
+bool surface_new(SingeSurface *surface, uint32_t vertices, uint32_t triangles) {
+    *surface = (SingeSurface){.vertex_count = vertices, .triangle_count = triangles};
+    if (!surface_arrays(surface)) {
+        singe_surface_free(surface);
+        return false;
+    }
+
+    for (size_t i = 0; i < column_count(surface); i++)
+        if (!columns[i].index)
+            memset(column_array(surface, &columns[i]), 0, 4 * (size_t)columns[i].width * surface->vertex_capacity);
+    memset(surface->triangles, 0, surface->triangle_capacity * sizeof *surface->triangles);
+    return true;
+}
+
 // Bytes after the header.
 static uint64_t surface_data_size(const SingeSurface *surface) {
     return 4 * (uint64_t)column_count(surface) * surface->vertex_count + (uint64_t)FACE_SIZE * surface->triangle_count;
@@ -203,21 +231,8 @@ SingeResult ply_read_surface(const char *name, const uint8_t *bytes, size_t size
     SingeResult result = ply_read_header(&ply);
     if (!result) result = surface_check_header(&ply, surface, &seconds);
 
-    if (!result) {
-        surface->allocator = allocator;
-        surface->vertex_capacity = surface->vertex_count ? surface->vertex_count : 1;
-        surface->triangle_capacity = surface->triangle_count ? surface->triangle_count : 1;
-        for (size_t i = 0; i < column_count(surface) && !result; i++) {
-            if (columns[i].index) continue;
-            void *array = store_new(allocator, surface->vertex_capacity, 4 * (size_t)columns[i].width);
-            if (!array) result = refuse_memory(error, "ply", name);
-            memcpy((uint8_t *)surface + columns[i].array, &array, sizeof array);
-        }
-
-        if (!result) surface->triangles = store_new(allocator, surface->triangle_capacity, sizeof *surface->triangles);
-        if (!result && !surface->triangles) result = refuse_memory(error, "ply", name);
-    }
-
+    surface->allocator = allocator;
+    if (!result && !surface_arrays(surface)) result = refuse_memory(error, "ply", name);
     if (!result) result = surface_unpack(&ply, surface);
     ply_header_free(&ply);
     if (result) singe_surface_free(surface);

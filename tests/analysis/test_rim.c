@@ -6,6 +6,7 @@
 #include "support/test.h"
 
 #include "analysis/rim.h"
+#include "formats/formats.h"
 
 enum { CELLS = 60 };
 static const double side = 0.06, rolled = 0.02, degree = 3.14159265358979323846 / 180;
@@ -30,20 +31,6 @@ static void position(const Sheet *sheet, double x, double y, float *position, fl
     memcpy(normal, n, sizeof n);
 }
 
-static SingeSurface surface_make(uint32_t vertices, uint32_t triangles) {
-    SingeSurface s = {.vertex_count = vertices, .triangle_count = triangles};
-    s.position = calloc(vertices, sizeof *s.position), s.normal = calloc(vertices, sizeof *s.normal);
-    s.rest_position = calloc(vertices, sizeof *s.rest_position), s.burn = calloc(vertices, sizeof *s.burn);
-    s.mass = calloc(vertices, sizeof *s.mass), s.piece = calloc(vertices, sizeof *s.piece);
-    s.triangles = calloc(triangles, sizeof *s.triangles);
-    return s;
-}
-
-static void surface_free(SingeSurface *s) {
-    free(s->position), free(s->normal), free(s->rest_position), free(s->burn), free(s->mass), free(s->piece);
-    free(s->triangles);
-}
-
 static void add_cell(SingeSurface *s, uint32_t *f, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
     const uint32_t first[3] = {a, b, c}, second[3] = {a, c, d};
     memcpy(s->triangles[(*f)++], first, sizeof first);
@@ -66,7 +53,8 @@ static void add_second(SingeSurface *s, uint32_t v, uint32_t *f) {
 
 static Rim look(Sheet sheet) {
     const uint32_t row = CELLS + 1, seam = 5, plain = row * row, extra = sheet.seam ? row : 0;
-    SingeSurface s = surface_make(plain + extra + (sheet.second ? 4 : 0), 2 * CELLS * CELLS + (sheet.second ? 2 : 0));
+    SingeSurface s;
+    assert_true(surface_new(&s, plain + extra + (sheet.second ? 4 : 0), 2 * CELLS * CELLS + (sheet.second ? 2 : 0)));
     for (uint32_t v = 0; v < plain + extra; v++) {
         uint32_t i = v < plain ? v % row : seam, j = v < plain ? v / row : v - plain;
         double x = i * side / CELLS, y = j * side / CELLS;
@@ -87,7 +75,7 @@ static Rim look(Sheet sheet) {
     if (sheet.second) add_second(&s, plain + extra, &f);
     Rim rim = {0};
     assert_true(rim_add(&s, &rim));
-    surface_free(&s);
+    singe_surface_free(&s);
     return rim;
 }
 

@@ -8,6 +8,7 @@
 #include "support/test.h"
 
 #include "analysis/wrinkles.h"
+#include "formats/formats.h"
 
 static const double side = 0.12, pi = 3.14159265358979323846;
 
@@ -39,12 +40,8 @@ static void add_normals(SingeSurface *s) {
 /// A square sheet of cells by cells.
 static SingeSurface draw(int cells, Height *height, double number) {
     const uint32_t n = (uint32_t)cells, row = n + 1, corners = row * row;
-    SingeSurface s = {.vertex_count = corners + n * n, .triangle_count = 4 * n * n};
-    s.position = calloc(s.vertex_count, sizeof *s.position), s.normal = calloc(s.vertex_count, sizeof *s.normal);
-    s.rest_position = calloc(s.vertex_count, sizeof *s.rest_position), s.uv = calloc(s.vertex_count, sizeof *s.uv);
-    s.burn = calloc(s.vertex_count, sizeof *s.burn), s.sheet = calloc(s.vertex_count, sizeof *s.sheet);
-    s.time_ignited = calloc(s.vertex_count, sizeof *s.time_ignited);
-    s.triangles = calloc(s.triangle_count, sizeof *s.triangles);
+    SingeSurface s;
+    assert_true(surface_new(&s, corners + n * n, 4 * n * n));
     const double step = side / cells;
     for (uint32_t v = 0; v < corners; v++) {
         double x = v % row * step, y = v / row * step;
@@ -68,8 +65,7 @@ static SingeSurface draw(int cells, Height *height, double number) {
 static void look_too(int cells, Height *height, double number, Wrinkles *wrinkles) {
     SingeSurface s = draw(cells, height, number);
     assert_true(wrinkles_add(&s, wrinkles));
-    free(s.position), free(s.normal), free(s.rest_position), free(s.uv), free(s.burn), free(s.sheet);
-    free(s.time_ignited), free(s.triangles);
+    singe_surface_free(&s);
 }
 
 static Wrinkles look(int cells, Height *height, double number) {

@@ -7,16 +7,6 @@ TEST_IN_FOLDER("a.0001.ply")
 
 enum { VERTICES = 5, TRIANGLES = 3 };
 
-// A surface of odd values: subnormals, negative zero, the largest float.
-typedef struct Sample {
-    float position[VERTICES][3], normal[VERTICES][3], uv[VERTICES][2], velocity[VERTICES][3], rest[VERTICES][3];
-    float temperature[VERTICES], peak[VERTICES], mass[VERTICES], burn_rate[VERTICES], coal[VERTICES], ash[VERTICES],
-        burn[VERTICES], time_ignited[VERTICES];
-    int32_t piece[VERTICES], source_vertex[VERTICES], sheet[VERTICES];
-    uint32_t triangles[TRIANGLES][3];
-    SingeSurface surface;
-} Sample;
-
 static void fill(void *values, size_t count, uint32_t seed) {
     static const float odd[] = {0x1p-149f, -0.0f, 0x1.fffffep127f, 0x1p-126f, -1.17549e-38f, 0.1f, 1 / 3.0f};
     float *p = values;
@@ -26,35 +16,45 @@ static void fill(void *values, size_t count, uint32_t seed) {
     }
 }
 
-static void make_sample(Sample *s) {
-    memset(s, 0, sizeof *s);
-    float *floats[] = {s->position[0], s->normal[0], s->uv[0], s->velocity[0], s->rest[0], s->temperature, s->peak,
-                       s->mass,        s->burn_rate, s->coal,  s->ash,         s->burn,    s->time_ignited};
-    size_t widths[] = {3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 1, 1, 1};
-    for (uint32_t i = 0; i < 13; i++) fill(floats[i], VERTICES * widths[i], i + 1);
-    for (int i = 0; i < VERTICES; i++)
-        s->piece[i] = i * 1000003, s->source_vertex[i] = i % 2 ? -1 : INT32_MAX - i, s->sheet[i] = i;
-    uint32_t triangles[TRIANGLES][3] = {{0, 1, 2}, {2, 3, 4}, {4, 0, 0}};
-    memcpy(s->triangles, triangles, sizeof triangles);
-    s->surface = (SingeSurface){.vertex_count = VERTICES,
-                                .triangle_count = TRIANGLES,
-                                .position = s->position,
-                                .normal = s->normal,
-                                .uv = s->uv,
-                                .velocity = s->velocity,
-                                .rest_position = s->rest,
-                                .temperature = s->temperature,
-                                .temperature_peak = s->peak,
-                                .mass = s->mass,
-                                .burn_rate = s->burn_rate,
-                                .burn = s->burn,
-                                .char_fraction = s->coal,
-                                .ash_fraction = s->ash,
-                                .time_ignited = s->time_ignited,
-                                .piece = s->piece,
-                                .source_vertex = s->source_vertex,
-                                .sheet = s->sheet,
-                                .triangles = s->triangles};
+enum { FLOATS = 13, FIELDS = 16 };
+static const size_t widths[FIELDS] = {3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+
+/// The arrays of the vertices, of 4-byte values.
+static void list_fields(const SingeSurface *s, void *fields[FIELDS]) {
+    void *const all[FIELDS] = {s->position,
+                               s->normal,
+                               s->uv,
+                               s->velocity,
+                               s->rest_position,
+                               s->temperature,
+                               s->temperature_peak,
+                               s->mass,
+                               s->burn_rate,
+                               s->char_fraction,
+                               s->ash_fraction,
+                               s->burn,
+                               s->time_ignited,
+                               s->piece,
+                               s->source_vertex,
+                               s->sheet};
+    memcpy(fields, all, sizeof all);
+}
+
+/// A surface of odd values: subnormals, negative zero, the largest float.
+static SingeSurface make_sample(void) {
+    static const uint32_t triangles[TRIANGLES][3] = {{0, 1, 2}, {2, 3, 4}, {4, 0, 0}};
+    SingeSurface s;
+    void *fields[FIELDS];
+    assert_true(surface_new(&s, VERTICES, TRIANGLES));
+    list_fields(&s, fields);
+    for (uint32_t i = 0; i < FLOATS; i++) fill(fields[i], VERTICES * widths[i], i + 1);
+    for (int i = 0; i < VERTICES; i++) {
+        s.piece[i] = i * 1000003;
+        s.source_vertex[i] = i % 2 ? -1 : INT32_MAX - i;
+        s.sheet[i] = i;
+    }
+    memcpy(s.triangles, triangles, sizeof triangles);
+    return s;
 }
 
 static Bytes written(const SingeSurface *surface, double time) {
@@ -64,9 +64,8 @@ static Bytes written(const SingeSurface *surface, double time) {
 }
 
 TEST(round_trip_is_bitwise) {
-    Sample sample;
-    make_sample(&sample);
-    Bytes bytes = written(&sample.surface, 1 / 24.0 + 7);
+    SingeSurface sample = make_sample();
+    Bytes bytes = written(&sample, 1 / 24.0 + 7);
     SingeSurface read;
     SingeError error;
     double time = 0;
@@ -75,24 +74,11 @@ TEST(round_trip_is_bitwise) {
     assert_true(time == 1 / 24.0 + 7);
     assert_int_equal(read.vertex_count, VERTICES);
     assert_int_equal(read.triangle_count, TRIANGLES);
-    const SingeSurface *s = &sample.surface;
-    assert_memory_equal(read.position, s->position, sizeof sample.position);
-    assert_memory_equal(read.normal, s->normal, sizeof sample.normal);
-    assert_memory_equal(read.uv, s->uv, sizeof sample.uv);
-    assert_memory_equal(read.velocity, s->velocity, sizeof sample.velocity);
-    assert_memory_equal(read.rest_position, s->rest_position, sizeof sample.rest);
-    assert_memory_equal(read.temperature, s->temperature, sizeof sample.temperature);
-    assert_memory_equal(read.temperature_peak, s->temperature_peak, sizeof sample.peak);
-    assert_memory_equal(read.mass, s->mass, sizeof sample.mass);
-    assert_memory_equal(read.burn_rate, s->burn_rate, sizeof sample.burn_rate);
-    assert_memory_equal(read.char_fraction, s->char_fraction, sizeof sample.coal);
-    assert_memory_equal(read.ash_fraction, s->ash_fraction, sizeof sample.ash);
-    assert_memory_equal(read.burn, s->burn, sizeof sample.burn);
-    assert_memory_equal(read.time_ignited, s->time_ignited, sizeof sample.time_ignited);
-    assert_memory_equal(read.piece, s->piece, sizeof sample.piece);
-    assert_memory_equal(read.source_vertex, s->source_vertex, sizeof sample.source_vertex);
-    assert_memory_equal(read.sheet, s->sheet, sizeof sample.sheet);
-    assert_memory_equal(read.triangles, s->triangles, sizeof sample.triangles);
+    void *fields[FIELDS], *wanted[FIELDS];
+    list_fields(&read, fields);
+    list_fields(&sample, wanted);
+    for (int i = 0; i < FIELDS; i++) assert_memory_equal(fields[i], wanted[i], VERTICES * widths[i] * sizeof(float));
+    assert_memory_equal(read.triangles, sample.triangles, TRIANGLES * sizeof *read.triangles);
 
     // and once more through the file gives the same bytes
     Bytes again = written(&read, time);
@@ -101,12 +87,12 @@ TEST(round_trip_is_bitwise) {
     bytes_free(&again);
     bytes_free(&bytes);
     singe_surface_free(&read);
+    singe_surface_free(&sample);
 }
 
 TEST(header_is_as_documented) {
-    Sample sample;
-    make_sample(&sample);
-    Bytes bytes = written(&sample.surface, 0.5);
+    SingeSurface sample = make_sample();
+    Bytes bytes = written(&sample, 0.5);
     static const char header[] =
         "ply\nformat binary_little_endian 1.0\ncomment singe " SINGE_VERSION " time 0.5\nelement vertex 5\n"
         "property float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
@@ -129,12 +115,12 @@ TEST(header_is_as_documented) {
     static const uint8_t face[] = {3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0};
     assert_memory_equal(p + VERTICES * 25 * 4, face, sizeof face);
     bytes_free(&bytes);
+    singe_surface_free(&sample);
 }
 
 TEST(the_old_name_of_burnt_is_read) {
-    Sample sample;
-    make_sample(&sample);
-    Bytes bytes = written(&sample.surface, 0.5);
+    SingeSurface sample = make_sample();
+    Bytes bytes = written(&sample, 0.5);
     const char name[] = "float burnt\n", old[] = "float char\n", none[] = "float coal\n";
     char *at = strstr((char *)bytes.data, name);
     assert_non_null(at);
@@ -145,12 +131,13 @@ TEST(the_old_name_of_burnt_is_read) {
     SingeError error;
     assert_int_equal(ply_read_surface("a.ply", bytes.data, bytes.size - 1, (SingeAllocator){0}, &read, NULL, &error),
                      SINGE_OK);
-    assert_memory_equal(read.burn, sample.surface.burn, sizeof sample.burn);
+    assert_memory_equal(read.burn, sample.burn, VERTICES * sizeof *read.burn);
     singe_surface_free(&read);
     memcpy(at, none, strlen(none));
     assert_int_equal(ply_read_surface("a.ply", bytes.data, bytes.size - 1, (SingeAllocator){0}, &read, NULL, &error),
                      SINGE_ERROR_FORMAT);
     bytes_free(&bytes);
+    singe_surface_free(&sample);
 }
 
 TEST(nothing_left_is_a_surface_too) {
@@ -178,9 +165,8 @@ static SingeResult read_copy(const uint8_t *data, size_t size, SingeError *error
 }
 
 TEST(damage_is_noticed) {
-    Sample sample;
-    make_sample(&sample);
-    Bytes bytes = written(&sample.surface, 3);
+    SingeSurface sample = make_sample();
+    Bytes bytes = written(&sample, 3);
     SingeError error;
     for (size_t size = 0; size < bytes.size; size++)
         if (read_copy(bytes.data, size, &error) == SINGE_OK) fail_msg("cut to %d bytes", (int)size);
@@ -207,28 +193,30 @@ TEST(damage_is_noticed) {
                                 "property float x\nend_header\n";
     assert_int_equal(read_copy((const uint8_t *)other, sizeof other - 1, &error), SINGE_ERROR_FORMAT);
     assert_message(&error, "not a cache of this version");
+    singe_surface_free(&sample);
 }
 
 TEST(refuses_to_write_nonsense) {
-    Sample sample;
-    make_sample(&sample);
+    SingeSurface sample = make_sample();
     SingeError error;
-    assert_int_equal(ply_write_surface(path, &sample.surface, NAN, &error), SINGE_ERROR_ARGUMENT);
-    assert_int_equal(ply_write_surface("/proc/nowhere/a.ply", &sample.surface, 0, &error), SINGE_ERROR_FILE);
+    assert_int_equal(ply_write_surface(path, &sample, NAN, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(ply_write_surface("/proc/nowhere/a.ply", &sample, 0, &error), SINGE_ERROR_FILE);
     assert_int_equal(access(path, F_OK), -1);
+    singe_surface_free(&sample);
 }
 
 TEST(allocation_failure_is_clean) {
-    Sample sample;
-    make_sample(&sample);
-    Bytes bytes = written(&sample.surface, 3);
+    SingeSurface sample = make_sample();
+    Bytes bytes = written(&sample, 3);
     SingeSurface read;
     SingeError error;
     test_allocations_fail(14, ply_read_surface("a.ply", bytes.data, bytes.size, allocator, &read, NULL, &error),
                           singe_surface_free(&read));
     bytes_free(&bytes);
     TestAllocator counter = {.fail_at = 1, .once = true};
-    sample.surface.allocator = test_allocator(&counter);
-    assert_int_equal(ply_write_surface(path, &sample.surface, 3, &error), SINGE_ERROR_MEMORY);
+    sample.allocator = test_allocator(&counter);
+    assert_int_equal(ply_write_surface(path, &sample, 3, &error), SINGE_ERROR_MEMORY);
     test_allocator_check(&counter);
+    sample.allocator = (SingeAllocator){0};
+    singe_surface_free(&sample);
 }
