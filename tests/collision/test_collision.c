@@ -66,14 +66,6 @@ static void steps(SingeSim *sim, int count) {
     for (int i = 0; i < count; i++) assert_int_equal(singe_sim_step(sim), SINGE_OK);
 }
 
-static long crossings(SingeSim *sim) {
-    SingeSurface surface = {0};
-    assert_int_equal(singe_sim_surface(sim, &surface), SINGE_OK);
-    long count = crossings_count(&surface);
-    singe_surface_free(&surface);
-    return count;
-}
-
 #ifdef SINGE_THREADS_ONLY
 enum { HEAP = 16, HEAP_STEPS = 40 };
 #else

@@ -150,14 +150,6 @@ static void resize(SingeSim *sim, const CollisionSizes *sizes) {
                      SINGE_OK);
 }
 
-static long crossings(SingeSim *sim) {
-    SingeSurface surface = {0};
-    test_ok(sim, singe_sim_surface(sim, &surface));
-    long count = crossings_count(&surface);
-    singe_surface_free(&surface);
-    return count;
-}
-
 /// No room to begin with: everything has to grow.
 static CollisionSizes tiny(const SingeSim *sim) {
     CollisionSizes sizes = collision_sizes(&sim->shell);

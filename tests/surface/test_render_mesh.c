@@ -224,7 +224,7 @@ TEST(thick_meshes_do_not_cross_in_folds) {
             p[2] = cases[k].amplitude * sinf(157.0796f * p[0] + 40 * p[1]); // eight cells a wave
         }
         const SingeSurface *s = draw(g);
-        const long crossings = crossings_count(s);
+        const long crossings = surface_crossings(s);
         float thinnest = INFINITY, thickest = 0;
         for (uint32_t v = 0; v < 51 * 51; v += 23) {
             const float apart = distance(s->position[found(s, v)], s->position[found(s, 2601 + v)]);
@@ -252,7 +252,7 @@ TEST(thick_meshes_do_not_cross_where_sheets_are_folded) {
             p[2] = radius * (1 - cosf(angle));
             p[0] = fminf(p[0], begin) + radius * sinf(angle) - fmaxf(p[0] - begin - 3.1415927f * radius, 0);
         }
-        const long crossings = crossings_count(draw(g));
+        const long crossings = surface_crossings(draw(g));
         print_message("%d mm between the two halves: %ld crossings\n", gap, crossings);
         assert_int_equal(crossings, 0);
         garment_free(g);
