@@ -26,7 +26,6 @@ static float from_edge(SyntheticKind kind, float radius, float x, float y) {
 
 static Corner corner_at(SyntheticKind kind, float radius, float x, float y) {
     Corner c = {.rest = {x, y, 0}, .temperature = 293, .peak = 293, .mass = 1, .ignited = -1};
-    if (kind == SYNTHETIC_FRESH) return c;
     float s = from_edge(kind, radius, x, y), front = 0.0085f;
     float burn = 0.918f * (1 - smooth(-0.25f * front, front, s)) + (s < 0 ? -s * 6 : 0);
 
@@ -50,7 +49,6 @@ static void position(SyntheticKind kind, float radius, const float rest[3], floa
     float near = expf(-(s > 0 ? s : 0) / 0.016f), angle = atan2f(y - 0.02f, x - 0.012f);
     float curl = near * (0.006f + 0.0045f * sinf(6 * angle) + 0.002f * sinf(17 * angle + 2));
 
-    if (kind == SYNTHETIC_FRESH) curl = 0;
     if (s < 0) curl *= expf(s / 0.012f);
     if (kind == SYNTHETIC_HANGING) {
         float low = 0.5f - y / length;

@@ -4,7 +4,6 @@
 #include "singe/sim.h"
 
 typedef enum SyntheticKind {
-    SYNTHETIC_FRESH,   ///< flat on the table, nothing burnt
     SYNTHETIC_FLAT,    ///< flat on the table, a burning hole, curled at its edge
     SYNTHETIC_HANGING, ///< hanging, burnt from below
     SYNTHETIC_COLD,    ///< as FLAT, gone out
