@@ -2,8 +2,7 @@
 //
 // A picture depends on no earlier frame. So a spark or a wisp is known by the place on the sheet that it comes from and
 // by the moment at which it left: the same hash of both gives the same flight in every frame that shows it.
-#ifndef PREVIEW_AIRBORNE_H
-#define PREVIEW_AIRBORNE_H
+#pragma once
 
 #include "preview/internal.h"
 
@@ -51,5 +50,3 @@ void airborne_draw(Preview *preview);
 void sparks_draw(Preview *preview);
 void wisps_draw(Preview *preview);
 void flakes_draw(Preview *preview);
-
-#endif

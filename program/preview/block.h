@@ -1,6 +1,5 @@
 // A block of pixels in the renderer: the points that its 16 lanes see, and the light there.
-#ifndef PREVIEW_BLOCK_H
-#define PREVIEW_BLOCK_H
+#pragma once
 
 #include "preview/internal.h"
 
@@ -114,5 +113,3 @@ void seen_finish(Preview *preview, Block *block);
 // soften.c
 /// Smooths the noise that is left where lens and shutter blur. Called per block once the light has been added.
 void soften(Preview *preview, Block *block);
-
-#endif

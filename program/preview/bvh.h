@@ -2,8 +2,7 @@
 //
 // Rays run side by side, as those of a block of pixels see much the same part of it. What is found depends neither
 // on the instruction set nor on the number of threads.
-#ifndef PREVIEW_BVH_H
-#define PREVIEW_BVH_H
+#pragma once
 
 #include "common/float3.h"
 #include "singe/base.h"
@@ -104,5 +103,3 @@ void bvh_nearest(const Bvh *bvh, Rays *rays, Hits *hits);
 
 /// Shows `stops` what each ray meets, in any order, until it stops the ray, whose `far` becomes -1.
 void bvh_pass(const Bvh *bvh, Rays *rays, BvhStops *stops, void *context);
-
-#endif

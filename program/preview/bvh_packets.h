@@ -1,6 +1,5 @@
 // Packets of rays, compiled for each instruction set.
-#ifndef PREVIEW_BVH_PACKETS_H
-#define PREVIEW_BVH_PACKETS_H
+#pragma once
 
 #include "preview/bvh.h"
 #include "singe/types.h"
@@ -9,5 +8,3 @@ BvhWalk bvh_walk_plain, bvh_walk_v3, bvh_walk_v4;
 
 /// That of an instruction set; NULL if it, or the set, is not there. SINGE_INSTRUCTIONS_BEST: of the machine's best.
 BvhWalk *bvh_walk(SingeInstructions set);
-
-#endif

@@ -1,6 +1,5 @@
 // Flame and smoke in the renderer.
-#ifndef PREVIEW_FIRE_H
-#define PREVIEW_FIRE_H
+#pragma once
 
 #include "preview/render_math.h"
 #include "singe/sim.h"
@@ -147,5 +146,3 @@ void fire_along(const Preview *preview, Float3 origin, Float3 direction, float d
 
 /// The light of the fire up to `distance` for a pixel of the tile, counted from its upper left, and the transmittance.
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear);
-
-#endif

@@ -1,6 +1,5 @@
 // What the files of the preview share: a Preview, what it draws, and the point that is shaded.
-#ifndef PREVIEW_INTERNAL_H
-#define PREVIEW_INTERNAL_H
+#pragma once
 
 #include "common/allocator.h"
 #include "common/store.h"
@@ -226,5 +225,3 @@ Float3 background_colour(const Preview *preview, Float3 direction);
 // film.c
 void bloom_apply(Preview *preview);
 void tonemap_write(const Preview *preview, uint8_t *rgb);
-
-#endif

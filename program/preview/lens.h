@@ -1,6 +1,5 @@
 // The camera, and the points at which a picture is sampled (lens.c).
-#ifndef PREVIEW_LENS_H
-#define PREVIEW_LENS_H
+#pragma once
 
 #include "preview/noise.h"
 #include "preview/preview.h"
@@ -35,5 +34,3 @@ uint32_t sample_key(int x, int y, uint32_t seed);
 void sample_pixel(int x, int y, uint32_t seed, float out[2]);
 Float3 sample_cosine(Float3 normal, const float square[2]);
 void sample_disc(const float square[2], float out[2]);
-
-#endif

@@ -1,6 +1,5 @@
 // Light: the sky, the lamps that embers, flames and hot shapes are, and the colour of what glows.
-#ifndef PREVIEW_LIGHT_H
-#define PREVIEW_LIGHT_H
+#pragma once
 
 #include "preview/render_math.h"
 
@@ -67,5 +66,3 @@ void light_gather(Preview *preview);
 // blackbody.c
 void blackbody_fill(Float3 table[BLACKBODY_COUNT]);
 Float3 blackbody_glow(const Float3 table[BLACKBODY_COUNT], float temperature);
-
-#endif

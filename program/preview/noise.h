@@ -1,6 +1,5 @@
 // Value noise on an integer lattice, inline because every sample near a burnt edge evaluates it.
-#ifndef PREVIEW_NOISE_H
-#define PREVIEW_NOISE_H
+#pragma once
 
 #include "preview/render_math.h"
 
@@ -86,5 +85,3 @@ static inline float noise_walls(Float3 p, uint32_t seed) {
     }
     return sqrtf(second) - sqrtf(first);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // The appearance of burning paper (shade_paper.c): the fields of the sheet, and its holes, char, ash and embers.
-#ifndef PREVIEW_PAPER_LOOK_H
-#define PREVIEW_PAPER_LOOK_H
+#pragma once
 
 #include "preview/render_math.h"
 
@@ -112,5 +111,3 @@ static inline float ember_activity(float burn_rate) { return burn_rate > 0 ? bur
 
 /// The varying air supply of a point, about 1.
 float ember_air(const Preview *preview, Float3 position);
-
-#endif

@@ -1,6 +1,5 @@
 // Preview: a small renderer for surfaces. It depends on surfaces, not on simulations.
-#ifndef PREVIEW_PREVIEW_H
-#define PREVIEW_PREVIEW_H
+#pragma once
 
 #include "formats/formats.h"
 
@@ -188,5 +187,3 @@ float preview_stretch(const SingeSurface *surface, uint32_t vertex);
 void preview_light(const Preview *preview, float sun[3], float towards[3], float ambient[9][3]);
 
 void preview_destroy(Preview *preview);
-
-#endif

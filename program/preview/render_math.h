@@ -1,6 +1,5 @@
 // Vectors, colours and numbers in the renderer, on common/float3.h.
-#ifndef PREVIEW_RENDER_MATH_H
-#define PREVIEW_RENDER_MATH_H
+#pragma once
 
 #include "common/float3.h"
 
@@ -59,5 +58,3 @@ static inline Four four_load(const float *p) {
     memcpy(&four, p, sizeof four);
     return four;
 }
-
-#endif

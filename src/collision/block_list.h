@@ -1,8 +1,7 @@
 // A list that the blocks of a parallel job write at the same time, each into its own chunks, and that is read in the
 // order of the blocks: the same for any number of threads. Items are not counted in advance. Only if there is no room
 // for all of them are the blocks written again, each up to its share of the room.
-#ifndef COLLISION_BLOCK_LIST_H
-#define COLLISION_BLOCK_LIST_H
+#pragma once
 
 #include "common/pool.h"
 
@@ -88,5 +87,3 @@ uint32_t block_list_settle(BlockList *list, Pool *pool, int blocks, uint64_t cou
 /// Calls for each item, its number in the order of blocks, up to `count` of them.
 typedef void BlockReadFn(void *context, const void *item, uint32_t number);
 void block_list_read(const BlockList *list, Pool *pool, int blocks, uint32_t count, BlockReadFn *read, void *context);
-
-#endif

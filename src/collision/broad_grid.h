@@ -1,6 +1,5 @@
 // The grid's cubes.
-#ifndef COLLISION_BROAD_GRID_H
-#define COLLISION_BROAD_GRID_H
+#pragma once
 
 #include "collision/collision_plan.h"
 
@@ -39,5 +38,3 @@ static inline uint32_t collision_bucket(const CollisionPlan *plan, uint32_t key)
 static inline bool quads_meet(Float4 low_a, Float4 high_a, Float4 low_b, Float4 high_b) {
     return !(float4_bits((low_a > high_b) | (low_b > high_a)) & 7);
 }
-
-#endif

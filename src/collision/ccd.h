@@ -1,7 +1,6 @@
 // Shared declarations of continuous collision detection: ccd.c is the algorithm, ccd_pairs.c finds collisions,
 // ccd_zones.c resolves them.
-#ifndef COLLISION_CCD_H
-#define COLLISION_CCD_H
+#pragma once
 
 #include "collision/collision_plan.h"
 
@@ -48,5 +47,3 @@ void ccd_zones(const Ccd *ccd, int round);
 
 /// Moves all cells as one zone that keeps nothing of its displacements but their mean.
 void ccd_halt(const Ccd *ccd);
-
-#endif

@@ -12,8 +12,7 @@
 // Both use pairs of nearby cells. The search for pairs runs again when cells have used up the motion that the last
 // search allowed for (broad_phase.c). All lists have a fixed order: the same bytes for any number of threads. A list
 // that is too small for its pairs grows (collision_plan.c).
-#ifndef COLLISION_COLLISION_H
-#define COLLISION_COLLISION_H
+#pragma once
 
 #include "common/stream.h"
 #include "common/pool.h"
@@ -90,5 +89,3 @@ const char *collision_validate(const CollisionPlan *plan);
 /// Lowers room[vertices], m, at vertices whose cells have another cell near in the present state, to its distance: the
 /// drawn surface deviates from its flat triangles by less than half of that. Searches up to a quarter of a cell.
 void collision_clearance(const CollisionPlan *plan, const Shell *shell, const StateInput *state, float *room);
-
-#endif

@@ -1,6 +1,5 @@
 // Shared declarations of this folder's files.
-#ifndef COLLISION_COLLISION_PLAN_H
-#define COLLISION_COLLISION_PLAN_H
+#pragma once
 
 #include "common/float4.h"
 #include "collision/collision.h"
@@ -434,5 +433,3 @@ static inline bool initial_is_crossing(const CollisionPlan *plan, const Collisio
     return initial_index(plan, pair->a < pair->b ? pair->a : pair->b, pair->a < pair->b ? pair->b : pair->a) !=
            SHELL_NONE;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Nearest points of features, and times of impact of moving features.
-#ifndef COLLISION_FEATURE_DISTANCE_H
-#define COLLISION_FEATURE_DISTANCE_H
+#pragma once
 
 #include "collision/narrow_lanes.h"
 
@@ -59,5 +58,3 @@ static inline bool feature_is_within(Float4 a, Float4 b, float cone) {
 /// and those of b on the other, at least `margin` away from it; *normal points to a's. Then the cells share nothing
 /// else. The fourth components must be 0.
 bool feature_is_separated(const Float4 a[4], const Float4 b[4], const unsigned shared[2], float margin, Float4 *normal);
-
-#endif

@@ -1,6 +1,5 @@
 // Four vectors at once, and boxes around a cell's four triangles, sides and lines to its centroid.
-#ifndef COLLISION_NARROW_LANES_H
-#define COLLISION_NARROW_LANES_H
+#pragma once
 
 #include "common/float4.h"
 
@@ -83,5 +82,3 @@ static inline void narrow_boxes(FourVectors low, FourVectors high, Float4 centro
 
 /// Bit k: triangle or side k has one of the corners `bits`.
 static inline unsigned narrow_around(unsigned bits) { return (bits | bits << 3 | bits >> 1) & 15; }
-
-#endif

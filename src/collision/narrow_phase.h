@@ -1,6 +1,5 @@
 // The features of two cells that are near each other.
-#ifndef COLLISION_NARROW_PHASE_H
-#define COLLISION_NARROW_PHASE_H
+#pragma once
 
 #include "collision/collision_plan.h"
 
@@ -50,5 +49,3 @@ typedef struct FeatureRange {
 /// *nearest is the smallest distance of all, or far->measured. Returns how many are listed, at most NARROW_MAX.
 int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a, NarrowCell *b,
                     const FeatureRange *far, NearFeatures *near, float *nearest);
-
-#endif

@@ -1,6 +1,5 @@
 // Long-range attachments: no particle is farther from a pin than its geodesic distance along the sheet.
-#ifndef DYNAMICS_ATTACH_H
-#define DYNAMICS_ATTACH_H
+#pragma once
 
 #include "common/stream.h"
 #include "common/pool.h"
@@ -85,5 +84,3 @@ void attach_project(Attachments *attachments, const Shell *shell, AttachHold *ho
 
 /// Sources and lengths are part of a snapshot, as they come from an earlier step.
 void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream);
-
-#endif

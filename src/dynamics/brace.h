@@ -1,6 +1,5 @@
 // Springs between centres across vertices, with which bending is isotropic (brace.c).
-#ifndef DYNAMICS_BRACE_H
-#define DYNAMICS_BRACE_H
+#pragma once
 
 #include "dynamics/dynamics.h"
 #include "dynamics/strand/strand_lanes.h"
@@ -25,5 +24,3 @@ bool brace_is_there(const Braces *braces, const AblateState *ablate, uint32_t br
 /// m, of the present masses and creases.
 float brace_length(const Braces *braces, const DynamicsPlan *plan, const Shell *shell, const StateInput *state,
                    const DynamicsState *dynamics, uint32_t brace);
-
-#endif

@@ -1,6 +1,5 @@
 // Shell dynamics (eq 8 to 15, 18, 19) by strand projection.
-#ifndef DYNAMICS_DYNAMICS_H
-#define DYNAMICS_DYNAMICS_H
+#pragma once
 
 #include "common/stream.h"
 #include "common/pool.h"
@@ -83,5 +82,3 @@ typedef struct DynamicsCounters {
 /// *counters; `memory` is for contact lists that grow. SINGE_ERROR_DIVERGED if a particle is out of bounds; SINGE_ERROR_MEMORY if contact lists cannot grow.
 SingeResult dynamics_step(Memory *memory, DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
                           DynamicsCounters *counters);
-
-#endif

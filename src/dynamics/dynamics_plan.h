@@ -1,6 +1,5 @@
 // Scratch memory of the dynamics, and the parts of its step. Nothing outside src/dynamics includes this.
-#ifndef DYNAMICS_DYNAMICS_PLAN_H
-#define DYNAMICS_DYNAMICS_PLAN_H
+#pragma once
 
 #include "dynamics/attach.h"
 #include "dynamics/brace.h"
@@ -237,5 +236,3 @@ void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState
 
 /// contact_range for all particles.
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics);
-
-#endif

@@ -1,6 +1,5 @@
 // Geodesic distances on the shell's surface.
-#ifndef DYNAMICS_GEODESIC_H
-#define DYNAMICS_GEODESIC_H
+#pragma once
 
 #include "shell/shell.h"
 
@@ -18,5 +17,3 @@ void geodesic_free(Memory *memory, uint32_t vertex_count, Geodesic *search);
 /// target lengths as metric, but between held vertices at least their actual distance; INFINITY where there is no path.
 void geodesic_from(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t source, uint32_t first,
                    uint32_t last, float *distance);
-
-#endif

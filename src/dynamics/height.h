@@ -1,6 +1,5 @@
 // Heights of cells' centres over their corners, in lanes (layer_order.c, height_kernel.h).
-#ifndef DYNAMICS_HEIGHT_H
-#define DYNAMICS_HEIGHT_H
+#pragma once
 
 #include "shell/field.h"
 
@@ -22,5 +21,3 @@ typedef struct HeightLanes {
 /// Corrects cells [begin, end) of the family. Whether all are twice as high as they must be.
 typedef bool HeightRange(const HeightLanes *job, uint32_t begin, uint32_t end);
 HeightRange height_range_four, height_range_v3, height_range_v4;
-
-#endif

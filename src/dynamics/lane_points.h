@@ -1,7 +1,6 @@
 // Points and vectors of every lane, for kernels. A file per instruction set defines the operations on lanes and
 // quadruples, as for strand_kernel.h, before it includes this.
-#ifndef DYNAMICS_LANE_POINTS_H
-#define DYNAMICS_LANE_POINTS_H
+#pragma once
 
 #include "common/float3.h"
 
@@ -42,5 +41,3 @@ static inline LanePoint points_where_less(Lanes a, Lanes b, LanePoint yes, LaneP
     return (LanePoint){lanes_where_less(a, b, yes.x, no.x), lanes_where_less(a, b, yes.y, no.y),
                        lanes_where_less(a, b, yes.z, no.z)};
 }
-
-#endif

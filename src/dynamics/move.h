@@ -1,6 +1,5 @@
 // The pass over particles between two projections, in vectors (move.c, move_kernel.h).
-#ifndef DYNAMICS_MOVE_H
-#define DYNAMICS_MOVE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -21,5 +20,3 @@ typedef struct MoveLanes {
 /// Particles [begin, end).
 typedef void MoveRange(const MoveLanes *job, size_t begin, size_t end, bool closes, bool opens);
 MoveRange move_range_four, move_range_v3, move_range_v4;
-
-#endif

@@ -1,6 +1,5 @@
 // Contact of particles with a plane, in lanes (collider_contact.c, plane_kernel.h).
-#ifndef DYNAMICS_PLANE_H
-#define DYNAMICS_PLANE_H
+#pragma once
 
 #include "world/path.h"
 
@@ -23,5 +22,3 @@ typedef struct PlaneLanes {
 /// Contact and friction of particles [begin, end), a multiple of four of them. Returns how many touch.
 typedef uint64_t PlaneRange(const PlaneLanes *plane, size_t begin, size_t end);
 PlaneRange plane_range_four, plane_range_v3, plane_range_v4;
-
-#endif

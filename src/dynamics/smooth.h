@@ -1,6 +1,5 @@
 // Internal friction in lanes (smooth.c, smooth_kernel.h).
-#ifndef DYNAMICS_SMOOTH_H
-#define DYNAMICS_SMOOTH_H
+#pragma once
 
 #include "dynamics/strand/strand_lanes.h"
 
@@ -14,5 +13,3 @@ typedef struct SmoothLanes {
 /// The strands of a group that is not `apart`.
 typedef void SmoothGroup(const SmoothLanes *job, uint32_t group);
 SmoothGroup smooth_group_four, smooth_group_v3, smooth_group_v4;
-
-#endif

@@ -1,8 +1,7 @@
 // What projects the springs of a substep: strands (strand/strand_solver.c), or one of the paper's methods
 // (paper_solver.c). A step has one path, in dynamics.c, and asks the plan's solver for the parts that differ. Nothing
 // outside src/dynamics includes this.
-#ifndef DYNAMICS_SOLVER_H
-#define DYNAMICS_SOLVER_H
+#pragma once
 
 #include "dynamics/dynamics.h"
 
@@ -54,5 +53,3 @@ extern const Solver strand_solver, paper_solver;
     ROW(SINGE_SOLVER_PAPER_LITERAL, paper_solver) \
     ROW(SINGE_SOLVER_ALL_AT_ONCE, paper_solver)   \
     ROW(SINGE_SOLVER_MASS_SPRING, paper_solver)
-
-#endif

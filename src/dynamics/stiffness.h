@@ -1,6 +1,5 @@
 // Compliances that give a sheet its material's stiffness for any cells and step (docs/equations/stiffness.md).
-#ifndef DYNAMICS_STIFFNESS_H
-#define DYNAMICS_STIFFNESS_H
+#pragma once
 
 #include "shell/shell.h"
 
@@ -32,5 +31,3 @@ int stiffness_carrying(const Shell *shell, float h);
 
 /// The smallest number, at least that, for which all red springs of this regularisation can be as stiff as they should.
 int stiffness_substeps(const Shell *shell, float h, float regularisation);
-
-#endif

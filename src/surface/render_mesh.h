@@ -1,7 +1,6 @@
 // Meshes that are drawn in place of a sheet: finer than its cells, thick, with hems, seams and buttons. A mesh is bound
 // to a sheet once, by positions at rest, and drawn with it. Only the sheet is simulated.
-#ifndef SURFACE_RENDER_MESH_H
-#define SURFACE_RENDER_MESH_H
+#pragma once
 
 #include "surface/surface.h"
 
@@ -30,5 +29,3 @@ RenderFlaws render_mesh_flaws(const RenderMesh *mesh);
 
 /// Whether a cell is not drawn because the mesh is.
 bool render_hides(const RenderMesh *mesh, uint32_t cell);
-
-#endif

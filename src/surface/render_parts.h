@@ -1,7 +1,6 @@
 // What the making, the binding and the drawing of a render mesh have in common. Nothing outside src/surface includes
 // this.
-#ifndef SURFACE_RENDER_PARTS_H
-#define SURFACE_RENDER_PARTS_H
+#pragma once
 
 #include "surface/surface_fine.h"
 
@@ -27,5 +26,3 @@ SingeResult render_find_feet(const Fine *fine, bool by_uv, float reach, uint32_t
 /// Fills what the vertices keep from their feet: offsets and normals in the frames there, from `rest` and from the
 /// normals in space; by uv these are first those of the sheet at the feet.
 void render_bind(const Fine *fine, bool by_uv, RenderMesh *mesh);
-
-#endif

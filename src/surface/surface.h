@@ -1,7 +1,6 @@
 // The drawn surface: marching triangles along the level set of ablation (section 6). A drawing changes nothing of the
 // simulation. Its scratch comes from an allocator and is freed before it returns.
-#ifndef SURFACE_SURFACE_H
-#define SURFACE_SURFACE_H
+#pragma once
 
 #include "ablate/ablate.h"
 
@@ -26,5 +25,3 @@ typedef struct SurfaceDetail {
 /// The same, refined near the front. Scratch comes from `memory`.
 SingeResult surface_draw_fine(AblatePlan *plan, const Shell *shell, const State *state, const SurfaceDetail *detail,
                               Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error);
-
-#endif

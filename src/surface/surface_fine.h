@@ -1,6 +1,5 @@
 // The drawn surface refined near the front: shared declarations of the files fine_*.c.
-#ifndef SURFACE_SURFACE_FINE_H
-#define SURFACE_SURFACE_FINE_H
+#pragma once
 
 #include "common/float3.h"
 #include "common/float4.h"
@@ -274,5 +273,3 @@ void render_march(Fine *fine);
 /// Puts vertex v of the surface, which lies at its foot, where the render mesh has it.
 void render_place(const Fine *fine, const FineVertex *vertex, uint32_t v);
 void render_release(Fine *fine);
-
-#endif

@@ -1,6 +1,5 @@
 // What the coarse and the fine surface have in common. Nothing outside src/surface includes this.
-#ifndef SURFACE_SURFACE_PARTS_H
-#define SURFACE_SURFACE_PARTS_H
+#pragma once
 
 #include "common/float3.h"
 #include "surface/surface.h"
@@ -41,5 +40,3 @@ float surface_cut(float inside, float outside, float nearest);
 /// The corner from which a clipped triangle is triangulated: of a quadrilateral, the inside end that is farther from
 /// its cut, as the other diagonal would leave a triangle thinner than the min distance of cuts from ends.
 int surface_fan(const float level[3], float nearest);
-
-#endif

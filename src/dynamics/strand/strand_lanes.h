@@ -7,8 +7,7 @@
 // Column c of a group is lane c / (width / 4) + 4 (c % (width / 4)): transposing four by four, as kernels do, then
 // takes the particles of width / 4 contiguous columns at once. Strands are laid out so that contiguous columns hold
 // particles of consecutive numbers where possible (strand_lay.c).
-#ifndef DYNAMICS_STRAND_STRAND_LANES_H
-#define DYNAMICS_STRAND_STRAND_LANES_H
+#pragma once
 
 #include "common/pool.h"
 #include "shell/shell.h"
@@ -90,5 +89,3 @@ StrandSolve strand_solve_plain, strand_solve_v2, strand_solve_v3, strand_solve_v
 /// Limits the curvature along the strands of one group (curvature_kernel.h).
 typedef void StrandBend(const StrandSet *set, float *position, uint32_t group);
 StrandBend strand_bend_plain, strand_bend_v2, strand_bend_v3, strand_bend_v4, strand_bend_neon, strand_bend_simd128;
-
-#endif
