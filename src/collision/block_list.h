@@ -9,8 +9,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/// Items per chunk.
-enum { BLOCK_CHUNK = 64 };
+/// Items per chunk: few, as the last chunk of every block may be almost empty.
+enum { BLOCK_CHUNK = 16 };
 
 typedef struct ListBlock {
     uint32_t first; ///< chunk

@@ -41,12 +41,8 @@ static uint64_t fill_grid(CollisionPlan *plan, bool writing) {
                         plan->bucket_first[collision_bucket(plan, key) + 2]++;
                         continue;
                     }
-                    const Float4 low = box->swept_low, high = box->swept_high;
                     plan->entries[plan->bucket_first[collision_bucket(plan, key) + 1]++] =
-                        (CollisionEntry){.low = {low[0], low[1], low[2]},
-                                         .cell = c,
-                                         .high = {high[0], high[1], high[2]},
-                                         .key = key | (float4_bits(at == first) & 7) << 29};
+                        (CollisionEntry){c, key | (float4_bits(at == first) & 7) << 29};
                 }
     }
 
@@ -125,25 +121,27 @@ typedef struct Tile {
 } Tile;
 
 /// Bit k is set where the tile's entry j + k is in the same cube, which is where the two boxes' common region begins.
-static inline unsigned meet_four(const Tile *tile, uint32_t j, const CollisionEntry *entry) {
+static inline unsigned meet_four(const Tile *tile, uint32_t j, const CollisionEntry *entry, const CollisionBox *box) {
     Float4Mask meet = float4_load_ints(tile->key + j) == (int32_t)(entry->key & COLLISION_KEY);
     meet &= (float4_load_ints(tile->firsts + j) | (int32_t)(entry->key >> 29)) == 7;
     for (int k = 0; k < 3; k++)
-        meet &= (float4_load(tile->low[k] + j) <= float4_all(entry->high[k])) &
-                (float4_load(tile->high[k] + j) >= float4_all(entry->low[k]));
+        meet &= (float4_load(tile->low[k] + j) <= float4_all(box->swept_high[k])) &
+                (float4_load(tile->high[k] + j) >= float4_all(box->swept_low[k]));
     return float4_bits(meet);
 }
 
 /// Lists the pairs of a bucket.
 static void bucket_pairs(const Find *find, const CollisionEntry *entries, uint32_t count, Tile *tile,
                          BlockWriter *writer) {
+    const CollisionBox *boxes = find->plan->boxes;
     for (uint32_t first = 0; first < count; first += TILE) {
         tile->count = count - first < TILE ? count - first : TILE;
         for (uint32_t i = 0; i < tile->count; i++) {
             const CollisionEntry *entry = &entries[first + i];
+            const CollisionBox *box = &boxes[entry->cell];
             for (int k = 0; k < 3; k++) {
-                tile->low[k][i] = entry->low[k];
-                tile->high[k][i] = entry->high[k];
+                tile->low[k][i] = box->swept_low[k];
+                tile->high[k][i] = box->swept_high[k];
             }
             tile->key[i] = (int32_t)(entry->key & COLLISION_KEY);
             tile->firsts[i] = (int32_t)(entry->key >> 29);
@@ -155,7 +153,7 @@ static void bucket_pairs(const Find *find, const CollisionEntry *entries, uint32
         for (uint32_t i = 0; i < first + tile->count && !block_list_is_full(writer); i++) {
             const uint32_t after = i < first ? 0 : i - first + 1, a = entries[i].cell;
             for (uint32_t j = after & ~3u; j < tile->count; j += 4) {
-                unsigned meet = meet_four(tile, j, &entries[i]);
+                unsigned meet = meet_four(tile, j, &entries[i], &boxes[a]);
                 if (j < after) meet &= 15u << (after - j);
                 for (; meet; meet &= meet - 1) {
                     const uint32_t b = entries[first + j + (unsigned)__builtin_ctz(meet)].cell;

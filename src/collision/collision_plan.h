@@ -19,9 +19,9 @@ enum { COLLISION_WORK = 500, COLLISION_WORK_MIN = 1 << 18 };
 /// to what COLLISION_PAIRS_MAX and COLLISION_REPULSIONS_MAX say, or to COLLISION_LIST_MIN items if that is more. A search
 /// that finds more than COLLISION_PAIRS_FAR pairs searches less far.
 enum {
-    COLLISION_ENTRIES = 2,
+    COLLISION_ENTRIES = 5,
     COLLISION_ENTRIES_MAX = 12,
-    COLLISION_PAIRS = 4,
+    COLLISION_PAIRS = 6,
     COLLISION_PAIRS_FAR = 40,
     COLLISION_PAIRS_MAX = 320,
     COLLISION_REPULSIONS = 1,
@@ -57,10 +57,7 @@ typedef struct CollisionSlab {
 
 /// An entry of the grid: a cell in one of the cubes that its swept box overlaps.
 typedef struct CollisionEntry {
-    float low[3];
-    uint32_t cell;
-    float high[3];
-    uint32_t key; ///< which cube; the highest three bits: whether it is the box's first along x, y, z
+    uint32_t cell, key; ///< key: which cube; the highest three bits: whether it is the box's first along x, y, z
 } CollisionEntry;
 
 /// Two cells whose boxes meet. Features are nodes of one against triangles of the other, and edges against edges.

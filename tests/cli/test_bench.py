@@ -69,10 +69,10 @@ class Bench(Case):
                             self.assertAlmostEqual(float(line[key]), value, delta=1e-5 * abs(value))
 
     def test_same_springs_and_cells(self):
-        rows = self.measure("memory", "--springs", "1000,4000")["rows"]
-        self.assertEqual([row["springs"] for row in rows], [1000, 4000])
-        # a cell has about ten springs, and its lists of contact begin with room for 4 pairs; with room for 40 they had 686
-        for row, most in zip(rows, (1500, 400)):  # small sheets have as much again
+        rows = self.measure("memory", "--springs", "1000,4000,100000")["rows"]
+        self.assertEqual([row["springs"] for row in rows], [1000, 4000, 100000])
+        # 618, 220 and 112 with chunks of 64 items, boxes in the grid's entries and lists that grow in the first step
+        for row, most in zip(rows, (560, 205, 100)):
             self.assertGreater(row["contact_bytes_spring"], 50)
             self.assertLess(row["contact_bytes_spring"], most)
         rows = self.measure("swing", "--cells", "6,8", "--thickness", "1,2.5", "--time", "0.05")["rows"]
