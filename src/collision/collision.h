@@ -46,8 +46,9 @@ int collision_parts(CollisionPlan *plan, const Shell *shell, const StateInput *s
 /// Opens a step or, if h is less than the time step, a part of one, whose particles are at `dynamics`, the inverse masses
 /// in place; `first`: no part of this step has gone before. SINGE_ERROR_MEMORY, as ccd_apply: where sheets crowd, lists
 /// grow. After an error the step must be rolled back; the next one searches again.
-SingeResult collision_open(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
-                           float h, bool first, const DynamicsState *dynamics);
+typedef SingeResult CollisionOpen(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state,
+                                  Pool *pool, float h, bool first, const DynamicsState *dynamics);
+CollisionOpen collision_open, collision_open_v3;
 
 /// In how many turns a substep pushes points apart: 1, or 2 to 4 where sheets crowd. What a turn has strained is to be
 /// mended before the next.
@@ -55,12 +56,14 @@ int repulsion_turns(const CollisionPlan *plan);
 
 /// A turn: pushes points apart that are too near, in a substep of h seconds that began at `predicted` less h times the
 /// velocities. False: there were none.
-bool repulsion_apply(CollisionPlan *plan, const Shell *shell, Pool *pool, const float (*predicted)[4], float h,
-                     DynamicsState *dynamics);
+typedef bool RepulsionApply(CollisionPlan *plan, const Shell *shell, Pool *pool, const float (*predicted)[4], float h,
+                            DynamicsState *dynamics);
+RepulsionApply repulsion_apply, repulsion_apply_v3;
 
 /// Closes the step: no cell of the drawn mesh has passed through another since collision_open.
-SingeResult ccd_apply(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
-                      float h, DynamicsState *dynamics);
+typedef SingeResult CcdApply(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state,
+                             Pool *pool, float h, DynamicsState *dynamics);
+CcdApply ccd_apply, ccd_apply_v3;
 
 /// Whether a quarter of the work that CCD may do in a step is done.
 bool ccd_is_busy(const CollisionPlan *plan);

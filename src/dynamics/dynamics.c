@@ -188,8 +188,8 @@ static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepC
     dynamics_prepare(plan, shell, state, context->wind, context->sources, pool, dynamics);
     dynamics_fly(plan, shell, ablate, state->time, h, dynamics);
     if (plan->collision)
-        TRY(dynamics_contact_result(collision_open(memory, plan->collision, shell, state, pool, h, first, dynamics),
-                                    pool, error));
+        TRY(dynamics_contact_result(
+            plan->kernels->open(memory, plan->collision, shell, state, pool, h, first, dynamics), pool, error));
 
     // each pass closes a substep and opens the next: one pass more than substeps
     Substep part = {shell, state, pool, 0, h / (float)solver->substeps, dynamics, counters, error};
@@ -234,7 +234,8 @@ static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepC
         bool limited = plan->solver->limit && plan->solver->limit(plan, shell, state, pool, dynamics);
         if (!plan->collision || (turn > 0 && !limited)) break;
         const uint64_t stops = collision_counters(plan->collision).stops;
-        TRY(dynamics_contact_result(ccd_apply(memory, plan->collision, shell, state, pool, h, dynamics), pool, error));
+        TRY(dynamics_contact_result(plan->kernels->stop(memory, plan->collision, shell, state, pool, h, dynamics), pool,
+                                    error));
         if (collision_counters(plan->collision).stops == stops || ccd_is_busy(plan->collision)) break;
     }
 

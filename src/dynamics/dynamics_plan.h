@@ -36,6 +36,9 @@ typedef struct Kernels {
     PlaneRange *plane;
     HeightRange *height;
     SmoothGroup *smooth;
+    CollisionOpen *open;
+    RepulsionApply *push;
+    CcdApply *stop;
     SingeInstructions instructions;
 } Kernels;
 
