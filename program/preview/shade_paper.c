@@ -441,9 +441,24 @@ static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) 
     tilt(bent->position, 0.9f, 0.11f * black, false, 31, point);
 }
 
+/// How brown paper is: by heat, up to 0.76, and by what has burnt. Near a front, where the peak temperature falls off within
+/// millimetres, vapour has condensed on paper that was hardly warm: the band is more than twice as wide as heat alone makes
+/// it. Paper is denser here than there, over centimetres: the band's border runs in tongues.
+static float scorch_amount(const PaperState *state, const Bent *bent, float footprint) {
+    const float by_burn = 1 - expf(-7.5f * maxf(bent->burn, 0));
+    const float steep = state->heat_gradient / maxf(maxf(state->peak, state->temperature) - 293, 1);   // 1/m
+    const float near = stepf(120, 350, steep), first = mixf(55, 5, near), last = mixf(360, 200, near); // K above 293
+    float above = bent->peak - 293;
+    if (above > 0.3f * first && by_burn < 0.9f)
+        above *= expf(clampf(2.5e-3f * steep, 0.7f, 1.3f) *
+                      (paper_noise(bent->position, 9, footprint, 7) + 0.5f * bent->coarse + 0.2f * bent->medium));
+    const float by_heat = above > first ? 0.76f * minf(logf(above / first) / logf(last / first), 1) : 0;
+    return 1 - (1 - by_heat) * (1 - by_burn);
+}
+
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point) {
     fresh(preview, state, point);
-    bool touched = state->burn > 0 || maxf(state->peak, state->temperature) > 325;
+    bool touched = state->burn > 0 || maxf(state->peak, state->temperature) > 295;
     const Weave *weave = cloth_weave(preview, state->sheet);
     const float coating = preview->def.looks && state->sheet >= 0 && (uint32_t)state->sheet < preview->def.sheet_count
                               ? preview->def.looks[state->sheet].coating
@@ -465,14 +480,7 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
         if (!touched) return true;
     } else if (is_hole(state, &bent, point->footprint)) return false;
 
-    // browned by heat, up to 0.76, and by what has burnt. Paper is denser here than there, over centimetres: the border of
-    // the browned band runs in tongues
-    const float by_burn = 1 - expf(-7.5f * maxf(bent.burn, 0)), first = 55, last = 360; // K above a room's
-    float above = bent.peak - 293, by_heat = 0;
-    if (above > 0.5f * first && by_burn < 0.9f)
-        above *= maxf(1 + 0.8f * paper_noise(bent.position, 9, point->footprint, 7) + 0.35f * bent.coarse, 0.3f);
-    if (above > first) by_heat = 0.76f * minf(logf(above / first) / logf(last / first), 1);
-    const float scorch = 1 - (1 - by_heat) * (1 - by_burn);
+    const float scorch = scorch_amount(state, &bent, point->footprint);
     float ink = 1 - clampf(float3_luminance(point->albedo), 0, 1);
     const float print = (weave ? DYE_LEFT : 1) * stepf(0.3f, 0.75f, ink);
     Float3 burnt = float3_mul(scorch_colour(scorch),

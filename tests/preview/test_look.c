@@ -589,3 +589,26 @@ TEST(scorch_has_a_tan_band_with_an_uneven_border) {
     assert_true(tan > 1.4f * brown);
     assert_true(uneven > 0.8f);
 }
+
+/// Ahead of a front the band is wide, as vapour condenses there; paper that is evenly warm remains white.
+TEST(scorch_is_wide_ahead_of_a_front_and_nowhere_else) {
+    static uint8_t rgb[BYTES];
+    static Plate plate;
+    plate_make(&plate, 0.024f);
+    PreviewDef def = close_above(0.016f);
+    float browned[2] = {0, 0}, brown = 0; // mm; brown: not tan any more, nor black
+    for (int even = 0; even < 2; even++) {
+        for (int i = 0; i < NODES; i++)
+            plate.peak[i] = 293 + (even ? 40 : 450 * expf(-(plate.position[i][0] + 0.012f) / 0.0015f));
+        draw(&def, &plate.surface, 0, rgb);
+        for (int k = 0; k < W * H; k++) {
+            const uint8_t *p = pixel(rgb, k % W, k / W);
+            browned[even] += (p[0] - p[2] > 30 || p[0] < 150) * 24.0f / W / H;
+            brown += (p[0] < 170 && p[0] - p[2] > 45) * 24.0f / W / H;
+        }
+    }
+    print_message("ahead of a front %.2f mm are tan or darker, %.2f mm brown; where evenly warm %.2f mm\n",
+                  (double)browned[0], (double)brown, (double)browned[1]);
+    assert_true(browned[0] > 4 && brown > 2.5f);
+    assert_true(browned[1] == 0);
+}
