@@ -467,11 +467,13 @@ class Shirt(Example):
         self.say["fire"] = f"up to {max(burnt):.2f} m in frame {burning}"
         self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.say["strain"] = f"mean {max(self.column('strain_mean')):.4f}"
+        self.say["tears"] = f"{self.rows[104]['tears']:.0f} until frame 105"
         self.report()
         self.assertTrue(0.75 < below < 0.84)  # from 0.85 m: it hangs from the shoulders, and not through them
         self.assertEqual(self.rows[lit - 1]["burnt_fraction"], 0)
         self.assertGreater(max(burnt), 1.2)  # climbs
         self.assertTrue(0.15 < self.rows[-1]["burnt_fraction"] < 0.9)
+        self.assertLess(self.rows[104]["tears"], 300)  # char that is equally strong all over tears into a comb: 560
         self.assertLessEqual(max(self.column("strain_mean")), 0.01)
 
 
