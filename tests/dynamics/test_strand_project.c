@@ -8,34 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/dense_solve.h"
 #include "support/test.h"
 
 enum { N_MAX = 64 };
-
-/// Solves a x = b of size n by Gaussian elimination with pivoting.
-static void dense_solve(double a[N_MAX][N_MAX], double *b, int n) {
-    for (int k = 0; k < n; k++) {
-        int p = k;
-        for (int i = k + 1; i < n; i++)
-            if (fabs(a[i][k]) > fabs(a[p][k])) p = i;
-        for (int j = 0; j < n; j++) {
-            double t = a[k][j];
-            a[k][j] = a[p][j], a[p][j] = t;
-        }
-        double t = b[k];
-        b[k] = b[p], b[p] = t;
-        for (int i = k + 1; i < n; i++) {
-            double f = a[i][k] / a[k][k];
-            for (int j = k; j < n; j++) a[i][j] -= f * a[k][j];
-            b[i] -= f * b[k];
-        }
-    }
-
-    for (int k = n - 1; k >= 0; k--) {
-        for (int j = k + 1; j < n; j++) b[k] -= a[k][j] * b[j];
-        b[k] /= a[k][k];
-    }
-}
 
 /// The compliance of a spring whose own compliance is zero, m/N: (a + r) h^2/m.
 static double own_softness(const Bench *bench, SingeColour colour) {
@@ -56,7 +32,7 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
     int n = (int)(set->strand_first[strand + 1] - first);
 
     assert_true(n <= N_MAX);
-    static double a[N_MAX][N_MAX], b[N_MAX], u[N_MAX][3], stretch[N_MAX];
+    static double a[N_MAX * N_MAX], b[N_MAX], u[N_MAX][3], stretch[N_MAX];
     const float *w = bench->plan->inverse_mass;
     double relative = (double)bench->settings.solver.regularisation[colour];
     const SingeMaterialDef material = singe_default_material();
@@ -76,20 +52,20 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
 
     for (int p = 0; p < n; p++)
         for (int q = 0; q < n; q++) {
-            a[p][q] = 0;
+            double *entry = &a[p * n + q];
+            *entry = 0;
             const uint32_t *ep = set->ends[first + (uint32_t)p], *eq = set->ends[first + (uint32_t)q];
             double dot = u[p][0] * u[q][0] + u[p][1] * u[q][1] + u[p][2] * u[q][2];
             for (int i = 0; i < 2; i++)
                 for (int j = 0; j < 2; j++)
-                    if (ep[i] == eq[j]) a[p][q] += (i == j ? 1 : -1) * (double)w[ep[i]] * dot;
-            if (p == q) a[p][q] += 0.5 * relative * ((double)w[ep[0]] + (double)w[ep[1]]);
+                    if (ep[i] == eq[j]) *entry += (i == j ? 1 : -1) * (double)w[ep[i]] * dot;
+            if (p == q) *entry += 0.5 * relative * ((double)w[ep[0]] + (double)w[ep[1]]);
 
             // what is too long yields
-            if (p == q) a[p][q] += 0.5 * fmax(stretch[p] - 0.01, 0) * ((double)w[ep[0]] + (double)w[ep[1]]);
-            if (p == q) a[p][q] += compliance * 1e6;
-            if (p == q && a[p][q] == 0) a[p][q] = 1; // pinned at both ends: an empty row
+            if (p == q) *entry += 0.5 * fmax(stretch[p] - 0.01, 0) * ((double)w[ep[0]] + (double)w[ep[1]]);
+            if (p == q) *entry += compliance * 1e6;
         }
-    dense_solve(a, b, n);
+    dense_solve(a, b, (uint32_t)n);
     for (int k = 0; k < n; k++) {
         const uint32_t *e = set->ends[first + (uint32_t)k];
         for (int i = 0; i < 3; i++) {

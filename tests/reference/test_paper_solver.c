@@ -3,6 +3,7 @@
 #include "reference/spring_network.h"
 
 #include "common/random.h"
+#include "support/dense_solve.h"
 #include "support/support.h"
 
 #include <math.h>
@@ -59,23 +60,6 @@ static SingeNetwork *network_make(const SingeNetworkDef *def) {
     SingeResult result = singe_network_create(def, &network, &error);
     if (result) fail_msg("%s", error.message);
     return network;
-}
-
-/// Solves a x = b of size n by Gaussian elimination; rows of zeros give 0.
-static void dense_solve(double *a, double *b, uint32_t n) {
-    for (uint32_t k = 0; k < n; k++) { // positive definite but for empty rows: no pivoting
-        if (a[k * n + k] == 0) continue;
-        for (uint32_t i = k + 1; i < n; i++) {
-            double f = a[i * n + k] / a[k * n + k];
-            for (uint32_t j = k; j < n; j++) a[i * n + j] -= f * a[k * n + j];
-            b[i] -= f * b[k];
-        }
-    }
-
-    for (uint32_t k = n; k-- > 0;) {
-        for (uint32_t j = k + 1; j < n; j++) b[k] -= a[k * n + j] * b[j];
-        b[k] = a[k * n + k] == 0 ? 0 : b[k] / a[k * n + k];
-    }
 }
 
 /// Row k of the dense system, from the definition: its gradient, right-hand side and softness.
