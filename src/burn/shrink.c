@@ -3,10 +3,19 @@
 #include "burn/burn_job.h"
 #include "shell/target_length.h"
 
-static inline void shrink_spring(const BurnJob *job, SingeColour colour, uint32_t s, SpringEnd a, SpringEnd b,
-                                 float in_plane) {
-    if (job->state->ablate->spring_flags[colour][s] & SINGE_ALIVE)
-        job->burn->spring_length[colour][s] = target_length(&job->shell->springs[colour], s, a, b, in_plane);
+/// Springs s[k] of the bits `which`, those that are not gone.
+static inline void shrink_springs(const BurnJob *job, SingeColour colour, const uint32_t s[4], unsigned which,
+                                  SpringEnds a, SpringEnds b, Float4 thickness) {
+    const uint8_t *flags = job->state->ablate->spring_flags[colour];
+    for (unsigned k = 0; k < 4; k++)
+        if (which >> k & 1 && !(flags[s[k]] & SINGE_ALIVE)) which &= ~(1u << k);
+    if (!which) return;
+
+    uint32_t at[4]; // one that is there in place of those that may not be
+    for (unsigned k = 0; k < 4; k++) at[k] = s[which >> k & 1 ? k : (unsigned)__builtin_ctz(which)];
+    const Float4 length = target_lengths(&job->shell->springs[colour], at, a, b, thickness);
+    for (unsigned k = 0; k < 4; k++)
+        if (which >> k & 1) job->burn->spring_length[colour][s[k]] = length[k];
 }
 
 /// Shortens the springs of cells that have a burning end. A spring of two cells is left to the first of them that sees
@@ -19,34 +28,37 @@ static void shrink_cells(void *context, int begin, int end) {
     const float *burn_rate = burn->burn_rate;
 
     for (uint32_t cell = (uint32_t)begin; cell < (uint32_t)end; cell++) {
-        const uint32_t *at = shell->cells[cell];
-        bool centre_burns = burn_rate[shell_centre(shell, cell)] > 0;
-        bool burns[4] = {burn_rate[at[0]] > 0, burn_rate[at[1]] > 0, burn_rate[at[2]] > 0, burn_rate[at[3]] > 0};
-        if (!(centre_burns | burns[0] | burns[1] | burns[2] | burns[3])) continue;
+        const uint32_t *at = shell->cells[cell], middle = shell_centre(shell, cell);
+        unsigned burns = 0; // bit i: corner i; bit 4: corner 0 again
+        for (unsigned i = 0; i < 4; i++) burns |= (unsigned)(burn_rate[at[i]] > 0) << i;
+        burns |= burns << 4 & 16;
+        const bool centre_burns = burn_rate[middle] > 0;
+        if (!burns && !centre_burns) continue;
+
+        // the cells beside it
         const CellSprings *springs = &shell->cell_springs[cell];
-        SpringEnd corner[4], centre = spring_end(matter, burn, shell_centre(shell, cell));
-        for (int i = 0; i < 4; i++) corner[i] = spring_end(matter, burn, at[i]);
-
-        // red, blue and green springs; a shared one by one of its two cells
+        uint32_t beyond[4];
+        unsigned blue = 0, green = 0; // a shared spring by one of its two cells
         for (int i = 0; i < 4; i++) {
-            uint32_t other = shell_neighbour(shell, cell, i), beyond = shell_centre(shell, other);
-            int next = (i + 1) & 3;
-            if (centre_burns | burns[i]) {
-                uint32_t s = springs->red[i];
-                float in_plane = red_in_plane(matter, &shell->springs[SINGE_RED], s, shell_centre(shell, cell));
-                shrink_spring(job, SINGE_RED, s, centre, corner[i], in_plane);
-            }
-
-            if ((burns[i] | burns[next]) && (other == SHELL_NONE || cell < other))
-                shrink_spring(job, SINGE_BLUE, springs->blue[i], corner[i], corner[next], 1);
-            if (centre_burns && other != SHELL_NONE && (cell < other || !(burn_rate[beyond] > 0)))
-                shrink_spring(job, SINGE_GREEN, springs->green[i], centre, spring_end(matter, burn, beyond), 1);
+            const uint32_t other = shell_neighbour(shell, cell, i);
+            const bool first = other == SHELL_NONE || cell < other;
+            beyond[i] = other == SHELL_NONE ? middle : shell_centre(shell, other);
+            blue |= (unsigned)first << i;
+            green |= (unsigned)(other != SHELL_NONE && (first || !(burn_rate[beyond[i]] > 0))) << i;
         }
 
+        const SpringEnds corner = spring_ends(matter, burn, at), next = spring_ends_turned(corner);
+        const SpringEnds centre = spring_ends(matter, burn, (const uint32_t[4]){middle, middle, middle, middle});
+        const Float4 none = {0};
+        shrink_springs(job, SINGE_RED, springs->red, centre_burns ? 15 : burns & 15, centre, corner,
+                       float4_all(field_at(matter->thickness, middle)));
+        shrink_springs(job, SINGE_BLUE, springs->blue, (burns | burns >> 1) & blue, corner, next, none);
+        if (centre_burns)
+            shrink_springs(job, SINGE_GREEN, springs->green, green, centre, spring_ends(matter, burn, beyond), none);
+
         // the diagonals
-        for (int i = 0; i < 2; i++)
-            if (burns[i] | burns[i + 2])
-                shrink_spring(job, SINGE_YELLOW, springs->yellow[i], corner[i], corner[i + 2], 1);
+        const uint32_t yellow[4] = {springs->yellow[0], springs->yellow[1], springs->yellow[0], springs->yellow[1]};
+        shrink_springs(job, SINGE_YELLOW, yellow, (burns | burns >> 2) & 3, corner, spring_ends_turned(next), none);
     }
 }
 
@@ -57,15 +69,21 @@ void burn_shrink(BurnJob *job, Pool *pool) {
 void burn_restore_lengths(const Shell *shell, const AblateState *ablate, BurnState *burn) {
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         const SpringSet *springs = &shell->springs[colour];
-        for (uint32_t s = 0; s < springs->count; s++) {
-            if (!(ablate->spring_flags[colour][s] & SINGE_ALIVE)) continue;
-            uint32_t first = springs->ends[s][0], second = springs->ends[s][1];
-            SpringEnd a = spring_end(&shell->matter, burn, first);
-            SpringEnd b = spring_end(&shell->matter, burn, second);
-            float in_plane = 1;
-            if (colour == SINGE_RED) // a centre comes after all vertices
-                in_plane = red_in_plane(&shell->matter, springs, s, first > second ? first : second);
-            burn->spring_length[colour][s] = target_length(springs, s, a, b, in_plane);
+        for (uint32_t s = 0; s < springs->count; s += 4) {
+            uint32_t at[4], first[4], second[4];
+            Float4 thickness = {0};
+            for (uint32_t k = 0; k < 4; k++) {
+                at[k] = s + k < springs->count ? s + k : s;
+                first[k] = springs->ends[at[k]][0];
+                second[k] = springs->ends[at[k]][1];
+                if (colour == SINGE_RED) // a centre comes after all vertices
+                    thickness[k] = field_at(shell->matter.thickness, first[k] > second[k] ? first[k] : second[k]);
+            }
+            const SpringEnds a = spring_ends(&shell->matter, burn, first),
+                             b = spring_ends(&shell->matter, burn, second);
+            const Float4 length = target_lengths(springs, at, a, b, thickness);
+            for (uint32_t k = 0; k < 4; k++)
+                if (ablate->spring_flags[colour][at[k]] & SINGE_ALIVE) burn->spring_length[colour][at[k]] = length[k];
         }
     }
 }

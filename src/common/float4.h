@@ -28,6 +28,9 @@ static inline Float4Mask float4_load_ints(const int32_t *p) {
     memcpy(&a, p, sizeof a);
     return a;
 }
+static inline Float4 float4_gather(const float *from, const uint32_t at[4]) {
+    return (Float4){from[at[0]], from[at[1]], from[at[2]], from[at[3]]};
+}
 static inline Float4 float4_all(float a) { return (Float4){a, a, a, a}; }
 static inline Float4 float4_select(Float4Mask mask, Float4 yes, Float4 no) {
     return (Float4)((mask & (Float4Mask)yes) | (~mask & (Float4Mask)no));

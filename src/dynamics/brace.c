@@ -106,9 +106,10 @@ void braces_free(Memory *memory, Braces *braces) {
 float brace_length(const Braces *braces, const DynamicsPlan *plan, const Shell *shell, const StateInput *state,
                    const DynamicsState *dynamics, uint32_t brace) {
     const uint32_t *ends = braces->springs.ends[brace], *green = braces->green[brace];
-    const SpringEnd a = spring_end(&shell->matter, state->burn, ends[0]);
-    const SpringEnd b = spring_end(&shell->matter, state->burn, ends[1]);
-    const float length = target_length(&braces->springs, brace, a, b, 1);
+    const SpringEnds both =
+        spring_ends(&shell->matter, state->burn, (const uint32_t[4]){ends[0], ends[1], ends[0], ends[1]});
+    const uint32_t same[4] = {brace, brace, brace, brace};
+    const float length = target_lengths(&braces->springs, same, both, spring_ends_turned(both), (Float4){0})[0];
     if (!plan->creased) return length;
 
     float flat = 0, creased = 0;

@@ -1,6 +1,7 @@
 // A parameter over the particles of a shell: one number for all particles, or an array where it varies.
 #pragma once
 
+#include "common/float4.h"
 #include "common/memory.h"
 
 /// Number of consecutive particles that field_run gives.
@@ -12,6 +13,11 @@ typedef struct Field {
 } Field;
 
 static inline float field_at(Field field, uint32_t particle) { return field.values[particle & field.mask]; }
+
+/// Those of four particles.
+static inline Float4 field_four(Field field, const uint32_t at[4]) {
+    return field.mask ? float4_gather(field.values, at) : float4_all(field.values[0]);
+}
 
 /// The values of particles first, first + 1 .. up to FIELD_RUN of them: a loop over these is the same for both kinds,
 /// and a compiler can vectorise it.

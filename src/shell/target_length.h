@@ -23,60 +23,72 @@
 //
 // f is the fuel, w = 1 - f - c/nu the share that has become ash (glow.c). In the paper, without char, the density is
 // linear from 1 to rho_ash in the burn progress 1 - f = w = (1 - m)/(1 - m_min).
+//
+// Four springs at once.
 #pragma once
 
-#include <math.h>
-
+#include "common/float4.h"
 #include "shell/shell.h"
 
 /// Volume ratio at a mass fraction, with the share `fuel` of the fuel left and the share `ash` turned to ash. In (0, 1]
 /// for sane materials, clamped to [0.05, 1].
-static inline float burn_volume_ratio(float mass, float fuel, float ash, float char_density, float ash_density) {
-    float ratio = mass / (1 + (char_density - 1) * (1 - fuel) + (ash_density - char_density) * ash);
-    return ratio < 0.05f ? 0.05f : ratio > 1 ? 1 : ratio;
+static inline Float4 burn_volume_ratio(Float4 mass, Float4 fuel, Float4 ash, Float4 char_density, Float4 ash_density) {
+    const Float4 ratio = mass / (1 + (char_density - 1) * (1 - fuel) + (ash_density - char_density) * ash);
+    return float4_select(ratio < 0.05f, float4_all(0.05f), float4_select(ratio > 1, float4_all(1), ratio));
 }
 
 /// A strong shrink factor must not invert a spring.
 #define RATIO_MIN 0.05f
 
-/// Properties of a spring's end.
-typedef struct SpringEnd {
-    float volume; ///< v of eq 5
-    float shrink; ///< s
-    float fibres; ///< q
-} SpringEnd;
+/// Properties of the ends of four springs.
+typedef struct SpringEnds {
+    Float4 volume; ///< v of eq 5
+    Float4 shrink; ///< s
+    Float4 fibres; ///< q
+} SpringEnds;
 
-static inline SpringEnd spring_end(const Matter *matter, const BurnState *burn, uint32_t i) {
-    float mass = burn->mass[i], fuel = burn->fuel[i];
-    float ash = 1 - fuel - shell_char(mass, fuel, field_at(matter->mass_min, i), field_at(matter->char_yield, i));
-    float volume =
-        burn_volume_ratio(mass, fuel, ash, field_at(matter->char_density, i), field_at(matter->ash_density, i));
-    return (SpringEnd){volume, field_at(matter->shrink, i), field_at(matter->fibre_shrink, i)};
+/// Four particles as ends.
+static inline SpringEnds spring_ends(const Matter *matter, const BurnState *burn, const uint32_t at[4]) {
+    const Float4 mass = float4_gather(burn->mass, at), fuel = float4_gather(burn->fuel, at), zero = {0};
+    const Float4 min = field_four(matter->mass_min, at), span = field_four(matter->char_yield, at) - min;
+
+    // as shell_char
+    const Float4 max = 1 - fuel, share = (mass - fuel - min * max) / span;
+    const Float4 within = float4_select(share < 0, zero, float4_select(share > max, max, share));
+    const Float4 ash = max - float4_select(span > 0, within, zero);
+    return (SpringEnds){
+        burn_volume_ratio(mass, fuel, ash, field_four(matter->char_density, at), field_four(matter->ash_density, at)),
+        field_four(matter->shrink, at), field_four(matter->fibre_shrink, at)};
 }
 
-static inline float length_ratio(SpringEnd a, SpringEnd b) {
-    float shrink = 0.5f * (a.shrink + b.shrink);
-    float ratio = 1 - shrink * (1 - 0.5f * (a.volume + b.volume));
-    return ratio < RATIO_MIN ? RATIO_MIN : ratio;
+/// Those of the corners 0 to 3 of a cell in the order 1, 2, 3, 0.
+static inline SpringEnds spring_ends_turned(SpringEnds ends) {
+    return (SpringEnds){FLOAT4_SHUFFLE(ends.volume, ends.volume, 1, 2, 3, 0),
+                        FLOAT4_SHUFFLE(ends.shrink, ends.shrink, 1, 2, 3, 0),
+                        FLOAT4_SHUFFLE(ends.fibres, ends.fibres, 1, 2, 3, 0)};
 }
 
-/// The length ratio of a spring with this `grain`; `even` is the ratio without fibres.
-static inline float fibre_ratio(SpringEnd a, SpringEnd b, float even, float grain, float in_plane) {
-    float q = 0.5f * (a.fibres + b.fibres), max = even - RATIO_MIN, stretch = (1 - even) * (q - 1) / (q + 1);
-    stretch = stretch > max ? max : stretch < -max ? -max : stretch;
-    return sqrtf(even * even + stretch * (in_plane * stretch + 2 * even * grain));
+/// The length ratios without fibres.
+static inline Float4 length_ratio(SpringEnds a, SpringEnds b) {
+    const Float4 shrink = 0.5f * (a.shrink + b.shrink);
+    const Float4 ratio = 1 - shrink * (1 - 0.5f * (a.volume + b.volume));
+    return float4_select(ratio < RATIO_MIN, float4_all(RATIO_MIN), ratio);
 }
 
-/// The share p of the square of a red spring that lies in the plane of the sheet.
-static inline float red_in_plane(const Matter *matter, const SpringSet *red, uint32_t s, uint32_t centre) {
-    if (!red->grain) return 1; // unused
-    float upright = field_at(matter->thickness, centre) / red->rest[s];
-    return upright < 1 ? 1 - upright * upright : 0;
+/// The length ratios of springs with this `grain`; `even` are the ratios without fibres.
+static inline Float4 fibre_ratio(SpringEnds a, SpringEnds b, Float4 even, Float4 grain, Float4 in_plane) {
+    const Float4 q = 0.5f * (a.fibres + b.fibres), max = even - RATIO_MIN, whole = (1 - even) * (q - 1) / (q + 1);
+    const Float4 stretch = float4_select(whole > max, max, float4_select(whole < -max, -max, whole));
+    return float4_sqrt(even * even + stretch * (in_plane * stretch + 2 * even * grain));
 }
 
-/// Target length of a spring whose share `in_plane` of its square lies in the sheet.
-static inline float target_length(const SpringSet *springs, uint32_t s, SpringEnd a, SpringEnd b, float in_plane) {
-    float ratio = length_ratio(a, b);
-    if (springs->grain) ratio = fibre_ratio(a, b, ratio, springs->grain[s], in_plane);
-    return springs->rest[s] * ratio;
+/// Target lengths of four springs. `thickness` of the sheet at red springs, 0 for other colours: the share p of the square
+/// of a spring that lies in the sheet follows from it.
+static inline Float4 target_lengths(const SpringSet *springs, const uint32_t s[4], SpringEnds a, SpringEnds b,
+                                    Float4 thickness) {
+    const Float4 rest = float4_gather(springs->rest, s), ratio = length_ratio(a, b);
+    if (!springs->grain) return rest * ratio;
+    const Float4 upright = thickness / rest;
+    const Float4 in_plane = float4_select(upright < 1, 1 - upright * upright, (Float4){0});
+    return rest * fibre_ratio(a, b, ratio, float4_gather(springs->grain, s), in_plane);
 }

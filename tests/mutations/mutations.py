@@ -43,9 +43,9 @@ MUTATIONS = [
      "burn", "rate_stops_growing_at_its_ceiling"),
     ("shell/target_length.h", "(char_density - 1) * (1 - fuel)", "(char_density - 1) * fuel",
      "burn", "volume_ratio_follows_eq_5"),
-    ("shell/target_length.h", "float ratio = 1 - shrink * (1 - 0.5f * (a.volume + b.volume));",
-     "float ratio = 1 - shrink * (1 - a.volume);", "burn", "springs_shrink_by_eq_6"),
-    ("shell/target_length.h", "stretch = (1 - even) * (q - 1) / (q + 1);", "stretch = (1 - even) * (1 - q) / (q + 1);",
+    ("shell/target_length.h", "ratio = 1 - shrink * (1 - 0.5f * (a.volume + b.volume));",
+     "ratio = 1 - shrink * (1 - a.volume);", "burn", "springs_shrink_by_eq_6"),
+    ("shell/target_length.h", "whole = (1 - even) * (q - 1) / (q + 1);", "whole = (1 - even) * (1 - q) / (q + 1);",
      "burn", "fibres_turn_shrinkage"),
     # section 6 and eq 7: what goes
     ("ablate/ablate_plan.c", "return state->burn.mass[particle] - field_at(matter->mass_loss, particle);",
