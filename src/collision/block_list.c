@@ -2,26 +2,27 @@
 
 #include <string.h>
 
-bool block_list_create(Memory *memory, BlockList *list, size_t size, uint32_t capacity, uint32_t block_count) {
-    *list = (BlockList){.size = size};
+bool block_list_create(Memory *memory, BlockList *list, BlockItems *items, size_t size, uint32_t capacity,
+                       uint32_t block_count) {
+    *list = (BlockList){.items = items, .size = size};
     return block_list_grow(memory, list, capacity, block_count);
 }
 
 void block_list_free(Memory *memory, BlockList *list) {
-    memory_free(memory, (void *)&list->items, (size_t)list->items_length * BLOCK_CHUNK, list->size);
     FREE(memory, list->next, list->next_length);
     FREE(memory, list->blocks, list->block_count);
 }
+
+void block_items_free(Memory *memory, BlockItems *items) { FREE(memory, items->at, items->bytes); }
 
 bool block_list_grow(Memory *memory, BlockList *list, uint32_t capacity, uint32_t block_count) {
     if (capacity < list->capacity) capacity = list->capacity;
     if (block_count < list->block_count) block_count = list->block_count;
     const uint32_t chunks = capacity / BLOCK_CHUNK + block_count; // a block's last chunk may be almost empty
-    if (chunks > list->items_length) {
-        if (!memory_grow(memory, &list->items, (size_t)list->items_length * BLOCK_CHUNK, (size_t)chunks * BLOCK_CHUNK,
-                         list->size))
-            return false;
-        list->items_length = chunks;
+    const size_t bytes = (size_t)chunks * BLOCK_CHUNK * list->size;
+    if (bytes > list->items->bytes) {
+        if (!memory_grow(memory, &list->items->at, list->items->bytes, bytes, 1)) return false;
+        list->items->bytes = bytes;
     }
     if (chunks > list->next_length) {
         if (!memory_grow(memory, &list->next, list->next_length, chunks, sizeof *list->next)) return false;
@@ -98,7 +99,7 @@ static void read_blocks(void *task, int begin, int end) {
         uint32_t chunk = block->first;
         for (uint32_t k = 0; k < block->count && block->start + k < job->count; k++) {
             if (k > 0 && k % BLOCK_CHUNK == 0) chunk = list->next[chunk];
-            const uint8_t *items = list->items + (size_t)chunk * BLOCK_CHUNK * list->size;
+            const uint8_t *items = list->items->at + (size_t)chunk * BLOCK_CHUNK * list->size;
             job->read(job->context, items + k % BLOCK_CHUNK * list->size, block->start + k);
         }
     }

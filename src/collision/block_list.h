@@ -19,26 +19,33 @@ typedef struct ListBlock {
     uint32_t start; ///< in the order of all blocks
 } ListBlock;
 
+/// Memory for the items of lists that are in use one after another: a list's items stay until another one is written.
+typedef struct BlockItems {
+    uint8_t *at;
+    size_t bytes;
+} BlockItems;
+
 typedef struct BlockList {
+    BlockItems *items; ///< chunk_count BLOCK_CHUNK size bytes at least
     size_t size;       ///< bytes of an item
     uint32_t capacity; ///< items, whatever blocks they are in
     uint32_t chunk_count, block_count;
-    /// chunks in each; more than chunk_count where memory has run out before both had grown
-    uint32_t items_length, next_length;
-    atomic_uint taken; ///< chunks
-    bool whole;        ///< the last written items are all there
-    uint8_t *items;    ///< [items_length * BLOCK_CHUNK * size]
-    uint32_t *next;    ///< [next_length] the next chunk of the same block
-    ListBlock *blocks; ///< [block_count]
+    uint32_t next_length; ///< chunks; more than chunk_count where memory has run out
+    atomic_uint taken;    ///< chunks
+    bool whole;           ///< the last written items are all there
+    uint32_t *next;       ///< [next_length] the next chunk of the same block
+    ListBlock *blocks;    ///< [block_count]
 } BlockList;
 
-/// A list with room for `capacity` items of `size` bytes, whatever blocks they are in. False when out of memory.
-bool block_list_create(Memory *memory, BlockList *list, size_t size, uint32_t capacity, uint32_t block_count);
+/// A list with room in `items` for `capacity` items of `size` bytes, whatever blocks they are in. False when out of memory.
+bool block_list_create(Memory *memory, BlockList *list, BlockItems *items, size_t size, uint32_t capacity,
+                       uint32_t block_count);
 
 /// Makes room for at least `capacity` items and `block_count` blocks; the previous items stay.
 /// When out of memory it returns false and the list is unchanged.
 bool block_list_grow(Memory *memory, BlockList *list, uint32_t capacity, uint32_t block_count);
-void block_list_free(Memory *memory, BlockList *list);
+void block_list_free(Memory *memory, BlockList *list); ///< but for the items
+void block_items_free(Memory *memory, BlockItems *items);
 
 /// A block that is being written.
 typedef struct BlockWriter {
@@ -67,7 +74,7 @@ static inline void *block_list_add(BlockWriter *writer) {
         writer->chunk = chunk;
     }
     if (writer->chunk >= list->chunk_count) return NULL;
-    return list->items + ((size_t)writer->chunk * BLOCK_CHUNK + at) * list->size;
+    return list->items->at + ((size_t)writer->chunk * BLOCK_CHUNK + at) * list->size;
 }
 
 static inline void block_list_end(const BlockWriter *writer) { *writer->target = writer->block; }

@@ -92,6 +92,7 @@ void collision_plan_free(Memory *memory, CollisionPlan *plan) {
     FREE(memory, plan->kept.initial_other, plan->initial_capacity);
     block_list_free(memory, &plan->found_pairs);
     block_list_free(memory, &plan->found);
+    block_items_free(memory, &plan->items);
     FREE(memory, plan, 1);
 }
 
@@ -142,8 +143,10 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
 
     uint32_t buckets = plan->bucket_count / COLLISION_BUCKETS + 1, blocks = plan->cell_count / COLLISION_OUTSIDE + 1;
     if (buckets < blocks) buckets = blocks;
-    if (!done || !block_list_create(memory, &plan->found_pairs, sizeof(CollisionFound), plan->pair_capacity, buckets) ||
-        !block_list_create(memory, &plan->found, sizeof(Repulsion), plan->repulsion_capacity,
+    if (!done ||
+        !block_list_create(memory, &plan->found_pairs, &plan->items, sizeof(CollisionFound), plan->pair_capacity,
+                           buckets) ||
+        !block_list_create(memory, &plan->found, &plan->items, sizeof(Repulsion), plan->repulsion_capacity,
                            collision_look_blocks(plan->pair_capacity))) {
         collision_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;

@@ -188,6 +188,7 @@ struct CollisionPlan {
     /// a crowd's stripes, or 0: repulsions stripe_first[s] to stripe_first[s + 1] are those of stripe s
     uint32_t stripe_count, stripe_first[COLLISION_STRIPES + 2];
     uint32_t stripe_pushed[COLLISION_STRIPES]; ///< how many of them a pass has pushed apart
+    BlockItems items;                          ///< of these two, which are never needed at the same time
     BlockList found_pairs;                     ///< CollisionFound
     BlockList found;                           ///< Repulsion, as they are found
 

@@ -37,10 +37,11 @@ static void read_item(void *context, const void *item, uint32_t number) {
 /// Writes the list and grows it when it reports that it is full; checks that it has the first items and no others.
 static void check_list(uint32_t capacity, uint32_t grown, Pool *pool) {
     Memory memory = memory_make((SingeAllocator){0});
+    BlockItems items = {0};
     BlockList list;
     uint64_t all = 0;
     for (int b = 0; b < BLOCKS; b++) all += block_items(b);
-    assert_true(block_list_create(&memory, &list, sizeof(uint32_t), capacity, BLOCKS));
+    assert_true(block_list_create(&memory, &list, &items, sizeof(uint32_t), capacity, BLOCKS));
     for (int turn = 0; turn < 2; turn++) { // the second turn finds what the first has left
         uint64_t count = block_list_write(&list, pool, BLOCKS, UINT32_MAX / 2, write_items, NULL);
         assert_int_equal(count, all);
@@ -56,6 +57,7 @@ static void check_list(uint32_t capacity, uint32_t grown, Pool *pool) {
         free(read);
     }
     block_list_free(&memory, &list);
+    block_items_free(&memory, &items);
     assert_int_equal(memory.held, 0);
 }
 
@@ -77,12 +79,14 @@ TEST(full_lists_keep_the_first_entries) {
 /// A block stops counting where no list could have room: what crowds without bounds is given up early.
 TEST(a_block_counts_up_to_the_most) {
     Memory memory = memory_make((SingeAllocator){0});
+    BlockItems items = {0};
     BlockList list;
-    assert_true(block_list_create(&memory, &list, sizeof(uint32_t), 100, BLOCKS));
+    assert_true(block_list_create(&memory, &list, &items, sizeof(uint32_t), 100, BLOCKS));
     uint64_t count = block_list_write(&list, NULL, BLOCKS, 10, write_items, NULL), expected = 0;
     for (int b = 0; b < BLOCKS; b++) expected += block_items(b) < 11 ? block_items(b) : 11;
     assert_int_equal(count, expected);
     block_list_free(&memory, &list);
+    block_items_free(&memory, &items);
 }
 
 // ---- scenes
