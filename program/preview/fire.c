@@ -8,10 +8,11 @@
 // larger it is. So light lasts for a while in what rises out of burning cells, and falls by e in tau = sqrt(dx/2g):
 // f(x) is at least f(x - v dt) - dz/(vz tau ln(q1/q0)).
 //
-// The height of a flame's gas above the paper is that above the paper that burns in its cell, and elsewhere found by
-// following the velocity back, layer by layer from below: r(x) = (r(x - v dt) + dz) times the share that was burning
-// there; it distinguishes the clear base, the bright centre and the torn tip. Smoke is its extinction, 8.7 m2/g times its
-// density (Mulholland & Croarkin 2000, for the soot of flames).
+// The height of a flame's gas above the paper is that above what burns around its cell, less the further aside that is,
+// and elsewhere found by following the velocity back, layer by layer from below: r(x) = (r(x - v dt) + dz) times the
+// share that was burning there; it distinguishes the clear base, the bright centre and the torn tip. Cells below what
+// burns have its flame and a negative height: so both are linear at the paper, where flames begin. Smoke is its
+// extinction, 8.7 m2/g times its density (Mulholland & Croarkin 2000, for the soot of flames).
 
 #include "preview/internal.h"
 
@@ -20,6 +21,9 @@
 #define FLAME_LOW 5e4f     ///< W/m3, the heat released where the flame is 0
 #define FLAME_HIGH 5e6f    ///< where it is 1
 #define FLAME_THICK 0.014f ///< m, of burning gas: in wider cells the heat is a mean with what does not burn
+#define ROOT_REACH 2.2f    ///< cells, over which what burns gives gas its height
+#define ROOT_WIDE 0.6f     ///< cells aside, from which on a flame draws together
+#define ROOT_LEAN 0.4f
 #define FIRE_PASSING 0.75f ///< share of the gas over burning paper that came from flames below
 #define SMOKE_SEEN 0.08f   ///< 1/m
 
@@ -29,26 +33,49 @@ static size_t fire_at(const Fire *fire, int x, int y, int z) {
 
 // ---- height above the paper
 
-/// The height of the gas above the paper where paper burns, and upwards from there, layer by layer.
-static void raise_cells(Preview *preview) {
+/// The rate at which paper burns around each cell, and the mean place, in cells; what is nearer counts more.
+static void find_roots(Preview *preview) {
     const PreviewScene *scene = &preview->scene;
     Fire *fire = &preview->fire;
 
-    // where paper burns: the rate, and the mean height weighted by it
     memset(fire->roots, 0, fire->cell_capacity * sizeof *fire->roots);
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
-        float rate = scene->vertices[i].flaming, rest;
+        const float rate = scene->vertices[i].flaming;
         if (rate < 0.02f) continue;
-        Float3 g = float3_scale(float3_sub(float3_load(scene->positions[i]), fire->origin), 1 / fire->cell);
-        int at[3] = {noise_floor(g.x + 0.5f, &rest), noise_floor(g.y + 0.5f, &rest), noise_floor(g.z + 0.5f, &rest)};
-        bool in = true;
-        for (int c = 0; c < 3; c++) in = in && at[c] > 0 && at[c] < fire->size[c] - 1;
-        if (!in) continue;
-        float *root = fire->roots[fire_at(fire, at[0], at[1], at[2])];
-        root[0] += rate;
-        root[1] += rate * scene->positions[i][2];
-    }
+        const Float3 g = float3_scale(float3_sub(float3_load(scene->positions[i]), fire->origin), 1 / fire->cell);
+        const float at[3] = {g.x, g.y, g.z};
+        int low[3], high[3];
+        for (int c = 0; c < 3; c++) {
+            low[c] = (int)clampf(ceilf(at[c] - ROOT_REACH), 0, (float)fire->size[c]);
+            high[c] = (int)clampf(floorf(at[c] + ROOT_REACH), -1, (float)fire->size[c] - 1);
+        }
 
+        for (int z = low[2]; z <= high[2]; z++)
+            for (int y = low[1]; y <= high[1]; y++)
+                for (int x = low[0]; x <= high[0]; x++) {
+                    const Float3 to = float3_sub(g, float3((float)x, (float)y, (float)z));
+                    const float near = 1 - float3_dot(to, to) / (ROOT_REACH * ROOT_REACH);
+                    if (near <= 0) continue;
+                    const float weight = rate * near * near * near * near;
+                    float *root = fire->roots[fire_at(fire, x, y, z)];
+                    root[0] += weight, root[1] += weight * g.x, root[2] += weight * g.y, root[3] += weight * g.z;
+                }
+    }
+}
+
+/// The height of a cell above what burns around it, and how near that is, 1 to 0 a cell away. Flames draw together towards
+/// it: what is aside is less high.
+static float root_height(const Fire *fire, int x, int y, int z, float *near) {
+    const float *root = fire->roots[fire_at(fire, x, y, z)], each = 1 / root[0];
+    const float dx = (float)x - each * root[1], dy = (float)y - each * root[2], dz = (float)z - each * root[3];
+    const float aside = sqrtf(dx * dx + dy * dy);
+    *near = maxf(1 - sqrtf(aside * aside + dz * dz), 0);
+    return fire->cell * (dz - ROOT_LEAN * maxf(aside - ROOT_WIDE, 0));
+}
+
+/// The height of the gas above the paper where paper burns, and upwards from there, layer by layer.
+static void raise_cells(Preview *preview) {
+    Fire *fire = &preview->fire;
     for (int z = 1; z < fire->size[2] - 1; z++)
         for (int y = 1; y < fire->size[1] - 1; y++)
             for (int x = 1; x < fire->size[0] - 1; x++) {
@@ -62,38 +89,46 @@ static void raise_cells(Preview *preview) {
                 int ix = noise_floor((float)x - drift[0], &fx), iy = noise_floor((float)y - drift[1], &fy);
                 const FireCell *a = &fire->cells[fire_at(fire, ix, iy, z - 1)], *b = a + fire->size[0];
                 float flame = mixf(mixf(a[0].flame, a[1].flame, fx), mixf(b[0].flame, b[1].flame, fx), fy);
-                cell->flame = maxf(drift[2], flame - fire->fading / drift[3]);
+                const bool roots = fire->roots[here][0] > 0;
+                float near;
+                const float height = roots ? root_height(fire, x, y, z, &near) : 0;
+
+                // below what burns, too, or flames would fade towards it
+                const bool below = roots && flame <= 0 && fabsf(height) < fire->cell;
+                const float own = below ? maxf(drift[2], fire->source[above][2]) : drift[2];
+                cell->flame = maxf(own, flame - fire->fading / drift[3]);
                 if (cell->flame <= 0) continue;
 
                 float rise = mixf(mixf(a[0].rise, a[1].rise, fx), mixf(b[0].rise, b[1].rise, fx), fy);
                 if (flame > 0)
                     cell->rise = cell->flame * minf(2 * flame / cell->flame, 1) * (rise / flame + fire->cell);
 
-                // the paper in the cell, or just above it, where the flame has not arrived yet; up a hanging sheet gas
-                // that has burnt for a while passes what begins to
-                const float *root = fire->roots[fire->roots[here][0] > 0 ? here : above];
-                if (root[0] > 0) {
-                    float height = maxf(fire->origin.z + (float)z * fire->cell - root[1] / root[0], -fire->cell);
-                    cell->rise = mixf(cell->flame * height, cell->rise, flame > 0 ? FIRE_PASSING : 0);
-                }
+                // up a hanging sheet gas that has burnt for a while passes what begins to
+                if (!roots) continue;
+                const float passing = minf(flame / cell->flame, 1) * (1 - (1 - FIRE_PASSING) * near);
+                cell->rise = mixf(cell->flame * height, cell->rise, passing);
             }
 }
 
 // ---- the widest eddies
 
 /// How far eddies move the flame of each cell, and how much they feed it. The height of a flame's gas is known in its own
-/// cells; it is spread over those around them, as far as eddies reach.
+/// cells and around what burns; it is spread over those around them, as far as eddies reach.
 static void sway_cells(Fire *fire) {
     const size_t over[3] = {1, (size_t)fire->size[0], (size_t)fire->size[0] * (size_t)fire->size[1]};
 
-    for (size_t i = 0; i < fire->cell_capacity; i++) {
-        const FireCell *cell = &fire->cells[i];
-        const bool burns = cell->flame > 0.5f * FLAME_SEEN; // a fainter one's height is not known well
-        float *sway = fire->sway[i];
-        sway[0] = sway[1] = 0;
-        sway[2] = burns ? maxf(cell->rise / cell->flame, 0) : 0;
-        sway[3] = burns ? 1 : 0; // later 1 more than the number of cells over which it was spread
-    }
+    for (int z = 0; z < fire->size[2]; z++)
+        for (int y = 0; y < fire->size[1]; y++)
+            for (int x = 0; x < fire->size[0]; x++) {
+                const size_t here = fire_at(fire, x, y, z);
+                const FireCell *cell = &fire->cells[here];
+                const bool burns = cell->flame > 0.5f * FLAME_SEEN; // a fainter one's height is not known well
+                const bool roots = fire->roots[here][0] > 0;
+                float near, *sway = fire->sway[here];
+                sway[0] = sway[1] = 0;
+                sway[2] = burns ? cell->rise / cell->flame : roots ? root_height(fire, x, y, z, &near) : 0;
+                sway[3] = burns || roots; // later 1 more than the number of cells over which it was spread
+            }
 
     const int reach = 1 + (int)minf(fire->scale * FIRE_SWAY / fire->cell, 1000);
     for (int far = 1; far <= reach; far++)
@@ -205,6 +240,7 @@ void fire_raise(Preview *preview) {
     fire->visible = false;
     if (!fire->size[0]) return;
 
+    find_roots(preview);
     raise_cells(preview);
 
     // above their max height flames are too thin to be seen

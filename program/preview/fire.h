@@ -51,7 +51,7 @@ typedef struct Fire {
     int bricks[3];
     uint8_t *seen;      ///< [bricks] FIRE_FLAME and FIRE_SMOKE that eddies may bring there
     float (*source)[4]; ///< [cells] displacement of the gas along x and y as it rises by one; its flame; its rise, m/s
-    float (*roots)[2];  ///< [cells] rate at which paper burns there, and its height times that
+    float (*roots)[4];  ///< [cells] rate at which paper burns around, and its place in cells times that
     float (*sway)[4]; ///< [cells] m, how far eddies move a flame along x and y; its height above the paper; 1 where it
                       ///< burns, one more for each cell from there, 0 beyond
     uint8_t *burns;   ///< [cells] whether flame may be within reach of the small eddies

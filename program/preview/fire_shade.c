@@ -21,10 +21,10 @@
 //
 // and a step of a ray takes its mean between the depths of its ends, by the integral of P: the shell is thinner than a
 // step. w is SHELL_RISE, or more where rays are further apart, as edges would have steps; the light of a flame stays. It
-// begins at the paper, is faint and blue in the first millimetres, where there is no soot yet, yellow above, orange at its
-// tips. Soot glows as a black body between FLAME_COOL and FLAME_HOT, and hides as much as it glows. It is the hotter the
-// more heat is released around it (core) and the further it is from the edge (strong): so a flame of one or two sheets has
-// a pale core, too.
+// begins at the paper, is faint, clear and blue in the first millimetres, where there is little soot, then orange, pale in
+// its core, and orange at its tips. Soot glows as a black body between FLAME_COOL and FLAME_HOT, and hides as much as it
+// glows. It is the hotter the more heat is released around it (core) and the further it is from the edge (strong): so a
+// flame of one or two sheets has a pale core, too.
 //
 // Soot lies in threads, which are denser and cooler than what is between them. So a sheet in front hides much of what burns
 // behind it, and a body of many sheets does not add up to one flat yellow. Soot thins out towards the tips.
@@ -55,16 +55,20 @@
 #define FLAME_BRIGHT 6.2f
 #define FLAME_BAKED 3.7f        ///< radiance of what is 1 where gas is baked
 #define SOOT_DENSE 195.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
-#define BLUE_DENSE 1.3f         ///< 1/m: radiance of the root per metre
-#define BLUE_ENDS 0.005f        ///< m
+#define BLUE_DENSE 4.2f         ///< 1/m: radiance of the root per metre
+#define BLUE_ENDS 0.008f        ///< m
 #define SHELL_RISE 0.0005f      ///< m, w
 #define SHELL_RISE_MOST 0.0016f ///< more would dim thin tongues
 #define SHELL 0.0018f           ///< m
 #define EDGE 0.42f              ///< f at a flame's edge
 #define TAPER 0.55f             ///< what is added to it above a flame's height
 #define STAND_OFF 0.0006f       ///< m above the paper, below which nothing is visible
-#define SOOT_BEGINS 0.0050f     ///< m
-#define SOOT_FULL 0.0120f
+#define SOOT_FULL 0.0075f       ///< m
+#define FOOT_COOL 0.22f         ///< of the range of temperatures: soot begins orange
+#define CORE_BEGINS 0.0030f     ///< m
+#define CORE_FULL 0.0270f
+#define LAMP_BEGINS 0.0050f ///< m, from which on flames cast light
+#define LAMP_FULL 0.0120f
 
 // ---- looking up
 
@@ -139,7 +143,7 @@ float fire_share(const Fire *fire, size_t at) {
     const FireCell *cell = &fire->cells[at];
     if (cell->flame <= FLAME_SEEN) return 0;
     float burns = fire->source[at][2]; // without what only glows on
-    return stepf(0.32f, 0.89f, burns) * stepf(SOOT_BEGINS, SOOT_FULL, cell->rise / cell->flame);
+    return stepf(0.32f, 0.89f, burns) * stepf(LAMP_BEGINS, LAMP_FULL, cell->rise / cell->flame);
 }
 
 float fire_flicker(const Fire *fire, Float3 p) {
@@ -163,9 +167,9 @@ float fire_lick(const Fire *fire, Float3 p, float height) {
 }
 
 /// The flame at a position p that large eddies have moved, from its cell, the gradient of its share in 1/m, and the noises.
-static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float passed, float slope, Noise wide,
-                        Noise fine, float blur, FirePoint *point) {
-    float rise = maxf(cell->rise / cell->flame, 0), torn = stepf(0, 0.02f, rise);
+static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float rise, float passed, float slope,
+                        Noise wide, Noise fine, float blur, FirePoint *point) {
+    float torn = stepf(0, 0.02f, rise);
     float tall = rise / (fire->scale * FLAME_HEIGHT);
     float coarse = 0.075f + 0.425f * torn, small = 0.025f + 0.225f * torn;
     float edge = cell->flame + coarse * (0.6f - 2.4f * fabsf(wide.c)) + small * (0.4f - 2 * fabsf(fine.c)) - EDGE -
@@ -183,7 +187,8 @@ static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float 
     point->profile = same * outer / first * (fill + fading);
     point->shell = same * (0.5f * outer * outer / first + fill * inner + SHELL * (1 - fill - fading));
 
-    float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001f * fine.d);
+    const float foot = rise + 0.0012f * fine.d + 0.0016f * wide.d;
+    float soot = stepf(0, SOOT_FULL, foot);
 
     // threads are denser and cooler than what is between them
     const Float3 bent =
@@ -192,12 +197,14 @@ static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float 
     if (soot > 0) thread = eddies(fire, bent, passed, sqrtf(fire->scale) * EDDY_THREAD, 5.5f * sqrtf(fire->scale));
     float clear = stepf(-0.35f, 0.45f, 0.15f * (wide.d + fine.d) + 0.9f * torn * thread.a);
 
-    float core = stepf(0.35f, 0.7f, cell->flame) * stepf(SOOT_BEGINS, SOOT_FULL, rise);
+    float core = stepf(0.35f, 0.7f, cell->flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
     float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.19f * core + 0.72f * clear - 0.14f * tip - 0.12f;
+    hot -= FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));
 
-    soot *= soot * soot;
-    float root = stepf(STAND_OFF, 3 * STAND_OFF, rise) * (1 - soot) * (1 - stepf(BLUE_ENDS / 3, BLUE_ENDS, rise));
+    soot *= soot * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);
+    float root =
+        clampf((rise + STAND_OFF) / (8 * STAND_OFF), 0, 1) * (1 - soot) * (1 - stepf(BLUE_ENDS / 3, BLUE_ENDS, foot));
     soot *= 0.2f + 3 * (1 - clear) * (1 - clear) + 1.2f * clear * clear;
     soot *= (0.6f + 0.9f * torn * maxf(thread.b, -0.5f)) * (1 - 0.5f * tip);
     point->opaque = SOOT_DENSE * soot;
@@ -295,7 +302,7 @@ FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
     Noise fine = eddies(fire, shifted, passed, sqrtf(scale) * EDDY_FINE, 1.6f * sqrtf(scale));
     const FireCell cell =
         cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), sqrtf(scale) * 0.7f * FIRE_WARP_FINE), &slope);
-    if (cell.flame > 0.02f) shade_flame(fire, &cell, shifted, passed, slope, wide, fine, blur, &point);
+    if (cell.flame > 0.02f) shade_flame(fire, &cell, shifted, sway[2], passed, slope, wide, fine, blur, &point);
     return point;
 }
 
