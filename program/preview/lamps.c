@@ -92,7 +92,7 @@ static void add_light(PreviewScene *scene, Float3 position, Float3 strength, flo
 }
 
 /// Turns the strongest clusters into lights until there are `limit`, and scales them to the total of all clusters.
-static void choose_lights(PreviewScene *scene, Cluster *clusters, int limit, float softness) {
+static void choose_lights(PreviewScene *scene, Cluster *clusters, int limit, float softness, float extent) {
     float total = 0, kept = 0;
     int first = scene->light_count;
     for (int i = 0; i < CELLS; i++) total += clusters[i].weight;
@@ -104,7 +104,7 @@ static void choose_lights(PreviewScene *scene, Cluster *clusters, int limit, flo
         Cluster *cluster = &clusters[best];
         if (!(cluster->weight > 0)) break;
         Float3 position = float3_scale(cluster->position, 1 / cluster->weight);
-        add_light(scene, position, cluster->strength, softness, 1.5f * sqrtf(softness));
+        add_light(scene, position, cluster->strength, softness, extent);
         kept += cluster->weight;
         cluster->weight = 0;
     }
@@ -152,13 +152,17 @@ void light_gather(Preview *preview) {
                     add_to_cluster(flames, fire->low, fire->high, position, light, float3_luminance(light));
                 }
         float side = float3_length(float3_sub(fire->high, fire->low)) / GRID;
-        choose_lights(scene, flames, scene->light_count + FLAME_LIGHTS, 0.1f * side * side + 1e-4f);
+        // each stands for flames all around it: near to it they are not as bright as a point
+        const float square = side * side;
+        choose_lights(scene, flames, scene->light_count + FLAME_LIGHTS, 0.4f * square + 1e-4f,
+                      1.5f * sqrtf(0.1f * square + 1e-4f));
     }
 
     Cluster embers[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
     for (uint32_t t = 0; t < scene->triangle_count; t++) gather_triangle(preview, scene->triangles[t], embers);
     float cell = float3_length(float3_sub(scene->high, scene->low)) / GRID;
-    choose_lights(scene, embers, LIGHT_LIMIT, 0.02f * cell * cell + 4e-6f);
+    const float softness = 0.02f * cell * cell + 4e-6f;
+    choose_lights(scene, embers, LIGHT_LIMIT, softness, 1.5f * sqrtf(softness));
 }
 
 // ---- their light

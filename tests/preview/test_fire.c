@@ -614,6 +614,31 @@ TEST(flames_light_the_paper_beside_them) {
     assert_true(more[0] > 10 && more[0] > more[1] && more[1] > more[2]);
 }
 
+/// Firelight is spread: paper beside and below a flame has no hot spot, as below a point.
+TEST(firelight_has_no_hot_spot) {
+    static float beauty[W * H][3], fire[W * H][4];
+    static Ball ball;
+    Float4 q;
+    quad_make(&q, 0.15f, 0.02f), ball_make(&ball, -0.05f, 0, 0.04f, 0.03f, 4e6f, 0);
+    PreviewDef def = above();
+    for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
+    def.camera.eye[0] = 0.4f; // a little aside: there flames hide less of it
+
+    Preview *preview = NULL;
+    SingeError error;
+    PreviewLayers layers = {.beauty = beauty, .fire = fire};
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    assert_int_equal(preview_set_gas(preview, &ball.gas, &error), SINGE_OK);
+    assert_int_equal(preview_draw_layers(preview, &q.surface, 0.3, NULL, &layers, &error), SINGE_OK);
+    preview_destroy(preview);
+    float most = 0;
+    for (int i = 0; i < W * H; i++)
+        if (fire[i][3] < 0.01f) most = fmaxf(most, beauty[i][0]);
+    const float middle = beauty[H / 2 * W + W / 2][0];
+    print_message("firelight: %.2f at most, %.2f five centimetres aside\n", (double)most, (double)middle);
+    assert_true(middle > 0.1f && most < 5.6f * middle); // 5.9
+}
+
 /// Relative standard deviation, over half a second, of the light on paper beside a flame; `day`: factor on sun and sky.
 static float firelight_deviation(float day) {
     enum { FRAMES = 12 };
