@@ -2,7 +2,8 @@
 //
 //   PackHead
 //   PackVertex [vertex_count], PackShape [shape_count], uint32_t triangles [triangle_count][3]
-//   uint8_t cells [size[2]][size[1]][size[0]][4]: flame, its height times it in FLAME_END, smoke in PACK_SMOKE, 0
+//   uint8_t cells [size[2]][size[1]][size[0]][4]: flame; its height above the paper in FLAME_END times Fire.scale, as far
+//                                                 as eddies bring it; smoke in PACK_SMOKE; 0
 //
 // The gas is cut to the box in which there is something to see.
 //
@@ -20,6 +21,8 @@
 #define PACK_RATE 64.0f      ///< 1/s
 #define PACK_GRADIENT 400.0f ///< 1/m
 #define PACK_AGE 655.35f     ///< s
+#define PACK_WARMING 1.2e5f  ///< K/m
+#define PACK_SPACING 0.0655f ///< m
 #define PACK_SMOKE 20.0f     ///< 1/m
 
 typedef struct PackLight {
@@ -41,11 +44,10 @@ typedef struct PackVertex {
     float position[3];
     int8_t normal[3], sheet; ///< normal in 1/127; a sheet of many is 127
     float rest[3], uv[2];
-    uint16_t temperature, peak, rate,
-        glow;                          ///< of PACK_KELVIN and PACK_RATE; glow: the part of the rate without a flame
-    uint16_t burn, gradient, rim, age; ///< of 1, PACK_GRADIENT, 1 and PACK_AGE
-    uint16_t mass, charred, stretch, unused; ///< of 1, 1, and from -1 to 3
-    int32_t source;                          ///< vertex of the input, -1: none
+    uint16_t temperature, peak, rate, warming; ///< of PACK_KELVIN, PACK_RATE and PACK_WARMING
+    uint16_t burn, gradient, rim, age;         ///< of 1, PACK_GRADIENT, 1 and PACK_AGE
+    uint16_t mass, kind, stretch, spacing;     ///< of 1, 1, from -1 to 3, and PACK_SPACING
+    int32_t source; ///< vertex of the input, -1: none. kind: what burns, 0 fuel, 1/2 fuel with char, 1 char alone
 } PackVertex;
 
 typedef struct PackShape {
@@ -104,14 +106,15 @@ static void pack_vertices(const PreviewScene *scene, const SingeSurface *surface
             .temperature = part(v->temperature, PACK_KELVIN),
             .peak = part(v->peak, PACK_KELVIN),
             .rate = part(v->burn_rate, PACK_RATE),
-            .glow = part(v->burn_rate - v->flaming, PACK_RATE),
+            .warming = part(v->heat_gradient, PACK_WARMING),
             .burn = part(v->burn, 1),
             .gradient = part(v->gradient, PACK_GRADIENT),
             .rim = part(v->rim, 1),
             .age = part(v->age, PACK_AGE),
             .mass = part(surface->mass ? surface->mass[i] : 1, 1),
-            .charred = part(surface->char_fraction ? surface->char_fraction[i] : 0, 1),
+            .kind = part(v->flaming > 0 ? (v->starved > 0 ? 0.5f : 0) : 1, 1),
             .stretch = part(1 + (stretch[i][1] > 0 ? stretch[i][0] / stretch[i][1] : 0), 4),
+            .spacing = part(v->spacing, PACK_SPACING),
             .source = surface->source_vertex ? surface->source_vertex[i] : -1,
         };
         for (int c = 0; c < 3; c++) {
@@ -211,9 +214,10 @@ SingeResult preview_pack(Preview *preview, const SingeSurface *surface, double t
         const size_t x = i % head.size[0] + (size_t)first[0];
         const size_t y = i / head.size[0] % head.size[1] + (size_t)first[1];
         const size_t z = i / head.size[0] / head.size[1] + (size_t)first[2];
-        const FireCell *cell = &fire->cells[x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z)];
+        const size_t at = x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z);
+        const FireCell *cell = &fire->cells[at];
         cell_out[0] = byte_part(cell->flame, 1);
-        cell_out[1] = byte_part(cell->rise, FLAME_END);
+        cell_out[1] = byte_part(fire->sway[at][2], FLAME_END * fire->scale);
         cell_out[2] = byte_part(cell->smoke, PACK_SMOKE);
         cell_out[3] = 0;
     }

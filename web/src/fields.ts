@@ -1,15 +1,14 @@
 // From the library's surface and gas to what the shaders read: the fields of program/preview/mesh_in.c and fire.c.
 import type { Gas, Surface } from "singe";
 import { airborneOf } from "../view/airborne.js";
-import { refineGas } from "../view/gas.js";
-
-const CHAR_LEAF = 0.64; // the look of a leaf of char (paper_look.h)
+import { refineGas, spreadHeight } from "../view/gas.js";
+import { LOOK } from "../view/look.js";
 
 /** Interleaved, FLOATS for each vertex; the shaders' attributes in this order. */
 export const ATTRIBUTES = [
-    ["position", 3], ["normal", 3], ["rest", 3], ["uv", 2], ["heat", 4], ["look", 4],
+    ["position", 3], ["normal", 3], ["rest", 3], ["uv", 2], ["heat", 4], ["look", 4], ["leaf", 3],
 ] as const;
-export const FLOATS = 19;
+export const FLOATS = 22;
 
 export interface Mesh { vertices: Float32Array; triangles: Uint32Array; burning: number }
 
@@ -21,12 +20,13 @@ const step = (a: number, b: number, x: number) => {
 
 /**
  * heat: temperature, its peak (K), burn rate and the part of it that is char glowing (1/s); look: burnt share as it looks, its gradient
- * (1/m), nearness of a border, age (s of fire). The gradient is the area-weighted mean of the triangles', a border is
+ * (1/m), nearness of a border, age (s of fire); leaf: size of the triangles around (m), the rate of char that feeds a flame,
+ * and the gradient of the peak (K/m). Gradients are area-weighted means of the triangles', a border is
  * where the angles around a vertex fall short of a full turn.
  */
 export function meshOf(surface: Surface, time: number, pace: number): Mesh {
     const count = surface.vertex_count, out = new Float32Array(FLOATS * count), { triangles } = surface;
-    const slope = new Float32Array(3 * count), area = new Float32Array(count), angle = new Float32Array(count);
+    const slope = new Float32Array(6 * count), area = new Float32Array(count), angle = new Float32Array(count), around = new Float32Array(count);
     let burning = 0;
     for (let i = 0; i < count; i++) {
         const at = FLOATS * i, mass = surface.mass[i]!, charred = clamp(surface.char_fraction[i]!, 0, 1), ash = clamp(surface.ash_fraction[i]!, 0, 1);
@@ -34,7 +34,7 @@ export function meshOf(surface: Surface, time: number, pace: number): Mesh {
         let burn = clamp(surface.burn[i]!, 0, 1);
         if (charred > 0) {
             const q = charred / (charred + 2 * ash);
-            burn += (CHAR_LEAF * (1 - fuel) - burn) * q;
+            burn += (LOOK.CHAR_LEAF * (1 - fuel) - burn) * q;
         }
         for (let c = 0; c < 3; c++) {
             out[at + c] = surface.position[3 * i + c]!;
@@ -50,6 +50,7 @@ export function meshOf(surface: Surface, time: number, pace: number): Mesh {
         out[at + 15] = burn;
         const ignited = surface.time_ignited[i]!;
         out[at + 18] = ignited >= 0 ? (time - ignited) * pace : burn > 0 ? 60 : 0;
+        out[at + 20] = charred > 0 && fuel > 0.01 ? rate : 0;
         if (rate > 0.02) burning++;
     }
 
@@ -63,25 +64,28 @@ export function meshOf(surface: Surface, time: number, pace: number): Mesh {
         const nx = e1[1]! * e2[2]! - e1[2]! * e2[1]!, ny = e1[2]! * e2[0]! - e1[0]! * e2[2]!, nz = e1[0]! * e2[1]! - e1[1]! * e2[0]!;
         const n2 = nx * nx + ny * ny + nz * nz;
         if (!(n2 > 1e-24)) continue;
-        const n = Math.sqrt(n2), half = 0.5 * n, d1 = out[FLOATS * b + 15]! - out[FLOATS * a + 15]!, d2 = out[FLOATS * c + 15]! - out[FLOATS * a + 15]!;
-        const w = half / n2;
-        const gx = w * (d1 * (e2[1]! * nz - e2[2]! * ny) + d2 * (ny * e1[2]! - nz * e1[1]!));
-        const gy = w * (d1 * (e2[2]! * nx - e2[0]! * nz) + d2 * (nz * e1[0]! - nx * e1[2]!));
-        const gz = w * (d1 * (e2[0]! * ny - e2[1]! * nx) + d2 * (nx * e1[1]! - ny * e1[0]!));
+        const n = Math.sqrt(n2), half = 0.5 * n, w = half / n2;
+        const across = [w * (e2[1]! * nz - e2[2]! * ny), w * (e2[2]! * nx - e2[0]! * nz), w * (e2[0]! * ny - e2[1]! * nx)];
+        const along = [w * (ny * e1[2]! - nz * e1[1]!), w * (nz * e1[0]! - nx * e1[2]!), w * (nx * e1[1]! - ny * e1[0]!)];
+        const [burn1, burn2, peak1, peak2] = [15, 12].flatMap((field) => [b, c].map((v) => out[FLOATS * v + field]! - out[FLOATS * a + field]!)) as [number, number, number, number];
         // the angles at a, b and c
         const aa = e1[0]! ** 2 + e1[1]! ** 2 + e1[2]! ** 2, cc = e2[0]! ** 2 + e2[1]! ** 2 + e2[2]! ** 2, ac = e1[0]! * e2[0]! + e1[1]! * e2[1]! + e1[2]! * e2[2]!;
         const atA = Math.atan2(n, ac), atB = Math.atan2(n, aa - ac), atC = Math.atan2(n, cc - ac);
         for (const [v, turn] of [[a, atA], [b, atB], [c, atC]] as const) {
-            slope[3 * v]! += gx;
-            slope[3 * v + 1]! += gy;
-            slope[3 * v + 2]! += gz;
+            for (let k = 0; k < 3; k++) {
+                slope[6 * v + k]! += burn1 * across[k]! + burn2 * along[k]!;
+                slope[6 * v + 3 + k]! += peak1 * across[k]! + peak2 * along[k]!;
+            }
             area[v]! += half;
             angle[v]! += turn;
+            around[v]! += 1;
         }
     }
     for (let i = 0; i < count; i++) {
         const size = area[i]!;
-        out[FLOATS * i + 16] = size > 0 ? Math.hypot(slope[3 * i]!, slope[3 * i + 1]!, slope[3 * i + 2]!) / size : 0;
+        out[FLOATS * i + 16] = size > 0 ? Math.hypot(slope[6 * i]!, slope[6 * i + 1]!, slope[6 * i + 2]!) / size : 0;
+        out[FLOATS * i + 21] = size > 0 ? Math.hypot(slope[6 * i + 3]!, slope[6 * i + 4]!, slope[6 * i + 5]!) / size : 0;
+        out[FLOATS * i + 19] = size > 0 ? Math.sqrt((2 * size) / around[i]!) : 0; // a triangle of area A has edges of about sqrt(2 A)
         out[FLOATS * i + 17] = 1 - step(1.6 * Math.PI, 1.95 * Math.PI, angle[i]!);
     }
     return { vertices: out, triangles: triangles.slice(), burning };
@@ -96,16 +100,15 @@ export const airborneAt = ({ vertices, triangles }: Mesh, time: number): Float32
 
 // ---- the fire
 
-const FLAME_LOW = 2e4, FLAME_RANGE = Math.log(100); // W/m3: less than in fire.c, as cells are larger
+const FLAME_LOW = LOOK.FLAME_LOW, FLAME_END = LOOK.FLAME_END, FLAME_RANGE = Math.log(LOOK.FLAME_HIGH / FLAME_LOW);
 const EXTINCTION = 8700; // m2/kg of soot
-const PASSING = 0.75; // share of the gas over burning paper that came from flames below
-const FLAME_END = 0.3; // m
-const FLAME_SEEN = 0.15; // a smaller value is outside of all flames
 const LIGHTS = 6;
 
 export interface Fire {
     size: [number, number, number]; origin: [number, number, number]; cell: number;
-    /** four bytes a cell: flame, flame times height in FLAME_END, smoke in 20 1/m, the gradient of flame once it is refined */
+    /** of flames, 1 where cells are small (fire.h) */
+    scale: number;
+    /** four bytes a cell: flame, height in FLAME_END times scale, smoke in 20 1/m, the gradient of flame once it is refined */
     cells: Uint8Array;
     /** box of what is not empty, m; null if nothing is */
     bounds: { low: [number, number, number]; high: [number, number, number] } | null;
@@ -116,6 +119,7 @@ export type Lights = Float32Array;
 
 export function fireOf(gas: Gas, surface: Surface): Fire {
     const [nx, ny, nz] = gas.size, count = nx * ny * nz, flame = new Float32Array(count), rise = new Float32Array(count);
+    const thin = Math.max(gas.cell / LOOK.FLAME_THICK, 1), scale = clamp(gas.cell / LOOK.FIRE_SCALE_CELL, 1, 3);
     const rootRate = new Float32Array(count), rootHeight = new Float32Array(count), cells = new Uint8Array(4 * count);
     const index = (x: number, y: number, z: number) => x + nx * (y + ny * z);
 
@@ -140,7 +144,7 @@ export function fireOf(gas: Gas, surface: Surface): Fire {
     for (let z = 0, i = 0; z < nz; z++)
         for (let y = 0; y < ny; y++)
             for (let x = 0; x < nx; x++, i++) {
-                const power = gas.flame[i]!, smoke = Math.max(gas.smoke[i]!, 0) * EXTINCTION, up = Math.max(gas.velocity[3 * i + 2]!, 0.1);
+                const power = thin * gas.flame[i]!, smoke = Math.max(gas.smoke[i]!, 0) * EXTINCTION, up = Math.max(gas.velocity[3 * i + 2]!, 0.1);
                 const from = [x - clamp(gas.velocity[3 * i]! / up, -1, 1), y - clamp(gas.velocity[3 * i + 1]! / up, -1, 1), z - 1] as const;
                 const fed = z > 0 ? below(flame, ...from) : 0;
                 let f = Math.max(power > FLAME_LOW ? Math.min(Math.log(power / FLAME_LOW) / FLAME_RANGE, 1) : 0, fed - fading / up), r = 0;
@@ -149,16 +153,16 @@ export function fireOf(gas: Gas, surface: Surface): Fire {
                     if (fed > 0) r = Math.min((2 * fed) / f, 1) * (below(rise, ...from) / fed + gas.cell);
                     if (rootRate[root]! > 0) {
                         const height = Math.max(gas.origin[2] + (z + 0.5) * gas.cell - rootHeight[root]! / rootRate[root]!, -gas.cell);
-                        r = height + (r - height) * (fed > 0 ? PASSING : 0);
+                        r = height + (r - height) * (fed > 0 ? LOOK.FIRE_PASSING : 0);
                     }
                     flame[i] = f;
                     rise[i] = f * r;
-                    f *= 1 - step(0.6 * FLAME_END, FLAME_END, r);
+                    f *= 1 - step(0.6 * FLAME_END, FLAME_END, r / scale);
                 }
                 cells[4 * i] = 255 * f;
-                cells[4 * i + 1] = 255 * clamp((f * r) / FLAME_END, 0, 1);
+                cells[4 * i + 1] = 255 * clamp(r / (FLAME_END * scale), 0, 1);
                 cells[4 * i + 2] = clamp((255 * smoke) / 20, 0, 255);
-                if (f > FLAME_SEEN || smoke > 0.15) {
+                if (f > LOOK.FLAME_SEEN || smoke > 0.15) {
                     const at = [x, y, z];
                     for (let c = 0; c < 3; c++) {
                         low[c] = Math.min(low[c]!, at[c]!);
@@ -166,8 +170,9 @@ export function fireOf(gas: Gas, surface: Surface): Fire {
                     }
                 }
             }
+    spreadHeight(gas.size, cells, 1 + Math.floor((scale * LOOK.FIRE_SWAY) / gas.cell), (255 * gas.cell) / (FLAME_END * scale));
     const place = (at: number[], more: number) => at.map((x, c) => gas.origin[c]! + (x + more) * gas.cell) as [number, number, number];
-    return { size: gas.size, origin: gas.origin, cell: gas.cell, cells, bounds: low[0]! < high[0]! ? { low: place(low, -1), high: place(high, 1) } : null };
+    return { size: gas.size, origin: gas.origin, cell: gas.cell, scale, cells, bounds: low[0]! < high[0]! ? { low: place(low, -1), high: place(high, 1) } : null };
 }
 
 /** Smaller cells, as the shader reads them. */
@@ -194,7 +199,7 @@ export function lightsOf(fire: Fire | null, mesh: Mesh): Lights {
             for (let y = 0; y < ny; y++)
                 for (let x = 0; x < nx; x++, i++) {
                     const f = fire.cells[4 * i]! / 255;
-                    if (f < FLAME_SEEN) continue;
+                    if (f < LOOK.FLAME_SEEN) continue;
                     const burns = 1 / (1 + 40 * Math.exp(-FLAME_RANGE * f)); // q / (q + 40 FLAME_LOW)
                     add(fire.origin[0] + (x + 0.5) * fire.cell, fire.origin[1] + (y + 0.5) * fire.cell, fire.origin[2] + (z + 0.5) * fire.cell, burns * volume);
                 }

@@ -113,7 +113,7 @@ export class Renderer {
             fire: material(glsl.FULL_VERTEX, glsl.FIRE, {
                 ...this.shared, fireMap: { value: null }, depthMap: { value: this.sceneTarget.depthTexture }, inverse_: { value: new Matrix4() },
                 low: { value: new Vector3() }, high: { value: new Vector3() }, origin: { value: new Vector3() }, span: { value: new Vector3(1, 1, 1) },
-                match_: { value: new Vector3() }, matchOn: { value: 0 }, paperHeight: { value: 0 },
+                match_: { value: new Vector3() }, matchOn: { value: 0 }, fireScale: { value: 1 }, fireDaylight: { value: new Vector3(...LAMP.colour as Point).multiplyScalar(0.1) },
             }),
             merge: material(glsl.FULL_VERTEX, glsl.MERGE, { sceneMap: { value: this.sceneTarget.texture }, fireMap2: { value: this.fireTarget.texture } }),
             bright: material(glsl.FULL_VERTEX, glsl.BRIGHT, { map: { value: this.merged.texture }, pixel: { value: new Vector2() }, exposure: { value: EXPOSURE } }),
@@ -266,6 +266,7 @@ export class Renderer {
         this.fireMap.image.data = fire.cells;
         this.fireMap.needsUpdate = true;
         uniforms.fireMap!.value = this.fireMap;
+        uniforms.fireScale!.value = fire.scale;
         vector("low").set(...fire.bounds.low);
         vector("high").set(...fire.bounds.high);
         vector("origin").set(...fire.origin);

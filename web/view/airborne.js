@@ -1,12 +1,13 @@
 // Sparks and flakes in the air, after program/preview/sparks.c, flakes.c and airborne.c: where embers glow, crumbs are
 // thrown up, cool and go out, and small plates of char and ash are carried off and tumble down. All follows from a
 // frame's mesh and its time, so that scrubbing shows the same. Used by the page (web/src) and by `singe view`.
+import { LOOK } from "./look.js";
 
 /** Floats of one thing: from, to, across (m), size (m; 0: a plate at `from` with half axes `to` and `across`), temperature (K), strength of a spark or ash of a plate. */
 export const AIRBORNE_FLOATS = 12;
 export const AIRBORNE_LIMIT = 400;
 
-const EMBER_BURN = 0.74, LEAF_WIDTH = 0.008, CROWD = 0.25, OPEN = 1 / 60; // OPEN: s of a spark's way that is seen
+const CROWD = 0.25, OPEN = 1 / 60; // OPEN: s of a spark's way that is seen
 const SPARK = { cell: 0.012, slot: 0.05, life: 1.05, each: 4, rate: 420, lag: 0.09, cold: 900, cooling: 1.7 };
 const FLAKE = { cell: 0.02, slot: 0.1, life: 1.7, each: 3, rate: 190, carried: 0.7, starting: 0.06, cold: 600 };
 
@@ -42,8 +43,8 @@ function embersOf(triangles, value) {
         const side = (k, c) => value(v[k], POSITION + c) - value(v[0], POSITION + c);
         const [ax, ay, az, bx, by, bz] = [side(1, 0), side(1, 1), side(1, 2), side(2, 0), side(2, 1), side(2, 2)];
         const area = 0.5 * Math.hypot(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx), rate = mean(RATE), glowing = mean(GLOWING);
-        const line = low < EMBER_BURN && high > EMBER_BURN ? (area * Math.max(mean(GRADIENT), 20)) / Math.max(high - low, 0.02) : 0;
-        const length = activity(rate) * Math.min(line, 2 * Math.sqrt(area)) + (activity(glowing) * area) / LEAF_WIDTH;
+        const line = low < LOOK.EMBER_BURN && high > LOOK.EMBER_BURN ? (area * Math.max(mean(GRADIENT), 20)) / Math.max(high - low, 0.02) : 0;
+        const length = activity(rate) * Math.min(line, 2 * Math.sqrt(area)) + (activity(glowing) * area) / LOOK.LEAF_WIDTH;
         if (length > 0) embers.push({ length, flaming: rate > 0 ? length * (1 - glowing / rate) : 0, at: [0, 1, 2].map((c) => mean(POSITION + c)), rest: [0, 1, 2].map((c) => mean(REST + c)) });
     }
     return embers;

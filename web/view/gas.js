@@ -6,7 +6,7 @@ const REFINED_MOST = 160_000; // cells; more stay as they are, to save the card'
  * Halves the cells by Chaikin's rule, 3/4 of the nearer and 1/4 of the farther along each axis: looked up linearly they
  * then follow the quadratic B-spline of the cells (fire_shade.c) closely, and no cell is seen. The fourth byte of each
  * becomes the length of the flame's gradient per cell.
- * @param {number[]} size @param {Uint8Array} cells four bytes each: flame, flame times height, smoke, unused
+ * @param {number[]} size @param {Uint8Array} cells four bytes each: flame, height, smoke, unused
  * @returns {{size: [number, number, number], cells: Uint8Array<ArrayBuffer>}}
  */
 export function refineGas(size, cells) {
@@ -29,6 +29,25 @@ export function refineGas(size, cells) {
                 if (a || b || c) values[at + 3] = Math.min(0.5 * Math.sqrt(a * a + b * b + c * c), 255);
             }
     return { size: [x, y, z], cells: values };
+}
+
+/** Gives cells around flames a height, the mean of their neighbours', as far as eddies reach: `sway_cells` of fire.c. */
+export function spreadHeight([x, y, z], cells, reach, cell) {
+    const rows = x * y, near = [[1, 0], [-1, 0], [x, 0], [-x, 0], [rows, -cell], [-rows, cell]], known = new Uint8Array(rows * z);
+    for (let i = 0; i < known.length; i++) known[i] = cells[4 * i] > 19 ? 1 : 0; // half of FLAME_SEEN
+    for (let far = 1; far <= reach; far++)
+        for (let i = rows; i < known.length - rows; i++) {
+            if (known[i]) continue;
+            let sum = 0, count = 0;
+            for (const [over, above] of near) {
+                if (!known[i + over] || known[i + over] > far) continue;
+                sum += cells[4 * (i + over) + 1] + above;
+                count++;
+            }
+            if (!count) continue;
+            cells[4 * i + 1] = Math.min(Math.max(sum / count, 0), 255);
+            known[i] = far + 1;
+        }
 }
 
 /** Twice the cells along one axis, along which there are `count`, `stride` apart, in each of `blocks`. */

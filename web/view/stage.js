@@ -2,6 +2,7 @@
 // with the shaders of the page; or one field of the sheets by colour.
 import { Flying } from "./flying.js";
 import { refineGas } from "./gas.js";
+import { LOOK } from "./look.js";
 import * as glsl from "./shaders.js";
 import { glowBytes, noiseBytes } from "./tables.js";
 import { gapsOf, REACH } from "./contact.js";
@@ -36,6 +37,7 @@ vec3 skyLight(vec3 n) {
     sum += 0.315392 * (3.0 * n.z * n.z - 1.0) * ambient[6] + 0.546274 * (n.x * n.x - n.y * n.y) * ambient[8];
     return max(sum, vec3(0.0));
 }
+vec3 mirrored(vec3 d) { return skyLight(d); }
 vec3 lit(vec3 p, vec3 n, float through, float seen) {
     float facing = dot(n, sunTo);
     vec3 sum = sunLight * seen * (max(facing, 0.0) + through * vec3(1.35, 1.12, 0.80) * max(-facing, 0.0));
@@ -67,14 +69,17 @@ in float gap;
 uniform mat4 viewProjection;
 out vec3 vPosition, vNormal, vRest;
 out vec2 vUv;
+out vec3 vLeaf;
 out vec4 vHeat, vLook, vMore;
 void main() {
     vPosition = position;
     vNormal = normal;
     vRest = rest;
     vUv = uv;
-    vHeat = heat * vec4(5000.0, 5000.0, 64.0, 64.0);
+    vHeat = heat * vec4(5000.0, 5000.0, 64.0, 0.0);
+    vHeat.w = more.y > 0.75 ? vHeat.z : 0.0;
     vLook = look * vec4(1.0, 400.0, 1.0, 655.35);
+    vLeaf = vec3(more.w * 0.0655, more.y > 0.25 && more.y < 0.75 ? vHeat.z : 0.0, heat.w * 1.2e5);
     vMore = vec4(more.xy, more.z * 4.0 - 1.0, gap);
     gl_Position = viewProjection * vec4(position, 1.0);
 }`;
@@ -110,7 +115,7 @@ void main() {
     vec3 n = normalize(vNormal), view = normalize(eye - vPosition);
     if (dot(n, view) < 0.0) n = -n;
     float seen = lampSeen(vPosition + 0.0015 * n), hot = kelvin > 800.0 ? 1.0 : 0.0, scale = noise4(vPosition * 120.0).r;
-    vec3 glow = hot * emberColour(kelvin + 60.0 * scale) * 3.0 * (0.6 + 0.4 * dot(n, view));
+    vec3 glow = hot * blackbody_glow(kelvin + 60.0 * scale) * 3.0 * (0.6 + 0.4 * dot(n, view));
     colour = vec4(albedo * (1.0 - 0.55 * hot) * lit(vPosition, n, 0.0, seen) + 0.06 * shine(vPosition, n, view, 40.0, seen) + glow, 1.0);
 }`;
 
@@ -694,15 +699,17 @@ export class Stage {
             gl.clear(gl.COLOR_BUFFER_BIT);
             return;
         }
-        const span = gas.size.map((n) => n * gas.cell), far = 100, lights = new Float32Array(24);
+        const span = gas.size.map((n) => n * gas.cell), lights = new Float32Array(24), ahead = unit(add(camera.target, camera.eye, -1));
         for (let k = 0; k < Math.min(6, frame.lightCount); k++) {
             const l = frame.lights.subarray(8 * k, 8 * k + 8);
-            lights.set([l[0], l[1], l[2], 0.2126 * l[4] + 0.7152 * l[5] + 0.0722 * l[6]], 4 * k);
+            lights.set([l[0], l[1], l[2], l[4]], 4 * k);
         }
+        // as fire_light_smoke has it
+        const behind = 0.28 + 0.3 * Math.max(dot(room.towards, ahead), 0) ** 2;
+        const daylight = room.sun.map((x, c) => behind * x + 0.282095 * room.ambient[c] + 0.630784 * room.ambient[18 + c]);
         this.pass("fire", fire, {
             ...shared, fireMap: this.gas, depthMap: this.depth, inverse_: invert(matrix), low: gas.corner, high: add(gas.corner, span), origin: gas.corner, span,
-            match_: [0, 0, 0], matchOn: 0, paperHeight: frame.low[2], fireLights: lights, fireColour: [1.6, 0.85, 0.28],
-            lampAt: room.towards.map((x) => far * x), lampColour: room.sun.map((x) => 3 * far * far * x),
+            match_: [0, 0, 0], matchOn: 0, fireScale: Math.min(Math.max(gas.cell / LOOK.FIRE_SCALE_CELL, 1), 3), fireLights: lights, fireDaylight: daylight,
         });
     }
 

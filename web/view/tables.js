@@ -1,4 +1,5 @@
 // Tables that the shaders look into, shared by the page (web/src) and `singe view`.
+import { LOOK } from "./look.js";
 
 /** Random corners of a cube, four bytes each, the same on every page. */
 export function noiseBytes() {
@@ -32,12 +33,12 @@ function blackbody(kelvin) {
         .map((c) => Math.max(c, 0) * strength);
 }
 
-/** Row 0: embers from 800 K to 2100 K; row 1: flames from their coolest to their hottest. Four values each. */
+/** Row 0: embers from 780 K to 2100 K; row 1: flames from their coolest to their hottest. Four values each. */
 export function glowBytes() {
     const width = 128, values = new Float32Array(8 * width);
     for (let i = 0; i < width; i++) {
-        const u = i / (width - 1), ember = blackbody(800 + 1300 * u), flame = blackbody(1400 + 650 * u);
-        const bright = (0.3 + 9.2 * u ** 3) / (0.2126 * flame[0] + 0.7152 * flame[1] + 0.0722 * flame[2]);
+        const u = i / (width - 1), ember = blackbody(780 + 1320 * u), flame = blackbody(LOOK.FLAME_COOL + (LOOK.FLAME_HOT - LOOK.FLAME_COOL) * u);
+        const bright = (LOOK.FLAME_DIM + (LOOK.FLAME_BRIGHT - LOOK.FLAME_DIM) * u ** 3) / (0.2126 * flame[0] + 0.7152 * flame[1] + 0.0722 * flame[2]);
         [ember, flame.map((c) => c * bright)].forEach((colour, row) => values.set(colour, 4 * (row * width + i)));
     }
     return { width, values };

@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+"""Writes web/view/look.js, the look of paper, embers and flames in GLSL for the page and `singe view`, from the C of the
+preview (program/preview): the functions that are named here, the constants and the structs.
+
+usage: write_look.py [--check]
+
+--check: changes nothing, and fails where the file differs. What the functions call and is not among them (noise, lookups)
+is in web/view/shaders.js. They are to be plain: numbers, vectors, structs of these, no pointers but to structs.
+"""
+
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+FILE = ROOT / "web/view/look.js"
+CONSTANTS = ("paper_look.h", "fire.h", "shade_paper.c", "fire_shade.c", "fire_march.c", "airborne.c", "sparks.c", "light.h", "fire.c")
+PARTS = {
+    "PAPER": {
+        "structs": {"paper_look.h": ["PaperState"], "shade_paper.c": ["Bent"]},
+        "functions": {
+            "paper_look.h": ["ember_temperature", "ember_activity"],
+            "noise.h": ["noise3_gradient"],
+            "shade_paper.c": ["paper_noise", "ridge", "scorch_colour", "askew", "shade_paper_bend", "paper_cracks", "tilt",
+                              "ash_amount", "near_border", "ash_on_char", "ash_lace", "ash_shade", "ember_air", "ember_seen",
+                              "line_life", "ember_line", "sparks", "border_glow", "leaf_glow", "ember_shade", "is_hole",
+                              "scorch_amount", "char_shade"],
+            "lighting.c": ["light_mirrored"],
+        },
+    },
+    "FLAME": {
+        "calls": ["Noise noise_at(vec3 q);", "FireCell cell_at(vec3 p);"],
+        "structs": {"fire.h": ["FireCell", "FirePoint", "Matter"], "fire_shade.c": ["Noise"]},
+        "functions": {"fire_shade.c": ["eddies_passed", "eddies", "fire_sway", "fire_lick", "shade_flame", "fire_between",
+                                       "fire_smoke_at"]},
+    },
+}
+TYPES = {"Float3": "vec3", "uint32_t": "float", "int32_t": "float", "int": "float"}
+CALLS = {"expf": "exp", "sqrtf": "sqrt", "fabsf": "abs", "logf": "log", "powf": "pow", "sinf": "sin", "cosf": "cos",
+         "floorf": "floor", "minf": "min", "maxf": "max", "mixf": "mix", "clampf": "clamp", "float3": "vec3",
+         "float3_mix": "mix", "float3_dot": "dot", "float3_length": "length"}
+DROPPED = ("preview", "fire", "preview->blackbody", "NULL")
+
+
+def read(name):
+    return re.sub(r"//[^\n]*", "", (ROOT / "program/preview" / name).read_text(encoding="utf-8"))
+
+
+def block(text, at):
+    """The text from `at` to the end of the braces that begin behind it."""
+    depth, i = 0, text.index("{", at)
+    while True:
+        depth += (text[i] == "{") - (text[i] == "}")
+        i += 1
+        if not depth:
+            return text[at:i]
+
+
+def constants(texts):
+    found = {}
+    for text in texts.values():
+        for name, value in re.findall(r"^#define (\w+) \(?(-?[\d.]+(?:e-?\d+)?)f?\)?[ ]*$", text, re.MULTILINE):
+            found[name] = float(value)
+    return found
+
+
+def function(text, name):
+    match = re.search(r"^(?:static )?(?:inline )?\w+ %s\([^;{]*\) \{" % name, text, re.MULTILINE)
+    if not match:
+        sys.exit(f"write_look.py: there is no function {name}")
+    return block(text, match.start())
+
+
+def number(match):
+    text = match.group(0).rstrip("f")
+    return text if re.search(r"[.e]", text) else text + ".0"
+
+
+def listed(text):
+    """Arrays with their values, in GLSL's words."""
+    rows = re.compile(r"\bfloat (\w+)\[(\d+)\]\[4\] = \{(.*?)\}\s*;", re.DOTALL)  # of four numbers each
+    text = rows.sub(lambda m: "vec4 %s[%s] = vec4[%s](%s);" % (
+        m[1], m[2], m[2], m[3].replace("{", "vec4(").replace("}", ")")), text)
+    return re.sub(r"(\w+)\[(\d+)\] = \{([^{}]*)\}", r"\1[\2] = float[\2](\3)", text)
+
+
+def translated(text, structs):
+    text = re.sub(r"^(?:static )?(?:inline )?", "", text)
+    text = re.sub(r"\bstatic const\b", "const", text)
+    for name, value in re.findall(r"enum \{ (\w+) = (\d+) \};", text):
+        text = re.sub(rf"\[{name}\]", f"[{value}]", text)
+        text = re.sub(r"enum \{ %s = \d+ \};" % name, f"const float {name} = {value};", text)
+    text = listed(text)
+
+    text = re.sub(r"\b(min|max|distance|patch|sample|step)\b(?! ?\()", r"\1_", text)  # GLSL has these words
+
+    # pointers, and what shaders have once and for all
+    head, body = text.split("{", 1)
+    head = re.sub(r"const (?:Preview|Fire) \*\w+, ", "", head)
+    head = re.sub(r"\bconst (\w+) \*(\w+)", r"\1 \2", head)
+    head = re.sub(r"(?<=[(,])( ?)(\w+) \*(\w+)", r"\1inout \2 \3", head)
+    head = re.sub(r"\bfloat (\w+)\[2\]", r"inout float \1[2]", head)
+    for gone in DROPPED:
+        body = re.sub(r"(?<=\()%s, " % re.escape(gone), "", body)
+        body = re.sub(r"(?<=\()%s(?=\))" % re.escape(gone), "", body)
+        body = re.sub(r", %s(?=\))" % re.escape(gone), "", body)
+    text = head + "{" + re.sub(r"\bconst (?=float |Float3 |Noise |vec4 |bool |FireCell )", "", body)
+    text = re.sub(r"\b(?:fire|preview)->(\w)", lambda m: "fire" + m[1].upper(), text)
+    text = re.sub(r"(?<=[(,])( ?)&(?=\w)", r"\1", text)
+    text = text.replace("->", ".")
+
+    # values
+    text = re.sub(r"float3_load\((\w+\[[^\]]*\]) \+ 1\)", r"\1.yzw", text)
+    text = re.sub(r"\((\w+)\)\{", r"\1{", text)
+    for name, fields in structs.items():
+        text = re.sub(r"\b%s (\w+) = (\{)" % name, rf"{name} \1 = {name}\2", text)
+        while True:
+            match = re.search(r"\b%s\{" % name, text)
+            if not match:
+                break
+            braces = block(text, match.start())
+            inside = braces[len(name) + 1:-1]
+            given = dict(re.findall(r"\.(\w+) = ([^,]*(?:\([^()]*\))?[^,]*)", inside)) if inside.lstrip().startswith(".") else None
+            if given is not None:
+                inside = ", ".join(given.get(field, "0" if kind == "float" else "vec3(0)") for kind, field in fields)
+            inside = re.sub(r"^\{(.*)\}$", r"\1", inside)
+            text = text.replace(braces, f"{name}({inside})", 1)
+    text = re.sub(r"\* \(([\w.]+ (?:<=|>|<|>=) \w+)\)", r"* float(\1)", text)
+    text = re.sub(r"\(float\)(\w+)", r"float(\1)", text)
+    for old, new in {**TYPES, **CALLS}.items():
+        text = re.sub(rf"\b{old}\b", new, text)
+    text = re.sub(r"(?<![\w.\[])(\d+\.?\d*(?:e-?\d+)?f?)(?![\w.])", number, text)
+    text = re.sub(r"(?<=[a-z])\[(?!\d+(?:\]| ?\()[^\]]* ?=?)([^\]]+)\]", r"[int(\1)]", text)
+    text = re.sub(r"[ \t]*\n(?:\s*\n)?", "\n", text)
+    wrong = re.search(r"->|\bNULL\b|\{[^;{}]*\}|&\w|\*\w", text)
+    if wrong:
+        sys.exit(f"write_look.py: no GLSL for {wrong.group(0)!r} in\n{text}")
+    return text
+
+
+def struct(text, name):
+    match = re.search(r"typedef struct %s \{(.*?)\} %s;" % (name, name), text, re.DOTALL)
+    fields = []
+    for kind, names in re.findall(r"(\w+) ([\w, \[\]]+);", match.group(1)):
+        fields += [(TYPES.get(kind, kind), field) for field in names.split(", ") if kind in ("float", "Float3")]
+    return [(kind, field) for kind, field in fields if "[" not in field]
+
+
+def main():
+    texts = {path.name: read(path.name) for path in sorted((ROOT / "program/preview").glob("*.[ch]"))}
+    numbers = constants({name: texts[name] for name in CONSTANTS})
+    others = {path.name: path.read_text(encoding="utf-8") for folder in ("view", "src")
+              for path in (ROOT / "web" / folder).glob("*.[jt]s") if path != FILE}
+    out = []
+    for part, what in PARTS.items():
+        structs = {name: struct(texts[file], name) for file, names in what["structs"].items() for name in names}
+        glsl = ["struct %s { %s };" % (name, " ".join(f"{kind} {field};" for kind, field in fields))
+                for name, fields in structs.items()] + what.get("calls", [])
+        glsl += [translated(function(texts[file], name), structs)
+                 for file, names in what["functions"].items() for name in names]
+        text = "\n".join(glsl)
+        with_it = text + " ".join(re.findall(r"`[^`]*\$\{%s\}[^`]*`" % part, others["shaders.js"]))
+        out.append((part, "\n".join(f"const float {name} = {number_text(value)};" for name, value in numbers.items()
+                                    if re.search(rf"\b{name}\b", with_it)) + "\n" + text))
+    wanted = [name for name in numbers if re.search(rf"\bLOOK\.{name}\b", " ".join(others.values()))]
+    text = "// Made by scripts/write_look.py from program/preview: do not edit.\n"
+    text += "export const LOOK = { " + ", ".join(f"{name}: {numbers[name]:g}" for name in wanted) + " };\n"
+    text += "".join(f"\nexport const {part} = /* glsl */ `\n{glsl}\n`;\n" for part, glsl in out)
+    if "--check" not in sys.argv[1:]:
+        FILE.write_text(text, encoding="utf-8")
+    elif FILE.read_text(encoding="utf-8") != text:
+        sys.exit("web/view/look.js does not follow from program/preview: run scripts/write_look.py")
+
+
+def number_text(value):
+    text = f"{value:g}"
+    return text if re.search(r"[.e]", text) else text + ".0"
+
+
+if __name__ == "__main__":
+    main()

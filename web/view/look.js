@@ -1,0 +1,392 @@
+// Made by scripts/write_look.py from program/preview: do not edit.
+export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, FIRE_SCALE_CELL: 0.017, FLAME_SEEN: 0.15, FLAME_END: 0.3, FIRE_SWAY: 0.018, FLAME_COOL: 1400, FLAME_HOT: 2050, FLAME_DIM: 0.3, FLAME_BRIGHT: 6.2, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, FIRE_PASSING: 0.75 };
+
+export const PAPER = /* glsl */ `
+const float PAPER_WHOLE = 0.35;
+const float EMBER_WIDTH = 0.00042;
+const float EMBER_BURN = 0.74;
+const float EMBER_GAIN = 3.4;
+const float EMBER_HOT = 1180.0;
+const float EMBER_MOST = 6.0;
+const float LEAF_DULL = 0.27;
+const float LEAF_THREADS = 0.9;
+const float LEAF_SPECKS = 0.35;
+const float LEAF_COOLER = 120.0;
+const float STARVED = 0.7;
+const float STARVED_COOLER = 90.0;
+const float STARVED_SLOW = 0.08;
+const float STARVED_BORDER = 0.42;
+const float BLACKBODY_MIN = 780.0;
+struct PaperState { vec3 rest; float temperature; float peak; float burn; float burn_rate; float gradient; float heat_gradient; float rim; float spacing; float glowing; float starved; float age; float water; float edge; };
+struct Bent { vec3 position; float burn; float temperature; float peak; float coarse; float medium; float fine; };
+float ember_temperature(float mean) { return mean + 110.0; }
+float ember_activity(float burn_rate) { return burn_rate > 0.0 ? burn_rate / (burn_rate + 0.12) : 0.0; }
+vec3 noise3_gradient(vec3 p, float n, float seed) {
+    float e = 0.25;
+    return vec3((noise3(vec3(p.x + e, p.y, p.z), seed) - n) / e, (noise3(vec3(p.x, p.y + e, p.z), seed) - n) / e,
+                  (noise3(vec3(p.x, p.y, p.z + e), seed) - n) / e);
+}
+float paper_noise(vec3 position, float millimetres, float footprint, float seed) {
+    float visible = 1.6 - footprint * 1000.0 / millimetres * 0.8;
+    if (visible <= 0.0) return 0.0;
+    return min(visible, 1.0) * noise3(float3_scale(position, 1000.0 / millimetres), seed);
+}
+float ridge(float n, float width) { return 1.0 - stepf(0.0, width, abs(n)); }
+vec3 scorch_colour(float s) {
+    float STOPS = 8.0;
+    vec4 stop[8] = vec4[8](vec4(0.00, 1.00, 1.00, 1.00),    vec4(0.09, 0.975, 0.93, 0.81),
+                                         vec4(0.21, 0.84, 0.68, 0.44),    vec4(0.57, 0.53, 0.34, 0.165),
+                                         vec4(0.68, 0.32, 0.165, 0.068),  vec4(0.77, 0.14, 0.062, 0.026),
+                                         vec4(0.86, 0.056, 0.030, 0.018), vec4(1.00, 0.020, 0.016, 0.014));
+    float i = 1.0;
+    while (i < STOPS - 1.0 && s > stop[int(i)][0]) i++;
+    float f = clamp((s - stop[int(i - 1.0)][0]) / (stop[int(i)][0] - stop[int(i - 1.0)][0]), 0.0, 1.0);
+    return mix(stop[int(i - 1.0)].yzw, stop[int(i)].yzw, f);
+}
+vec3 askew(vec3 r) {
+    return vec3(0.7654 * r.x - 0.5321 * r.y + 0.3622 * r.z, 0.6133 * r.x + 0.7718 * r.y - 0.1673 * r.z,
+                  -0.1905 * r.x + 0.3481 * r.y + 0.9179 * r.z);
+}
+Bent shade_paper_bend(PaperState state, float footprint) {
+    Bent bent = Bent(askew(state.rest), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    bent.coarse = paper_noise(bent.position, 4.0, footprint, 1.0);
+    bent.medium = paper_noise(bent.position, 1.3, footprint, 2.0);
+    bent.fine = paper_noise(bent.position, 0.45, footprint, 3.0);
+    float delta = 1.5e-3 * bent.coarse + 0.7e-3 * bent.medium + 0.22e-3 * bent.fine;
+    delta *= clamp(state.spacing / 1.8e-3, 0.3, 1.0);
+    float slope = min(state.gradient, 400.0);
+    float inside = stepf(0.15, 0.5, state.burn);
+    bent.burn = state.burn + slope * delta + inside * (0.03 * bent.coarse + 0.05 * bent.medium + 0.03 * bent.fine);
+    float jitter = (0.17 * bent.coarse + 0.08 * bent.medium + 0.025 * bent.fine) * (1.0 - 0.6 * inside);
+    float peak = max(state.peak, state.temperature);
+    bent.temperature = state.temperature + (state.temperature - 293.0) * jitter * stepf(320.0, 420.0, state.temperature);
+    float steep = min(state.heat_gradient, 1.2e5);
+    bent.peak = peak + (0.25 * (peak - 293.0) * jitter + steep * delta) * stepf(310.0, 350.0, peak);
+    return bent;
+}
+float paper_cracks(Bent bent, float millimetres, float width, float footprint) {
+    vec3 p = float3_mad(bent.position, vec3(bent.medium, bent.fine, bent.coarse), 0.5e-3);
+    float min_ = 0.5 * footprint * 1000.0 / millimetres;
+    float open = width * max(0.0, 0.75 + 0.9 * bent.coarse + 0.5 * bent.medium);
+    float wall = noise_walls(float3_scale(p, 1000.0 / millimetres), 13.0);
+    return min(1.0, open / min_) * (1.0 - stepf(0.4, 1.0, wall / max(open, min_)));
+}
+void tilt(vec3 position, float millimetres, float height, bool folded, float seed, inout Point point) {
+    height *= clamp(1.6 - point.footprint * 1000.0 / millimetres, 0.0, 1.0);
+    if (height < 0.02) return;
+    vec3 p = float3_scale(position, 1000.0 / millimetres);
+    float n = noise3(p, seed);
+    vec3 slope = noise3_gradient(p, n, seed);
+    if (folded) {
+        float edge = clamp(n * 14.0, -1.0, 1.0), steep = length(slope);
+        slope = float3_scale(slope, edge / (0.5 + 0.5 * steep));
+    }
+    slope = float3_mad(slope, point.normal, -dot(slope, point.normal));
+    vec3 tilted = float3_unit_or(float3_mad(point.normal, slope, -height), point.normal);
+    if (dot(tilted, point.view) > 0.02) point.normal = tilted;
+}
+float ash_amount(Bent bent) {
+    return stepf(0.78, 0.94, bent.burn + 0.06 * bent.coarse) * (1.0 - 0.75 * stepf(760.0, 1000.0, bent.temperature));
+}
+float near_border(PaperState state, Bent bent, float width) {
+    float distance_ = (1.0 - state.rim) * state.spacing;
+    float uneven = 1.0 + 0.5 * bent.coarse + 0.6 * bent.medium + 0.4 * bent.fine;
+    return min(1.0, 5.0 * state.rim) * (1.0 - stepf(0.1 * width, width * max(uneven, 0.2), distance_));
+}
+float ash_on_char(PaperState state, Bent bent, float cloud) {
+    float cold = stepf(PAPER_WHOLE, 0.5, bent.burn) * (1.0 - stepf(520.0, 760.0, bent.temperature));
+    if (cold <= 0.0) return 0.0;
+    float border = 0.85 * stepf(0.0, 5.0, state.age + 2.0 * bent.coarse) * near_border(state, bent, 1.1e-3);
+    float film = 0.36 * stepf(0.53, 0.62, bent.burn) * stepf(0.15, 0.9, cloud) * stepf(2.0, 9.0, state.age);
+    return cold * max(border, film);
+}
+float ash_lace(Bent bent, float footprint) {
+    return paper_noise(bent.position, 2.6, footprint, 15.0) + 0.25 * bent.fine - 0.45 * bent.coarse;
+}
+void ash_shade(PaperState state, Bent bent, float ink, inout Point point) {
+    float size = point.footprint;
+    if (bent.burn < PAPER_WHOLE) return;
+    float cloud = paper_noise(bent.position, 14.0, size, 19.0) + 0.5 * bent.coarse + 0.2 * bent.medium;
+    float plate = ash_on_char(state, bent, cloud), amount = max(ash_amount(bent), plate);
+    float dry = 1.0 - 0.4 * stepf(2.0, 9.0, state.age);
+    point.gloss *= dry;
+    point.mirror *= dry;
+    if (amount <= 0.01) return;
+    vec3 bowed = float3_mad(bent.position, vec3(bent.medium, bent.coarse, bent.fine), 1.1e-3);
+    float large = ridge(paper_noise(bowed, 8.5, size, 14.0), 0.10);
+    float small = ridge(paper_noise(float3_mad(bowed, vec3(1.0, -1.0, 1.0), 2e-3 * bent.coarse), 3.4, size, 18.0), 0.13);
+    float vein = max(large, 0.55 * small);
+    vec3 p = bent.position;
+    float wander = 2.4 * noise3(float3_scale(p, 110.0), 11.0), c = cos(wander), s = sin(wander);
+    vec3 along = vec3(0.16 * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
+    float fibre = clamp(1.6 - size * 1400.0, 0.0, 1.0) * ridge(noise3(float3_scale(along, 2100.0), 12.0), 0.5);
+    float pale = max(stepf(1.0, 13.0, state.age + 4.0 * cloud), 0.6 * plate),
+          rim = stepf(0.25, 0.6, ash_lace(bent, size));
+    float thin = max(rim, stepf(0.35, 0.95, state.rim + 0.25 * bent.fine));
+    float value = mix(0.040, 0.34, pale) + (0.010 + 0.07 * pale) * cloud + (0.02 + 0.06 * pale) * vein;
+    value += (0.006 + 0.022 * pale) * fibre + 0.006 * bent.fine;
+    value += (0.03 + 0.07 * pale) * thin;
+    float crackle = paper_cracks(bent, 3.2, 0.035, size), fine = paper_cracks(bent, 1.1, 0.05, size);
+    value *= 1.0 - 0.45 * crackle - 0.25 * fine * (1.0 - crackle);
+    value += (0.05 + 0.19 * pale) * ink * (1.0 - 0.3 * crackle);
+    vec3 tone = mix(vec3(0.98, 0.99, 1.03), vec3(1.02, 1.0, 0.965), pale);
+    vec3 grey = float3_scale(tone, clamp(value, 0.02, 0.64));
+    point.albedo = mix(point.albedo, grey, amount);
+    point.gloss *= 1.0 - 0.8 * amount;
+    point.mirror = mix(point.mirror, 0.55 - 0.25 * pale + 0.2 * ink, amount);
+    point.transmission = mix(point.transmission, 0.28 + 0.27 * thin, amount);
+    vec3 folded = float3_mad(p, vec3(bent.coarse, bent.medium, -bent.coarse), 0.8e-3);
+    tilt(folded, 8.5, 0.55 * amount, true, 16.0, point);
+    tilt(folded, 3.4, 0.26 * amount, true, 17.0, point);
+}
+float ember_air(vec3 p) {
+    float t = seconds();
+    float slow = noise3(vec3(21.0 * p.x + 0.8 * t, 21.0 * p.y - 0.5 * t, 21.0 * p.z - 1.7 * t), 51.0);
+    float quick = noise3(vec3(55.0 * p.x, 55.0 * p.y, 55.0 * p.z - 7.0 * t), 52.0);
+    return clamp(1.0 + 0.42 * slow + 0.22 * quick, 0.3, 1.7);
+}
+float ember_seen(float temperature) {
+    float above = max(temperature - EMBER_HOT, 0.0), most = 160.0;
+    return temperature - above + above * most / (above + most);
+}
+float line_life(Bent bent) {
+    float t = seconds();
+    vec3 drift = float3_add(float3_scale(bent.position, 190.0), vec3(0.5 * t, -0.35 * t, 0.8 * t));
+    vec3 patch_ = float3_add(float3_scale(bent.position, 62.0), vec3(-0.12 * t, 0.2 * t, 0.15 * t));
+    return stepf(-0.22, 0.62,
+                 0.75 * noise3(drift, 21.0) + 0.5 * noise3(patch_, 22.0) + 0.35 * bent.medium + 0.2 * bent.fine);
+}
+vec3 ember_line(PaperState state, Bent bent, float air,
+                         float footprint) {
+    float activity = ember_activity(state.burn_rate);
+    if (activity < 0.02 || state.temperature < BLACKBODY_MIN) return vec3(0.0, 0.0, 0.0);
+    float life = line_life(bent) * min(air, 1.2);
+    float distance_ = (bent.burn - EMBER_BURN) / max(state.gradient, 20.0);
+    float width = EMBER_WIDTH * (0.42 + 0.66 * life), x = abs(distance_) / width;
+    float profile = distance_ > 0.0 ? 0.72 * exp(-0.5 * x * x) + 0.28 * exp(-0.8 * x) : exp(-x * x);
+    float temperature = ember_temperature(state.temperature) + 210.0 * (life - 0.6) + 60.0 * bent.fine;
+    if (distance_ > 0.0) temperature -= 45.0 * min(x, 3.0);
+    float strength = activity * profile * (0.05 + 0.95 * life * life) * (0.85 + 0.4 * bent.fine) * air;
+    float near = 0.10 * activity * life * exp(-0.05 * x * x);
+    if (near > 0.003) strength += near * paper_cracks(bent, 1.6, 0.12, footprint);
+    return float3_scale(blackbody_glow(ember_seen(temperature)), EMBER_GAIN * max(strength, 0.0));
+}
+vec3 sparks(PaperState state, Bent bent, float air, float footprint) {
+    float warm = stepf(420.0, 640.0, state.temperature) * stepf(0.76, 0.86, bent.burn);
+    if (warm <= 0.0 || state.age <= 0.0) return vec3(0.0, 0.0, 0.0);
+    float patch_ = stepf(0.10, 0.55, noise3(float3_scale(bent.position, 85.0), 24.0) + 0.3 * bent.medium);
+    if (patch_ <= 0.0) return vec3(0.0, 0.0, 0.0);
+    float delay = noise3(float3_scale(bent.position, 240.0), 23.0) + 0.5 * bent.medium + 0.25 * bent.fine;
+    float late = (state.age - 3.2) * 0.28 - delay;
+    float glow = warm * patch_ * air * exp(-70.0 * late * late) * clamp(1.6 - footprint * 900.0, 0.3, 1.0);
+    return float3_scale(blackbody_glow(1035.0 + 50.0 * bent.fine), 1.5 * glow);
+}
+vec3 border_glow(PaperState state, Bent bent, float air) {
+    if (state.burn < PAPER_WHOLE || state.age <= 0.0 || state.age > 12.0) return vec3(0.0, 0.0, 0.0);
+    float warm = stepf(420.0, 560.0, state.temperature) * (1.0 - ember_activity(state.burn_rate));
+    float near = warm > 0.0 ? near_border(state, bent, 0.6e-3) : 0.0;
+    if (near <= 0.0) return vec3(0.0, 0.0, 0.0);
+    float strength = near * warm * air * line_life(bent) * exp(-0.35 * state.age);
+    return float3_scale(blackbody_glow(1090.0 - 22.0 * state.age + 50.0 * bent.fine), 2.5 * strength);
+}
+vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
+    float SIZES = 4.0;
+    float size[4] = float[4](24e-3, 9e-3, 4e-3, 1.7e-3);
+    float thick[4] = float[4](0.5e-3, 0.22e-3, 0.16e-3, 0.14e-3), weight[4] = float[4](1.0, 1.0, 0.9, 0.6);
+    float alone = ember_activity(state.glowing), flaming = stepf(STARVED_SLOW, 0.4, state.starved);
+    float starved = STARVED * flaming * stepf(0.32, 0.46, bent.burn) * (1.0 - alone), activity = alone + starved;
+    if (activity < 0.02 || ember_temperature(state.temperature) < BLACKBODY_MIN) return vec3(0.0, 0.0, 0.0);
+    float life = line_life(bent) * min(air, 1.2), t = seconds();
+    vec3 bowed = float3_mad(bent.position, vec3(bent.fine, bent.medium, bent.coarse), 0.7e-3);
+    float thread = 0.0;
+    for (float k = 0.0; k < SIZES && life > 0.0; k++) {
+        float n = noise3(float3_mad(vec3(0.0, 0.0, (0.35 + 0.2 * float(k)) * t), bowed, 1.0 / size[int(k)]), 61.0 + k);
+        float width = thick[int(k)] * (0.4 + 0.9 * life) / size[int(k)], seen = max(width, 0.5 * footprint / size[int(k)]);
+        thread += weight[int(k)] * width / seen * ridge(n, 2.0 * seen);
+    }
+    float border = near_border(state, bent, 0.8e-3) * (0.25 + 0.75 * life);
+    float inward = (bent.burn - STARVED_BORDER) / (max(state.gradient, 20.0) * 2.0 * EMBER_WIDTH);
+    border = max(border, starved * exp(-inward * inward) * (0.25 + 0.75 * life));
+    float speck = stepf(0.45, 0.75, bent.fine + 0.45 * bent.medium) * stepf(0.1, 0.5, life);
+    float hot = max(border, life * LEAF_THREADS * thread + LEAF_SPECKS * speck);
+    float temperature =
+        ember_temperature(state.temperature) + 130.0 * (life - 0.5) + 40.0 * bent.medium - STARVED_COOLER * starved;
+    vec3 dull = blackbody_glow(ember_seen(temperature - LEAF_COOLER));
+    vec3 bright = blackbody_glow(ember_seen(temperature));
+    vec3 glow = float3_scale(dull, LEAF_DULL * (0.2 + 0.8 * life) * alone);
+    return float3_scale(float3_mad(glow, bright, hot * activity), EMBER_GAIN * air);
+}
+void ember_shade(PaperState state, Bent bent, inout Point point) {
+    if (state.burn < 0.2 || state.temperature < 420.0) return;
+    float air = ember_air(point.position);
+    vec3 glow = float3_add(ember_line(state, bent, air, point.footprint),
+                             sparks(state, bent, air, point.footprint));
+    glow = float3_add(glow, border_glow(state, bent, air));
+    glow = float3_add(glow, leaf_glow(state, bent, air, point.footprint));
+    point.glow = float3_scale(glow, 1.0 / (1.0 + max(glow.x, max(glow.y, glow.z)) / EMBER_MOST));
+}
+bool is_hole(PaperState state, Bent bent, float footprint) {
+    float bite = 0.40 + 0.38 * bent.medium + 0.20 * bent.fine + 0.28 * bent.coarse;
+    float burnt = stepf(PAPER_WHOLE, 0.65, state.burn);
+    if (burnt > 0.0 && state.rim > 1.0 - burnt * clamp(bite, 0.0, 0.85)) return true;
+    return bent.burn > 0.7 && ash_amount(bent) * stepf(0.72, 0.95, ash_lace(bent, footprint)) > 0.5;
+}
+float scorch_amount(PaperState state, Bent bent, float footprint) {
+    float by_burn = 1.0 - exp(-7.5 * max(bent.burn, 0.0));
+    float steep = state.heat_gradient / max(max(state.peak, state.temperature) - 293.0, 1.0);
+    float near = stepf(120.0, 350.0, steep), first = mix(55.0, 5.0, near), last = mix(360.0, 200.0, near);
+    float above = bent.peak - 293.0;
+    if (above > 0.3 * first && by_burn < 0.9)
+        above *= exp(clamp(2.5e-3 * steep, 0.7, 1.3) *
+                      (paper_noise(bent.position, 9.0, footprint, 7.0) + 0.5 * bent.coarse + 0.2 * bent.medium));
+    float by_heat = above > first ? 0.76 * min(log(above / first) / log(last / first), 1.0) : 0.0;
+    return 1.0 - (1.0 - by_heat) * (1.0 - by_burn);
+}
+void char_shade(Bent bent, vec3 burnt, float ink, inout Point point) {
+    float black = stepf(0.12, 0.46, bent.burn);
+    point.albedo = burnt;
+    if (black <= 0.0) return;
+    float value = 1.0 + 0.35 * bent.medium + 0.3 * bent.fine + 0.35 * bent.coarse;
+    vec3 soot =
+        mix(vec3(0.034, 0.020, 0.012), vec3(0.0125, 0.0125, 0.0132), stepf(0.22, 0.62, bent.burn));
+    float craze = paper_cracks(bent, 2.1, 0.05, point.footprint);
+    vec3 colour = float3_scale(soot, value * (1.0 - 0.6 * craze));
+    point.albedo = mix(burnt, float3_mad(colour, vec3(0.052, 0.052, 0.055), ink), black);
+    float tar = clamp(0.75 + 0.5 * bent.coarse - 0.5 * ink, 0.2, 1.2);
+    point.gloss = 0.055 * black * tar;
+    point.shininess = 14.0;
+    point.mirror = 0.45 * black * tar;
+    tilt(bent.position, 3.6, 0.34 * black, true, 32.0, point);
+    tilt(bent.position, 0.9, 0.11 * black, false, 31.0, point);
+}
+float light_mirrored(Point point) {
+    float rest = 1.0 - max(dot(point.normal, point.view), 0.0), rest2 = rest * rest;
+    return point.mirror * (0.06 + 0.54 * rest2 * rest2 * rest);
+}
+`;
+
+export const FLAME = /* glsl */ `
+const float FLAME_SEEN = 0.15;
+const float FLAME_HEIGHT = 0.08;
+const float FLAME_END = 0.3;
+const float FIRE_SWAY = 0.018;
+const float FIRE_WARP_WIDE = 0.0055;
+const float FIRE_WARP_FINE = 0.0018;
+const float SMOKE_WARP = 0.018;
+const float FIRE_OUTSIDE = -0.006;
+const float BASE_SPEED = 0.14;
+const float BUOYANCY = 3.0;
+const float RISE_MOST = 0.7;
+const float EDDY_RATE = 8.0;
+const float EDDY_WIDE = 0.014;
+const float EDDY_FINE = 0.006;
+const float EDDY_THREAD = 0.0062;
+const float THREAD_WARP = 0.01;
+const float SWAY_WIDE = 0.1;
+const float SWAY_SLOPE = 0.35;
+const float LICK_WIDE = 0.045;
+const float LICK_FULL = 0.05;
+const float LICK = 0.6;
+const float SMOKE_EDDY = 0.028;
+const float SMOKE_SPEED = 0.5;
+const float SOOT_DENSE = 195.0;
+const float BLUE_DENSE = 1.3;
+const float BLUE_ENDS = 0.005;
+const float SHELL_RISE = 0.0005;
+const float SHELL_RISE_MOST = 0.0016;
+const float SHELL = 0.0018;
+const float EDGE = 0.42;
+const float TAPER = 0.55;
+const float STAND_OFF = 0.0006;
+const float SOOT_BEGINS = 0.005;
+const float SOOT_FULL = 0.012;
+const float SMOKE_STEP = 0.01;
+const float FIRE_SOFT = 6.0;
+struct FireCell { float flame; float rise; float smoke; float glow; };
+struct FirePoint { vec3 soot; vec3 root; float depth; float profile; float shell; float opaque; };
+struct Matter { vec3 light; float dense; };
+struct Noise { float a; float b; float c; float d; };
+Noise noise_at(vec3 q);
+FireCell cell_at(vec3 p);
+float eddies_passed(float height, float time) {
+    float steady = (RISE_MOST * RISE_MOST - BASE_SPEED * BASE_SPEED) / (2.0 * BUOYANCY);
+    float speed = sqrt(BASE_SPEED * BASE_SPEED + 2.0 * BUOYANCY * clamp(height, 0.0, steady));
+    float risen = (speed - BASE_SPEED) / BUOYANCY + max(height - steady, 0.0) / RISE_MOST;
+    return EDDY_RATE * (time - risen) - min(height, 0.0) * EDDY_RATE / BASE_SPEED;
+}
+Noise eddies(vec3 p, float passed, float width, float often) {
+    float c = 0.829, s = 0.559;
+    float across = 1.0 / width;
+    return noise_at(vec3((c * p.x - s * p.y) * across + 0.21 * passed,
+                                 (s * p.x + c * p.y) * across + 0.17 * passed, -often * passed));
+}
+void fire_sway(vec3 p, float height, inout float sway[2]) {
+    float scale = fireScale, most = min(SWAY_SLOPE * max(height, 0.0), FIRE_SWAY * scale);
+    float passed = EDDY_RATE * (fireMoment / sqrt(scale) - p.z / (scale * RISE_MOST));
+    Noise n = eddies(p, passed, scale * SWAY_WIDE, 1.0);
+    sway[0] = most * n.a;
+    sway[1] = most * n.b;
+}
+float fire_lick(vec3 p, float height) {
+    float scale = fireScale, passed = EDDY_RATE * (fireMoment / sqrt(scale) - p.z / (scale * RISE_MOST));
+    Noise n = eddies(p, passed, scale * LICK_WIDE, 1.2);
+    return LICK * n.c * stepf(0.0, LICK_FULL * scale, height);
+}
+void shade_flame(FireCell cell, vec3 p, float passed, float slope, Noise wide,
+                        Noise fine, float blur, inout FirePoint point) {
+    float rise = max(cell.rise / cell.flame, 0.0), torn = stepf(0.0, 0.02, rise);
+    float tall = rise / (fireScale * FLAME_HEIGHT);
+    float coarse = 0.075 + 0.425 * torn, small = 0.025 + 0.225 * torn;
+    float edge = cell.flame + coarse * (0.6 - 2.4 * abs(wide.c)) + small * (0.4 - 2.0 * abs(fine.c)) - EDGE -
+                 TAPER * (1.0 - exp(-tall)) - 0.1 * (1.0 - torn);
+    edge = min(edge, 2.0 * (cell.flame - FLAME_SEEN));
+    float noisy = 2.0 * (coarse / EDDY_WIDE + small / EDDY_FINE) / fireScale;
+    point.depth = max(edge / sqrt(slope * slope + 0.4 * noisy * noisy + 1.0), FIRE_OUTSIDE);
+    if (!(point.depth > 0.0)) return;
+    float tip = stepf(0.35, 1.4, tall), fill = mix(0.02, 0.12, tip);
+    float first = clamp(blur, SHELL_RISE, SHELL_RISE_MOST * fireScale), outer = clamp(point.depth, 0.0, first),
+          inner = max(point.depth - first, 0.0);
+    float fading = (1.0 - fill) * exp(-inner / SHELL), same = (0.5 * SHELL_RISE + SHELL) / (0.5 * first + SHELL);
+    point.profile = same * outer / first * (fill + fading);
+    point.shell = same * (0.5 * outer * outer / first + fill * inner + SHELL * (1.0 - fill - fading));
+    float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001 * fine.d);
+    vec3 bent =
+        float3_mad(p, vec3(wide.b + 0.2 * fine.b, wide.a + 0.2 * fine.a, 0.0), fireScale * THREAD_WARP);
+    Noise thread = Noise(0.0, 0.0, 0.0, 0.0);
+    if (soot > 0.0) thread = eddies(bent, passed, sqrt(fireScale) * EDDY_THREAD, 5.5 * sqrt(fireScale));
+    float clear = stepf(-0.35, 0.45, 0.15 * (wide.d + fine.d) + 0.9 * torn * thread.a);
+    float core = stepf(0.35, 0.7, cell.flame) * stepf(SOOT_BEGINS, SOOT_FULL, rise);
+    float strong = stepf(0.0, 0.7, edge), low = 1.0 - stepf(0.1, 0.9, tall);
+    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.19 * core + 0.72 * clear - 0.14 * tip - 0.12;
+    soot *= soot * soot;
+    float root = stepf(STAND_OFF, 3.0 * STAND_OFF, rise) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 3.0, BLUE_ENDS, rise));
+    soot *= 0.2 + 3.0 * (1.0 - clear) * (1.0 - clear) + 1.2 * clear * clear;
+    soot *= (0.6 + 0.9 * torn * max(thread.b, -0.5)) * (1.0 - 0.5 * tip);
+    point.opaque = SOOT_DENSE * soot;
+    point.soot = float3_scale(flame_colour(clamp(hot, 0.0, 1.0)), SOOT_DENSE * soot);
+    point.root = float3_scale(vec3(0.12, 0.42, 1.25), BLUE_DENSE * root);
+}
+void fire_between(FirePoint a, FirePoint b, float step_, inout Matter matter) {
+    if (!(a.depth > 0.0 || b.depth > 0.0)) return;
+    float apart = b.depth - a.depth, part = 0.5 * (a.profile + b.profile);
+    if (abs(apart) > 5e-5) part = min(abs(b.shell - a.shell) / min(abs(apart), step_), 1.0);
+    float from = a.depth > b.depth ? 0.5 + 0.5 * float(b.depth <= 0.0) : 0.5 * float(a.depth > 0.0);
+    from = 1.0 - from;
+    vec3 light = float3_add(mix(a.soot, b.soot, from), mix(a.root, b.root, from));
+    matter.light = float3_mad(matter.light, light, part);
+    matter.dense += part * mix(a.opaque, b.opaque, from);
+}
+Matter fire_smoke_at(vec3 p) {
+    float eddy = fireScale * SMOKE_EDDY, warp = fireScale * SMOKE_WARP;
+    float passed = (SMOKE_SPEED * fireMoment - p.z) / eddy;
+    Noise wide = eddies(p, passed, eddy, 0.35);
+    vec3 moved = float3_mad(p, vec3(wide.a, wide.b, wide.c), warp);
+    Noise small = eddies(moved, passed + 0.4 * wide.c, eddy / 2.6, 0.9);
+    moved = float3_mad(moved, vec3(small.a, small.b, small.c), 0.5 * warp);
+    FireCell cell = cell_at(moved);
+    float fold = 1.7 - 2.1 * abs(wide.d + 0.5 * small.d);
+    float dense = cell.smoke * max(fold + 0.7 * small.a, 0.0);
+    vec3 lit = float3_mad(float3_scale(fireDaylight, 0.35), vec3(1.0, 0.5, 0.16), 0.35 * cell.glow);
+    return Matter(float3_scale(lit, dense), dense);
+}
+`;
