@@ -14,12 +14,13 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 FILE = ROOT / "web/view/look.js"
-CONSTANTS = ("paper_look.h", "fire.h", "shade_paper.c", "fire_shade.c", "fire_march.c", "airborne.c", "sparks.c", "light.h", "fire.c")
+CONSTANTS = ("ember.h", "paper_look.h", "fire.h", "shade_paper.c", "fire_shade.c", "fire_march.c", "airborne.c", "sparks.c", "light.h", "fire.c")
 PARTS = {
     "PAPER": {
         "structs": {"paper_look.h": ["PaperState"], "shade_paper.c": ["Bent"]},
         "functions": {
-            "paper_look.h": ["ember_temperature", "ember_activity"],
+            "ember.h": ["ember_activity", "ember_starved"],
+            "paper_look.h": ["ember_temperature"],
             "noise.h": ["noise3_gradient"],
             "shade_paper.c": ["paper_noise", "ridge", "scorch_colour", "askew", "shade_paper_bend", "paper_cracks", "tilt",
                               "ash_amount", "near_border", "ash_on_char", "ash_lace", "ash_shade", "ember_air", "ember_seen",
@@ -42,8 +43,8 @@ CALLS = {"expf": "exp", "sqrtf": "sqrt", "fabsf": "abs", "logf": "log", "powf": 
 DROPPED = ("preview", "fire", "preview->blackbody", "NULL")
 
 
-def read(name):
-    return re.sub(r"//[^\n]*", "", (ROOT / "program/preview" / name).read_text(encoding="utf-8"))
+def read(path):
+    return re.sub(r"//[^\n]*", "", path.read_text(encoding="utf-8"))
 
 
 def block(text, at):
@@ -147,7 +148,8 @@ def struct(text, name):
 
 
 def main():
-    texts = {path.name: read(path.name) for path in sorted((ROOT / "program/preview").glob("*.[ch]"))}
+    texts = {path.name: read(path) for path in sorted((ROOT / "program/preview").glob("*.[ch]"))}
+    texts["ember.h"] = read(ROOT / "program/formats/ember.h")
     numbers = constants({name: texts[name] for name in CONSTANTS})
     others = {path.name: path.read_text(encoding="utf-8") for folder in ("view", "src")
               for path in (ROOT / "web" / folder).glob("*.[jt]s") if path != FILE}

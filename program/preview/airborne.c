@@ -19,7 +19,7 @@ void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]
     for (uint32_t t = 0; t < scene->triangle_count; t++) {
         const PaperVertex *v[3];
         Float3 position = {0, 0, 0}, rest = {0, 0, 0};
-        float hottest = 0, low = 1, high = 0, rate = 0, flaming = 0, gradient = 0;
+        float hottest = 0, low = 1, high = 0, burn = 0, rate = 0, flaming = 0, starved = 0, gradient = 0;
         for (int k = 0; k < 3; k++) {
             v[k] = &scene->vertices[scene->triangles[t][k]];
             hottest = maxf(hottest, v[k]->temperature);
@@ -27,6 +27,8 @@ void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]
             high = maxf(high, v[k]->burn);
             rate += v[k]->burn_rate / 3;
             flaming += v[k]->flaming / 3;
+            starved += v[k]->starved / 3;
+            burn += v[k]->burn / 3;
             gradient += v[k]->gradient / 3;
             rest = float3_mad(rest, float3_load(v[k]->rest), 1.0f / 3);
             position = float3_mad(position, float3_load(scene->positions[scene->triangles[t][k]]), 1.0f / 3);
@@ -41,7 +43,7 @@ void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]
         const Float3 normal = float3_cross(a, b);
         float area = 0.5f * float3_length(normal), live = ember_activity(rate);
         float length = low < EMBER_BURN && high > EMBER_BURN ? area * maxf(gradient, 20) / maxf(high - low, 0.02f) : 0;
-        length = live * minf(length, 2 * sqrtf(area)) + ember_activity(rate - flaming) * area / LEAF_WIDTH;
+        length = live * minf(length, 2 * sqrtf(area)) + ember_leaf(rate - flaming, starved, burn) * area / LEAF_WIDTH;
         if (hottest < BLACKBODY_MIN) length = 0;
         float smoulder = area * stepf(600, 760, hottest) * (1 - stepf(0.02f, 0.2f, flaming));
         if (length + smoulder <= 0) continue;

@@ -55,22 +55,25 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
     if (!(maxf(a->temperature, maxf(b->temperature, c->temperature)) > BLACKBODY_MIN)) return;
 
-    // the share that the ember's line covers: the overlap of the two ranges of burn
+    // the share that the ember's line covers, the overlap of the two ranges of burn, and what leaves of char give
     float low = minf(a->burn, minf(b->burn, c->burn)), high = maxf(a->burn, maxf(b->burn, c->burn));
     float gradient = (a->gradient + b->gradient + c->gradient) / 3, half = EMBER_WIDTH * maxf(gradient, 20.0f);
     float overlap = minf(high, EMBER_BURN + 1.3f * half) - maxf(low, EMBER_BURN - half);
-    float share = overlap > 0 ? overlap / maxf(high - low, 2 * half) : 0;
-    if (share <= 0) return;
+    const float rate = (a->burn_rate + b->burn_rate + c->burn_rate) / 3;
+    const float flaming = (a->flaming + b->flaming + c->flaming) / 3,
+                starved = (a->starved + b->starved + c->starved) / 3;
+    const float line = overlap > 0 ? ember_activity(rate) * overlap / maxf(high - low, 2 * half) : 0;
+    const float glowing = line + LEAF_LIT * ember_leaf(rate - flaming, starved, (a->burn + b->burn + c->burn) / 3);
+    if (glowing <= 0) return;
 
     Float3 pa = float3_load(scene->positions[t[0]]), pb = float3_load(scene->positions[t[1]]),
            pc = float3_load(scene->positions[t[2]]);
     float area = 0.5f * float3_length(float3_cross(float3_sub(pb, pa), float3_sub(pc, pa)));
-    float rate = (a->burn_rate + b->burn_rate + c->burn_rate) / 3;
     float temperature = (a->temperature + b->temperature + c->temperature) / 3;
     Float3 glow = blackbody_glow(preview->blackbody, ember_temperature(temperature));
-    Float3 radiance = float3_scale(glow, EMBER_CAST * EMBER_GAIN * ember_activity(rate));
+    Float3 radiance = float3_scale(glow, EMBER_CAST * EMBER_GAIN * glowing);
     Float3 position = float3_scale(float3_add(pa, float3_add(pb, pc)), 1.0f / 3);
-    Float3 strength = float3_scale(radiance, ember_air(preview, position) * area * share / (2 * PI_F));
+    Float3 strength = float3_scale(radiance, ember_air(preview, position) * area / (2 * PI_F));
     float weight = float3_luminance(strength);
     if (!(weight > 0)) return;
 

@@ -50,7 +50,6 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
         .peak = clampf(finite_or(surface->temperature_peak[i], 293), 0, preview->def.hottest),
         .burn = clampf(finite_or(surface->burn[i], 0), 0, 1),
         .burn_rate = rate,
-        .flaming = rate,
         .sheet = surface->sheet[i],
         .piece = surface->piece ? surface->piece[i] : -1,
         .water = surface->wet && surface->water ? clampf(finite_or(surface->water[i], 0), 0, 10) : 0,
@@ -61,16 +60,10 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
         out->age = clampf((float)(preview->time - (double)surface->time_ignited[i]) * preview->def.pace, 0, 1e6f);
     else if (out->burn > 0) out->age = 60;
 
-    if (surface->char_fraction && surface->ash_fraction && surface->mass) {
-        float charred = clampf(finite_or(surface->char_fraction[i], 0), 0, 1);
-        float ash = clampf(finite_or(surface->ash_fraction[i], 0), 0, 1);
-        float fuel = clampf(finite_or(surface->mass[i], 1) - charred - ash, 0, 1);
-        if (charred > 0) out->burn = mixf(out->burn, CHAR_LEAF * (1 - fuel), charred / (charred + 2 * ash));
-
-        // char without fuel glows without a flame; false for NaN
-        if (!(surface->mass[i] - surface->char_fraction[i] - surface->ash_fraction[i] > 0.01f)) out->flaming = 0;
-        out->starved = charred > 0 ? out->flaming : 0;
-    }
+    const Ember ember = ember_at(surface, i, out->burn, rate);
+    out->burn = ember.burn;
+    out->flaming = ember.flaming;
+    out->starved = ember.starved;
 
     if (preview->def.plain) {
         out->temperature = out->peak = 293;

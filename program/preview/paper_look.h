@@ -1,6 +1,7 @@
 // The appearance of burning paper (shade_paper.c): the fields of the sheet, and its holes, char, ash and embers.
 #pragma once
 
+#include "formats/ember.h"
 #include "preview/render_math.h"
 
 #include <stdbool.h>
@@ -95,19 +96,12 @@ float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *clot
 /// False at a hole.
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 
-/// Width of the glowing line, m, and the burn value at its centre.
-#define EMBER_WIDTH 0.00042f
-#define EMBER_BURN 0.74f
-
-/// The burn value of a leaf of char until it glows away: below that of the embers.
-#define CHAR_LEAF 0.64f
+#define EMBER_WIDTH 0.00042f ///< m, of the glowing line
 #define EMBER_GAIN 3.4f
+#define LEAF_LIT 0.1f ///< a leaf's mean radiance, of one that glows all over at its temperature
 
 /// The glowing skin is hotter than the simulation's mean over the sheet's thickness.
 static inline float ember_temperature(float mean) { return mean + 110; }
-
-/// Strength of a point's glow, 0 to 1, from its burn rate (1/s).
-static inline float ember_activity(float burn_rate) { return burn_rate > 0 ? burn_rate / (burn_rate + 0.12f) : 0; }
 
 /// The varying air supply of a point, about 1.
 float ember_air(const Preview *preview, Float3 position);

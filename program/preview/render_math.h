@@ -1,6 +1,7 @@
 // Vectors, colours and numbers in the renderer, on common/float3.h.
 #pragma once
 
+#include "common/curves.h"
 #include "common/float3.h"
 
 #include <string.h>
@@ -31,18 +32,6 @@ static inline void float3_frame(Float3 n, Float3 *a, Float3 *b) {
     float sign = n.z >= 0 ? 1.0f : -1.0f, p = -1 / (sign + n.z), q = n.x * n.y * p;
     *a = float3(1 + sign * n.x * n.x * p, sign * q, -sign * n.x);
     *b = float3(q, sign + n.y * n.y * p, -n.y);
-}
-
-// one instruction each, where fminf and fmaxf are calls; b if either is NaN
-static inline float minf(float a, float b) { return a < b ? a : b; }
-static inline float maxf(float a, float b) { return a > b ? a : b; }
-static inline float clampf(float x, float low, float high) { return x < low ? low : x > high ? high : x; }
-static inline float mixf(float a, float b, float s) { return a + (b - a) * s; }
-
-/// 0 below a, 1 above b, the cubic 3x^2 - 2x^3 between.
-static inline float stepf(float a, float b, float x) {
-    float s = clampf((x - a) / (b - a), 0, 1);
-    return s * s * (3 - 2 * s);
 }
 
 /// A linear value, 0 to 1, as sRGB encodes it (IEC 61966-2-1).

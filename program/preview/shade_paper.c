@@ -221,10 +221,8 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 #define LEAF_SPECKS 0.35f
 #define LEAF_COOLER 120.0f ///< K, how much cooler it is than these
 
-/// Char below a flame, which takes the air: its threads and its border are that much paler and cooler.
-#define STARVED 0.7f
+/// Threads and border of char below a flame are that much cooler.
 #define STARVED_COOLER 90.0f ///< K
-#define STARVED_SLOW 0.08f   ///< 1/s: what gives off its vapour as slowly is dark
 #define STARVED_BORDER 0.42f ///< the burn value of its line
 
 static float seconds(const Preview *preview) { return (float)fmod(preview->time, 4096.0); }
@@ -299,8 +297,8 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     enum { SIZES = 4 };
     static const float size[SIZES] = {24e-3f, 9e-3f, 4e-3f, 1.7e-3f}; // m
     static const float thick[SIZES] = {0.5e-3f, 0.22e-3f, 0.16e-3f, 0.14e-3f}, weight[SIZES] = {1, 1, 0.9f, 0.6f};
-    const float alone = ember_activity(state->glowing), flaming = stepf(STARVED_SLOW, 0.4f, state->starved);
-    const float starved = STARVED * flaming * stepf(0.32f, 0.46f, bent->burn) * (1 - alone), activity = alone + starved;
+    const float alone = ember_activity(state->glowing), starved = ember_starved(state->starved, bent->burn, alone);
+    const float activity = alone + starved;
     if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
 
     const float life = line_life(preview, bent) * minf(air, 1.2f), t = seconds(preview);

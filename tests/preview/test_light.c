@@ -112,6 +112,52 @@ TEST(a_lamp_lights_what_is_near) {
     assert_true(seen[3] < seen[0] + 0.1f * (seen[1] - seen[0]));
 }
 
+/// What char gives off as it is seen, and the light that it throws are one: char that glows alone, char that feeds a flame, and
+/// char whose flame is slow, which is dark. Leaves of char threw no light at all.
+TEST(char_throws_the_light_that_is_seen) {
+    enum { ALONE, FED, SLOW, CASES, TIMES = 8 };
+    static float glow[W * H][3];
+    static const float mass[CASES] = {0.4f, 0.5f, 0.5f}, rate[CASES] = {1, 1, 0.05f};
+    float charred[4], left[4], ash[4] = {0};
+    PreviewDef def = at_night();
+    def.camera.fov = 0.1f;
+    const float pixel = 2 * 0.5f * tanf(0.05f) / H;
+
+    for (int k = 0; k < CASES; k++) {
+        Float4 q;
+        quad_make(&q, 0.02f, 0);
+        for (int i = 0; i < 4; i++) {
+            q.burn[i] = 0.6f, q.temperature[i] = q.peak[i] = 950, q.rate[i] = rate[k];
+            left[i] = mass[k], charred[i] = k == ALONE ? mass[k] : 0.2f;
+        }
+        q.surface.mass = left, q.surface.char_fraction = charred, q.surface.ash_fraction = ash;
+        Preview *preview = NULL;
+        const PreviewLayers layers = {.glow = glow};
+        uint8_t *frame;
+        size_t size;
+        float seen = 0, thrown = 0, strength[3];
+        uint32_t lights;
+        assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+        for (int time = 0; time < TIMES; time++) {
+            assert_int_equal(preview_draw_layers(preview, &q.surface, 3 * time, NULL, &layers, NULL), SINGE_OK);
+            assert_int_equal(preview_pack(preview, &q.surface, 3 * time, &frame, &size, NULL), SINGE_OK);
+            for (int i = 0; i < W * H; i++) seen += glow[i][0] * pixel * pixel / TIMES;
+
+            // a light's strength is five times the radiance, over half a sphere (lamps.c, pack.c)
+            memcpy(&lights, frame + 16, sizeof lights);
+            for (uint32_t i = 0; i < lights; i++) {
+                memcpy(strength, frame + 80 + 32 * i + 16, sizeof strength);
+                thrown += strength[0] * 2 * 3.1415927f / 5 / TIMES;
+            }
+            free(frame);
+        }
+        preview_destroy(preview);
+        print_message("case %d: seen %.3g, thrown %.3g\n", k, (double)seen, (double)thrown);
+        if (k == SLOW) assert_true(seen < 1e-5f && thrown < 1e-5f);
+        else assert_true(thrown > 0.6f * seen && seen > 0.6f * thrown);
+    }
+}
+
 /// A glossy ground mirrors a glowing ball: the camera looks at its image. A dull ground, as all were, breaks the bar.
 TEST(a_glossy_ground_mirrors_embers) {
     static float beauty[W * H][3];

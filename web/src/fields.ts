@@ -92,7 +92,7 @@ export function meshOf(surface: Surface, time: number, pace: number): Mesh {
 }
 
 /** Of a vertex, what airborne.js asks for, in its order. */
-const AIRBORNE = [0, 1, 2, 6, 7, 8, 11, 13, 14, 15, 16];
+const AIRBORNE = [0, 1, 2, 6, 7, 8, 11, 13, 14, 15, 16, 20];
 
 /** Sparks and flakes in the air. */
 export const airborneAt = ({ vertices, triangles }: Mesh, time: number): Float32Array =>

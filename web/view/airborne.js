@@ -13,6 +13,11 @@ const FLAKE = { cell: 0.02, slot: 0.1, life: 1.7, each: 3, rate: 190, carried: 0
 
 const step = (a, b, x) => { const t = Math.min(Math.max((x - a) / (b - a), 0), 1); return t * t * (3 - 2 * t); };
 const activity = (rate) => Math.max(rate, 0) / (Math.max(rate, 0) + 0.12);
+/** ember_leaf of program/formats/ember.h. */
+const leaf = (glowing, starved, burn) => {
+    const alone = activity(glowing);
+    return alone + LOOK.STARVED * step(LOOK.STARVED_SLOW, LOOK.STARVED_FAST, starved) * step(LOOK.STARVED_BEGINS, LOOK.STARVED_FULL, burn) * (1 - alone);
+};
 
 function hash(x) {
     x = Math.imul(x ^ (x >>> 16), 0x7feb352d);
@@ -21,8 +26,8 @@ function hash(x) {
 }
 const unit = (x) => hash(x) / 4294967296;
 
-/** What is asked of a vertex: position and rest (m), temperature (K), burn rate and its glowing part (1/s), burnt share, its gradient (1/m). */
-export const POSITION = 0, REST = 3, TEMPERATURE = 6, RATE = 7, GLOWING = 8, BURN = 9, GRADIENT = 10;
+/** What is asked of a vertex: position and rest (m), temperature (K), burn rate and its glowing part (1/s), burnt share, its gradient (1/m), and the part of the rate of char that feeds a flame. */
+export const POSITION = 0, REST = 3, TEMPERATURE = 6, RATE = 7, GLOWING = 8, BURN = 9, GRADIENT = 10, STARVED = 11;
 
 /** Where embers glow: of each such triangle the length of its glowing line (m), its flaming part, its place, and that at rest. */
 function embersOf(triangles, value) {
@@ -44,7 +49,7 @@ function embersOf(triangles, value) {
         const [ax, ay, az, bx, by, bz] = [side(1, 0), side(1, 1), side(1, 2), side(2, 0), side(2, 1), side(2, 2)];
         const area = 0.5 * Math.hypot(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx), rate = mean(RATE), glowing = mean(GLOWING);
         const line = low < LOOK.EMBER_BURN && high > LOOK.EMBER_BURN ? (area * Math.max(mean(GRADIENT), 20)) / Math.max(high - low, 0.02) : 0;
-        const length = activity(rate) * Math.min(line, 2 * Math.sqrt(area)) + (activity(glowing) * area) / LOOK.LEAF_WIDTH;
+        const length = activity(rate) * Math.min(line, 2 * Math.sqrt(area)) + (leaf(glowing, mean(STARVED), mean(BURN)) * area) / LOOK.LEAF_WIDTH;
         if (length > 0) embers.push({ length, flaming: rate > 0 ? length * (1 - glowing / rate) : 0, at: [0, 1, 2].map((c) => mean(POSITION + c)), rest: [0, 1, 2].map((c) => mean(REST + c)) });
     }
     return embers;

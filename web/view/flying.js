@@ -1,15 +1,16 @@
 // Draws the sparks and flakes of airborne.js into the stage's scene.
-import { AIRBORNE_FLOATS, airborneOf, GLOWING } from "./airborne.js";
+import { AIRBORNE_FLOATS, airborneOf, GLOWING, STARVED } from "./airborne.js";
 
 const PARTS = ["from", "to", "across", "what"];
 
-/** Of temperature, rate, glowing, burn and gradient: which short of a vertex it is, and its value at 1 (SHEET_VERTEX in stage.js). */
-const SHORT = [18, 20, 20, 22, 23], MOST = [5000, 64, 64, 1, 400].map((most) => most / 65535), KIND = 27, CHAR = 0.75 * 65535;
+/** Of temperature, rate, glowing, burn, gradient and starved: which short of a vertex it is, and its value at 1 (SHEET_VERTEX in stage.js). */
+const SHORT = [18, 20, 20, 22, 23, 20], MOST = [5000, 64, 64, 1, 400, 64].map((most) => most / 65535);
+const KINDS = { [GLOWING]: 65535, [STARVED]: 32768 }; // of what burns (PackVertex)
 
 /** Of a frame, what airborneOf asks for. */
 const valueOf = ({ reals, shorts }) => (vertex, field) =>
     field < 6 ? reals[16 * vertex + (field < 3 ? field : field + 1)]
-        : field === GLOWING && shorts[32 * vertex + KIND] < CHAR ? 0 : shorts[32 * vertex + SHORT[field - 6]] * MOST[field - 6];
+        : field in KINDS && shorts[32 * vertex + 27] !== KINDS[field] ? 0 : shorts[32 * vertex + SHORT[field - 6]] * MOST[field - 6];
 
 export class Flying {
     /** @param stage its WebGL, and @param program of AIRBORNE_VERTEX */

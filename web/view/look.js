@@ -1,10 +1,15 @@
 // Made by scripts/write_look.py from program/preview: do not edit.
-export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, FIRE_SCALE_CELL: 0.017, FLAME_SEEN: 0.15, FLAME_END: 0.3, FIRE_SWAY: 0.018, FLAME_COOL: 1400, FLAME_HOT: 2050, FLAME_DIM: 0.3, FLAME_BRIGHT: 6.2, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, FIRE_PASSING: 0.75 };
+export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.017, FLAME_SEEN: 0.15, FLAME_END: 0.3, FIRE_SWAY: 0.018, FLAME_COOL: 1400, FLAME_HOT: 2050, FLAME_DIM: 0.3, FLAME_BRIGHT: 6.2, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, FIRE_PASSING: 0.75 };
 
 export const PAPER = /* glsl */ `
+const float EMBER_BURN = 0.74;
+const float STARVED = 0.7;
+const float STARVED_SLOW = 0.08;
+const float STARVED_FAST = 0.4;
+const float STARVED_BEGINS = 0.32;
+const float STARVED_FULL = 0.46;
 const float PAPER_WHOLE = 0.35;
 const float EMBER_WIDTH = 0.00042;
-const float EMBER_BURN = 0.74;
 const float EMBER_GAIN = 3.4;
 const float EMBER_HOT = 1180.0;
 const float EMBER_MOST = 6.0;
@@ -12,15 +17,16 @@ const float LEAF_DULL = 0.27;
 const float LEAF_THREADS = 0.9;
 const float LEAF_SPECKS = 0.35;
 const float LEAF_COOLER = 120.0;
-const float STARVED = 0.7;
 const float STARVED_COOLER = 90.0;
-const float STARVED_SLOW = 0.08;
 const float STARVED_BORDER = 0.42;
 const float BLACKBODY_MIN = 780.0;
 struct PaperState { vec3 rest; float temperature; float peak; float burn; float burn_rate; float gradient; float heat_gradient; float rim; float spacing; float glowing; float starved; float age; float water; float edge; };
 struct Bent { vec3 position; float burn; float temperature; float peak; float coarse; float medium; float fine; };
+float ember_activity(float rate) { return rate > 0.0 ? rate / (rate + 0.12) : 0.0; }
+float ember_starved(float rate, float burn, float alone) {
+    return STARVED * stepf(STARVED_SLOW, STARVED_FAST, rate) * stepf(STARVED_BEGINS, STARVED_FULL, burn) * (1.0 - alone);
+}
 float ember_temperature(float mean) { return mean + 110.0; }
-float ember_activity(float burn_rate) { return burn_rate > 0.0 ? burn_rate / (burn_rate + 0.12) : 0.0; }
 vec3 noise3_gradient(vec3 p, float n, float seed) {
     float e = 0.25;
     return vec3((noise3(vec3(p.x + e, p.y, p.z), seed) - n) / e, (noise3(vec3(p.x, p.y + e, p.z), seed) - n) / e,
@@ -193,8 +199,8 @@ vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float SIZES = 4.0;
     float size[4] = float[4](24e-3, 9e-3, 4e-3, 1.7e-3);
     float thick[4] = float[4](0.5e-3, 0.22e-3, 0.16e-3, 0.14e-3), weight[4] = float[4](1.0, 1.0, 0.9, 0.6);
-    float alone = ember_activity(state.glowing), flaming = stepf(STARVED_SLOW, 0.4, state.starved);
-    float starved = STARVED * flaming * stepf(0.32, 0.46, bent.burn) * (1.0 - alone), activity = alone + starved;
+    float alone = ember_activity(state.glowing), starved = ember_starved(state.starved, bent.burn, alone);
+    float activity = alone + starved;
     if (activity < 0.02 || ember_temperature(state.temperature) < BLACKBODY_MIN) return vec3(0.0, 0.0, 0.0);
     float life = line_life(bent) * min(air, 1.2), t = seconds();
     vec3 bowed = float3_mad(bent.position, vec3(bent.fine, bent.medium, bent.coarse), 0.7e-3);
