@@ -4,13 +4,9 @@
 // An ember of temperature T emits, at a wavelength l, exp(-c2 / (l T)) with c2 = 14388 um K (Wien): red 0.61 um, green
 // 0.55 um, blue 0.465 um.
 #include "formats/burn_colour.h"
+#include "formats/ember.h"
 
 #include <math.h>
-
-static float between(float low, float high, float x) {
-    const float t = x <= low ? 0 : x >= high ? 1 : (x - low) / (high - low);
-    return t * t * (3 - 2 * t);
-}
 
 void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, float colour[3]) {
     static const float white[3] = {0.86f, 0.852f, 0.832f};
@@ -49,9 +45,9 @@ void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, fl
     for (int c = 0; c < 3; c++) colour[c] *= stops[i - 1][c + 1] + f * (stops[i][c + 1] - stops[i - 1][c + 1]);
 
     // chars, and turns to ash
-    const float black = between(0.12f, 0.46f, s->burn[v]);
+    const float black = stepf(0.12f, 0.46f, s->burn[v]);
     const float residue = s->char_fraction[v] + s->ash_fraction[v];
-    const float ash = residue > 0 ? between(0.25f, 0.85f, s->ash_fraction[v] / residue) : 0;
+    const float ash = residue > 0 ? stepf(0.25f, 0.85f, s->ash_fraction[v] / residue) : 0;
 
     for (int c = 0; c < 3; c++) {
         const float burnt = soot[c] + ash * (grey[c] - soot[c]);
@@ -59,13 +55,22 @@ void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, fl
     }
 }
 
-float ember_light(float temperature) {
-    return temperature >= 800 ? 2.5f * expf(14388 / 0.61f * (1 / 1200.0f - 1 / temperature)) : 0;
+float ember_light(const SingeSurface *s, uint32_t v) {
+    const float temperature = s->temperature[v];
+    return temperature >= 800 ? 2.5f * ember_share(s, v) * expf(14388 / 0.61f * (1 / 1200.0f - 1 / temperature)) : 0;
 }
 
-void ember_colour(uint8_t step, float colour[3]) {
+uint16_t ember_vertex(const SingeSurface *s, uint32_t v) {
+    const uint16_t step = ember_step(s->temperature[v]);
+    const float part = step ? ember_share(s, v) * EMBER_PARTS : 0;
+    return part > 0.5f ? (uint16_t)(step + EMBER_STEPS * (int)(part - 0.5f)) : 0;
+}
+
+void ember_colour(uint16_t step, float colour[3]) {
     static const float wavelength[3] = {0.61f, 0.55f, 0.465f}; // um
-    const float temperature = 800 + 600 * ((float)step - 0.5f) / (EMBER_STEPS - 2);
+    const int hot = step % EMBER_STEPS;
+    const float part = (float)(step / EMBER_STEPS + 1) / EMBER_PARTS;
+    const float temperature = 800 + 600 * ((float)hot - 0.5f) / (EMBER_STEPS - 2);
     for (int c = 0; c < 3; c++)
-        colour[c] = step ? 2.5f * expf(14388 / 0.61f / 1200 - 14388 / wavelength[c] / temperature) : 0;
+        colour[c] = hot ? part * 2.5f * expf(14388 / 0.61f / 1200 - 14388 / wavelength[c] / temperature) : 0;
 }

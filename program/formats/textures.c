@@ -85,8 +85,7 @@ static void canvas_draw(Canvas *canvas, const OutputScene *scene, const OutputFr
             memcpy(uv[k], frame->surface->uv[v[k]], sizeof uv[k]);
             canvas->corners[k][0] = frame->surface->temperature[v[k]];
             canvas->corners[k][1] = frame->surface->burn[v[k]];
-            canvas->corners[k][2] =
-                frame->surface->burn[v[k]] > EMBER_BURNT ? ember_light(frame->surface->temperature[v[k]]) : 0;
+            canvas->corners[k][2] = ember_light(frame->surface, v[k]);
         }
 
         uv_triangle(canvas->size, (const float(*)[2])uv, draw_values, canvas);

@@ -169,13 +169,12 @@ static void put_own(UsdWriter *w, const SheetPart *part, CrateValue values[USD_O
     put_colours(w, part, &values[USD_COLOUR], &values[USD_COLOUR_INDICES]);
 
     // the palette of glow: dark and the steps that occur
-    float colours[EMBER_STEPS][3];
-    int32_t entries[EMBER_STEPS], found = 0;
+    float colours[EMBER_STEPS * EMBER_PARTS][3];
+    int32_t entries[EMBER_STEPS * EMBER_PARTS], found = 0;
     memset(entries, 0xff, sizeof entries);
 
     for (uint32_t i = 0; i < part->count; i++) {
-        const uint32_t v = part->vertices[i];
-        const uint8_t step = s->burn[v] > EMBER_BURNT ? ember_step(s->temperature[v]) : 0;
+        const uint16_t step = ember_vertex(s, part->vertices[i]);
         if (entries[step] < 0) {
             ember_colour(step, colours[found]);
             entries[step] = found++;

@@ -415,7 +415,7 @@ static void put_reader(Root *r, const char *shader, const char *primvar, const c
 /// A plain colour and, for hot shapes, their glow.
 static void put_plain(Root *r, const char *material, const float colour[3], float temperature) {
     float glow[3];
-    ember_colour(ember_step(temperature), glow);
+    ember_colour(EMBER_ALL + ember_step(temperature), glow);
     put_surface(r, material);
     put_triple(r, "                color3f inputs:diffuseColor = ", colour[0], colour[1], colour[2]);
     put_triple(r, "                color3f inputs:emissiveColor = ", glow[0], glow[1], glow[2]);

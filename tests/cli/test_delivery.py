@@ -29,8 +29,23 @@ def glb(path):
     return text, values
 
 
-def ember(kelvin):
-    return 2.5 * math.exp(14388 / 0.61 * (1 / 1200 - 1 / kelvin)) if kelvin >= 800 else 0
+def smooth(low, high, x):
+    t = min(max((x - low) / (high - low), 0), 1)
+    return t * t * (3 - 2 * t)
+
+
+def ember(column, v):
+    """Light of a vertex (program/formats/ember.h): of char without fuel, of char below a flame, of the line before ash."""
+    kelvin, rate, charred, ash = (column[name][v] for name in ("temperature", "burn_rate", "char_fraction", "ash_fraction"))
+    fuel = min(max(column["mass"][v] - charred - ash, 0), 1)
+    burn = column["burnt"][v]
+    if charred > 0:
+        burn += (0.64 * (1 - fuel) - burn) * charred / (charred + 2 * ash)
+    active = rate / (rate + 0.12)
+    alone = active if fuel <= 0.01 else 0
+    below = 0.7 * smooth(0.08, 0.4, rate) * smooth(0.32, 0.46, burn) if fuel > 0.01 and charred > 0 else 0
+    share = max(alone + below * (1 - alone), smooth(0.64, 0.74, burn) * active)
+    return share * 2.5 * math.exp(14388 / 0.61 * (1 / 1200 - 1 / kelvin)) if kelvin >= 800 else 0
 
 
 BURNING = "frames: 10\nfps: 24\nsteps: 4\npace: 16\ngas: no\npreview: {size: [64, 48], samples: 1}\n"
@@ -70,7 +85,7 @@ class Delivery(Case):
                                  / area if area else -1)
                     if min(w) < 0:
                         continue
-                    glow = [ember(column["temperature"][v]) if column["burnt"][v] > 0.15 else 0 for v in corners]
+                    glow = [ember(column, v) for v in corners]
                     inside[64 * y + x] = [sum(w[k] * values[k] for k in range(3)) for values in (
                         [column["temperature"][v] for v in corners], [column["burnt"][v] for v in corners], glow)]
         left = sum(value == 1 for value in image["A"])

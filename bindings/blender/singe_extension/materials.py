@@ -134,9 +134,6 @@ def sheet_material(name, image, colour):
     peak = _attribute(tree, "temperature_peak", (-1900, 100)).outputs["Fac"]
     burnt = _attribute(tree, "burnt", (-1900, -100)).outputs["Fac"]
     ash = _attribute(tree, "ash_fraction", (-1900, -300)).outputs["Fac"]
-    mass = _attribute(tree, "mass", (-1900, -1700)).outputs["Fac"]
-    char_left = _attribute(tree, "char_fraction", (-1900, -1900)).outputs["Fac"]
-    burning = _attribute(tree, "burn_rate", (-1900, -1500)).outputs["Fac"]
     medium = _noise(tree, rest, 220.0, 5.0, (-1600, -500))
     fine = _noise(tree, rest, 1500.0, 4.0, (-1600, -700))
 
@@ -157,14 +154,20 @@ def sheet_material(name, image, colour):
                      _math(tree, "ADD", (-750, -450), _math(tree, "MULTIPLY", (-900, -450), medium, 1.6), -0.1))
     coloured = _mix(tree, _range(tree, speckled, 0.05, 0.14, (-300, -350)), black, ASH, (250, 200))
 
-    # embers, as in program/preview/shade_paper.c: char without fuel glows away as a black body, hotter here and cooler
-    # there. `ember` is red 2.5 exp(c2 / (0.61 um) (1 / 1200 K - 1 / T)): its temperature follows.
+    # embers, as in program/preview/shade_paper.c: char glows as a black body, hotter here and cooler there. `ember` is the
+    # part that glows times 2.5 exp(c2 / (0.61 um 1200 K) - c2 / (l T)), l 0.61 um in red and 0.55 um in green: their
+    # ratio gives the temperature, and then red gives the part.
     # The attribute `temperature` cannot be used: Cycles reserves the name for volumes, and reads 0 for meshes
-    red = _node(tree, "ShaderNodeSeparateColor", (-1700, -1000))
-    links.new(_attribute(tree, "ember", (-1900, -1000)).outputs["Color"], red.inputs[0])
-    lit = _math(tree, "LOGARITHM", (-1500, -1000), _math(tree, "MAXIMUM", (-1600, -1000), red.outputs[0], 1e-6), math.e)
-    inverse = _math(tree, "MULTIPLY_ADD", (-1400, -1000), lit, -0.61 / C2, 1 / 1200 + 0.61 / C2 * math.log(2.5))
+    colours = _node(tree, "ShaderNodeSeparateColor", (-1800, -1000))
+    links.new(_attribute(tree, "ember", (-1900, -1000)).outputs["Color"], colours.inputs[0])
+    red = _math(tree, "MAXIMUM", (-1650, -1000), colours.outputs[0], 1e-6)
+    ratio = _math(tree, "DIVIDE", (-1550, -1100), red, _math(tree, "MAXIMUM", (-1650, -1100), colours.outputs[1], 1e-7))
+    inverse = _math(tree, "MULTIPLY", (-1400, -1000), _math(tree, "LOGARITHM", (-1500, -1100), ratio, math.e),
+                    1 / (C2 * (1 / 0.55 - 1 / 0.61)))
     mean = _math(tree, "DIVIDE", (-1300, -1000), 1.0, inverse)
+    whole = _math(tree, "EXPONENT", (-1200, -1500), _math(tree, "MULTIPLY_ADD", (-1300, -1500), inverse, -C2 / 0.61,
+                                                          C2 / 0.61 / 1200 + math.log(2.5)))
+    active = _math(tree, "MINIMUM", (-1000, -1500), _math(tree, "DIVIDE", (-1100, -1500), red, whole), 1.0)
     life = _range(tree, _noise(tree, rest, 340.0, 5.0, (-1600, -1200)), 0.40, 0.66, (-1400, -1200))
     varied = _math(tree, "MULTIPLY_ADD", (-1200, -1200), life, 150.0, 10.0)
     varied = _math(tree, "MULTIPLY_ADD", (-1100, -1300), fine, 160.0, _math(tree, "SUBTRACT", (-1100, -1200), varied, 50.0))
@@ -172,11 +175,8 @@ def sheet_material(name, image, colour):
     light = _math(tree, "EXPONENT", (-600, -1100), _math(
         tree, "MULTIPLY_ADD", (-700, -1100), _math(tree, "DIVIDE", (-800, -1100), 1.0, hot), -EMBER_FALL, EMBER_FALL / 1200))
     air = _math(tree, "MULTIPLY_ADD", (-600, -1300), _math(tree, "POWER", (-700, -1300), life, 2.5), 0.94, 0.06)
-    active = _math(tree, "DIVIDE", (-600, -1500), burning, _math(tree, "ADD", (-700, -1500), burning, 0.12))
-    fuel = _math(tree, "SUBTRACT", (-1000, -1700), _math(tree, "SUBTRACT", (-1100, -1700), mass, char_left), ash)
-    active = _math(tree, "MULTIPLY", (-500, -1500), active, _range(tree, fuel, 0.06, 0.0, (-600, -1700)))
     glow = _math(tree, "MULTIPLY", (-400, -1100), light, _math(tree, "MULTIPLY", (-500, -1300), air, active))
-    glow = _math(tree, "MULTIPLY", (-300, -1100), glow, _range(tree, red.outputs[0], 0.0, 0.01, (-500, -1000)))
+    glow = _math(tree, "MULTIPLY", (-300, -1100), glow, _range(tree, colours.outputs[0], 0.0, 0.01, (-500, -1000)))
     glow = _math(tree, "MULTIPLY", (-200, -1100), glow, EMBER_GAIN)
     glowing = _node(tree, "ShaderNodeBlackbody", (-600, -950))
     links.new(hot, glowing.inputs[0])
