@@ -71,8 +71,8 @@ class Bench(Case):
     def test_same_springs_and_cells(self):
         rows = self.measure("memory", "--springs", "1000,4000,100000")["rows"]
         self.assertEqual([row["springs"] for row in rows], [1000, 4000, 100000])
-        # 618, 220 and 112 with chunks of 64 items, boxes in the entries of the grid and lists that grow in the first step; 498,
-        # 190 and 92 with memory of its own for each of two lists that are never needed at the same time
+        # 618, 220 and 112 with chunks of 64 items, boxes in the entries of the grid and lists that grow in the first
+        # step; 498, 190 and 92 with memory of its own for each of two lists that are never needed at the same time
         for row, most in zip(rows, (470, 180, 90)):
             self.assertGreater(row["contact_bytes_spring"], 50)
             self.assertLess(row["contact_bytes_spring"], most)
