@@ -12,6 +12,8 @@ import pathlib
 import re
 import sys
 
+import write_types
+
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 FILE = ROOT / "web/view/look.js"
 CONSTANTS = ("ember.h", "paper_look.h", "fire.h", "shade_paper.c", "fire_shade.c", "fire_march.c", "airborne.c", "sparks.c", "light.h", "fire.c")
@@ -147,6 +149,27 @@ def struct(text, name):
     return [(kind, field) for kind, field in fields if "[" not in field]
 
 
+def check(parts, numbers, others):
+    """Calls by hand in shaders.js have as many arguments as the functions have now, and each constant has a value."""
+    shaders = others["shaders.js"]
+    for name, given in re.findall(r"^\w+ (\w+)\(([^)]*)\)", "\n".join(parts), re.MULTILINE):
+        for match in re.finditer(rf"(?<![\w ]) ?\b{name}\(", shaders):
+            if len(write_types.arguments(round_brackets(shaders, match.end()))) != len(given.split(",")):
+                sys.exit(f"write_look.py: web/view/shaders.js calls {name} with other arguments than ({given})")
+    names = re.findall(r"\b[A-Z][A-Z]+_[A-Z_]+\b", "\n".join(parts)) + re.findall(r"\bLOOK\.(\w+)", " ".join(others.values()))
+    lost = sorted(set(names) - set(numbers))
+    if lost:
+        sys.exit(f"write_look.py: no #define of {', '.join(lost)} in {', '.join(CONSTANTS)}")
+
+
+def round_brackets(text, at):
+    depth, i = 1, at
+    while depth:
+        depth += (text[i] == "(") - (text[i] == ")")
+        i += 1
+    return text[at:i - 1]
+
+
 def main():
     texts = {path.name: read(path) for path in sorted((ROOT / "program/preview").glob("*.[ch]"))}
     texts["ember.h"] = read(ROOT / "program/formats/ember.h")
@@ -164,6 +187,7 @@ def main():
         with_it = text + " ".join(re.findall(r"`[^`]*\$\{%s\}[^`]*`" % part, others["shaders.js"]))
         out.append((part, "\n".join(f"const float {name} = {number_text(value)};" for name, value in numbers.items()
                                     if re.search(rf"\b{name}\b", with_it)) + "\n" + text))
+    check([glsl for _, glsl in out], numbers, others)
     wanted = [name for name in numbers if re.search(rf"\bLOOK\.{name}\b", " ".join(others.values()))]
     text = "// Made by scripts/write_look.py from program/preview: do not edit.\n"
     text += "export const LOOK = { " + ", ".join(f"{name}: {numbers[name]:g}" for name in wanted) + " };\n"
