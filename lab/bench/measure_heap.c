@@ -45,14 +45,6 @@ static SingeResult add_cloth(SingeSim *sim, int n) {
     return result;
 }
 
-/// The index of a point of a cube's surface: (n + 1) x (n + 1) points at the bottom and the top, and rings in between.
-static uint32_t ball_vertex(const uint32_t at[3], uint32_t n) {
-    uint32_t i = at[0], j = at[1], k = at[2], row = n + 1;
-    if (k == 0 || k == n) return (k ? row * row : 0) + j * row + i;
-    uint32_t ring = j == 0 ? i : i == n ? n + j : j == n ? 3 * n - i : 4 * n - j;
-    return 2 * row * row + (k - 1) * 4 * n + ring;
-}
-
 static SingeResult add_ball(SingeSim *sim, int cells_a_side) {
     uint32_t n = (uint32_t)cells_a_side;
     SingeSheetDef def = singe_default_sheet();
@@ -71,7 +63,19 @@ static SingeResult add_ball(SingeSim *sim, int cells_a_side) {
                 at[axis] = upper * n;
                 at[(axis + 1) % 3] = i + (turn == 1 || turn == 2);
                 at[(axis + 2) % 3] = j + turn / 2;
-                uint32_t v = cells[4 * c + k] = ball_vertex(at, n);
+
+                // its index: (n + 1) x (n + 1) points at the bottom and the top of the cube, and rings in between
+                const uint32_t row = n + 1;
+                uint32_t v = (at[2] ? row * row : 0) + at[1] * row + at[0];
+                if (at[2] > 0 && at[2] < n) {
+                    const uint32_t ring = at[1] == 0   ? at[0]
+                                          : at[0] == n ? n + at[1]
+                                          : at[1] == n ? 3 * n - at[0]
+                                                       : 4 * n - at[1];
+                    v = 2 * row * row + (at[2] - 1) * 4 * n + ring;
+                }
+                cells[4 * c + k] = v;
+
                 float square = 0, *p = x + 3 * (size_t)v;
                 for (int d = 0; d < 3; d++) {
                     p[d] = tanf(0.785398f * (2 * (float)at[d] / (float)n - 1));

@@ -296,16 +296,18 @@ const float LICK = 0.6;
 const float SMOKE_EDDY = 0.028;
 const float SMOKE_SPEED = 0.5;
 const float SOOT_DENSE = 195.0;
-const float BLUE_DENSE = 1.3;
-const float BLUE_ENDS = 0.005;
+const float BLUE_DENSE = 4.2;
+const float BLUE_ENDS = 0.008;
 const float SHELL_RISE = 0.0005;
 const float SHELL_RISE_MOST = 0.0016;
 const float SHELL = 0.0018;
 const float EDGE = 0.42;
 const float TAPER = 0.55;
 const float STAND_OFF = 0.0006;
-const float SOOT_BEGINS = 0.005;
-const float SOOT_FULL = 0.012;
+const float SOOT_FULL = 0.0075;
+const float FOOT_COOL = 0.22;
+const float CORE_BEGINS = 0.003;
+const float CORE_FULL = 0.027;
 const float SMOKE_STEP = 0.01;
 const float FIRE_SOFT = 6.0;
 struct FireCell { float flame; float rise; float smoke; float glow; };
@@ -338,9 +340,9 @@ float fire_lick(vec3 p, float height) {
     Noise n = eddies(p, passed, scale * LICK_WIDE, 1.2);
     return LICK * n.c * stepf(0.0, LICK_FULL * scale, height);
 }
-void shade_flame(FireCell cell, vec3 p, float passed, float slope, Noise wide,
-                        Noise fine, float blur, inout FirePoint point) {
-    float rise = max(cell.rise / cell.flame, 0.0), torn = stepf(0.0, 0.02, rise);
+void shade_flame(FireCell cell, vec3 p, float rise, float passed, float slope,
+                        Noise wide, Noise fine, float blur, inout FirePoint point) {
+    float torn = stepf(0.0, 0.02, rise);
     float tall = rise / (fireScale * FLAME_HEIGHT);
     float coarse = 0.075 + 0.425 * torn, small = 0.025 + 0.225 * torn;
     float edge = cell.flame + coarse * (0.6 - 2.4 * abs(wide.c)) + small * (0.4 - 2.0 * abs(fine.c)) - EDGE -
@@ -355,17 +357,20 @@ void shade_flame(FireCell cell, vec3 p, float passed, float slope, Noise wide,
     float fading = (1.0 - fill) * exp(-inner / SHELL), same = (0.5 * SHELL_RISE + SHELL) / (0.5 * first + SHELL);
     point.profile = same * outer / first * (fill + fading);
     point.shell = same * (0.5 * outer * outer / first + fill * inner + SHELL * (1.0 - fill - fading));
-    float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.001 * fine.d);
+    float foot = rise + 0.0012 * fine.d + 0.0016 * wide.d;
+    float soot = stepf(0.0, SOOT_FULL, foot);
     vec3 bent =
         float3_mad(p, vec3(wide.b + 0.2 * fine.b, wide.a + 0.2 * fine.a, 0.0), fireScale * THREAD_WARP);
     Noise thread = Noise(0.0, 0.0, 0.0, 0.0);
     if (soot > 0.0) thread = eddies(bent, passed, sqrt(fireScale) * EDDY_THREAD, 5.5 * sqrt(fireScale));
     float clear = stepf(-0.35, 0.45, 0.15 * (wide.d + fine.d) + 0.9 * torn * thread.a);
-    float core = stepf(0.35, 0.7, cell.flame) * stepf(SOOT_BEGINS, SOOT_FULL, rise);
+    float core = stepf(0.35, 0.7, cell.flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0.0, 0.7, edge), low = 1.0 - stepf(0.1, 0.9, tall);
     float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.19 * core + 0.72 * clear - 0.14 * tip - 0.12;
-    soot *= soot * soot;
-    float root = stepf(STAND_OFF, 3.0 * STAND_OFF, rise) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 3.0, BLUE_ENDS, rise));
+    hot -= FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
+    soot *= soot * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
+    float root =
+        clamp((rise + STAND_OFF) / (8.0 * STAND_OFF), 0.0, 1.0) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 3.0, BLUE_ENDS, foot));
     soot *= 0.2 + 3.0 * (1.0 - clear) * (1.0 - clear) + 1.2 * clear * clear;
     soot *= (0.6 + 0.9 * torn * max(thread.b, -0.5)) * (1.0 - 0.5 * tip);
     point.opaque = SOOT_DENSE * soot;
