@@ -485,7 +485,7 @@ const CASES = {
         for (let y = 0; y + 1 < side; y++) for (let x = 0; x + 1 < side; x++) { const a = y * side + x; triangles.push(a, a + 1, a + side, a + 1, a + side + 1, a + side); }
         const things = (kelvin, time, wanted) => airborneOf(new Uint32Array(triangles), (v, field) => {
             const place = [0.01 * (v % side), 0.01 * Math.floor(v / side), 0.1];
-            return field < 6 ? place[field % 3] : [kelvin, 1, 0.2, 5 * place[0], 5][field - 6];
+            return field < 6 ? place[field % 3] : [kelvin, 1, 0.2, 5 * place[0], 5, 0][field - 6];
         }, time, wanted);
         const hot = things(1000, 7.5), kinds = (all) => Array.from({ length: all.length / AIRBORNE_FLOATS }, (_, i) => all[AIRBORNE_FLOATS * i + 9] > 0);
         assert.ok(kinds(hot).filter(Boolean).length > 20 && kinds(hot).some((spark) => !spark), `${kinds(hot)}`);
