@@ -4,7 +4,7 @@
 # Usage: scripts/draw_gallery.sh [EXAMPLE...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
-declare -A best=([letter]=0090 [letter-hanging]=0100 [hot-sphere]=0050 [page-hot]=0064 [newspaper]=0070
+declare -A best=([letter]=0090 [letter-hanging]=0100 [hot-sphere]=0072 [page-hot]=0064 [newspaper]=0070
     [curtain]=0100 [stack-edge]=0120 [stack]=0118 [crumpled-ball]=0108 [hot-iron]=0099 [tear]=0079 [shirt]=0105
     [burning-torus]=0090 [macro]=0040 [note]=0075 [title]=0090)
 declare -A measured=([letter]=50-66 [letter-hanging]=100-119 [hot-sphere]=50-69 [page-hot]=40-49 [newspaper]=80-99
