@@ -25,7 +25,7 @@
 #include "common/store.h"
 #include "formats/formats.h"
 
-enum { EMBER_FRAMES = 4, EMBER_SCALE = 3, EMBER_WIDE = 4096, RUN = 64 };
+enum { DRAWN_FRAMES = 4, EMBER_SCALE = 3, EMBER_WIDE = 4096, RUN = 64 };
 
 /// m at rest from all that has ignited, beyond which the sheet is cold.
 static const float cold_from = 0.09f;
@@ -40,13 +40,13 @@ static const ArgOption measure_options[] = {
     {ARGS_FRAMES("reads", " [all]"), offsetof(MeasureOptions, frames)},
     {"csv", 0, "FILE", "also writes the numbers of every frame to FILE", .read = args_text,
      offsetof(MeasureOptions, csv)},
-    {"no-preview", 0, NULL, "draws no frames, so embers are not measured", .read = args_switch,
+    {"no-preview", 0, NULL, "draws no frames, so embers and flames are not measured", .read = args_switch,
      offsetof(MeasureOptions, no_preview)},
 };
 
 const ArgCommand measure_command = {"measure",
                                     "DIR",
-                                    "Measures what a cache looks like: creases, wrinkles, jitter, embers.",
+                                    "Measures what a cache looks like: creases, wrinkles, jitter, embers, flames.",
                                     measure_options,
                                     sizeof measure_options / sizeof *measure_options,
                                     "docs/cli.md describes the numbers. Exit codes: 0 success, 1 failed, 2 bad input.",
@@ -67,6 +67,8 @@ typedef enum Number {
     JITTER,
     JITTER_COLD,
     EMBER,
+    PALE,
+    LEMON,
     NUMBERS
 } Number;
 
@@ -85,6 +87,8 @@ static const struct {
     [JITTER] = {"jitter_mm_per_s", "jitter of the unburnt, mm/s rms", "%.3f", true},
     [JITTER_COLD] = {"jitter_cold_mm_per_s", "jitter 90 mm and more from the fire, mm/s", "%.3f", true},
     [EMBER] = {"ember_width_mm", "width of the ember line in some frames, mm", "%.2f", true},
+    [PALE] = {"flame_pale_percent", "flames nearly white in some frames, %", "%.1f", true},
+    [LEMON] = {"flame_lemon_percent", "flames of one clipped yellow in some, %", "%.1f", true},
 };
 
 /// Vertices of the input mesh that have not burnt, in one frame.
@@ -113,7 +117,7 @@ typedef struct Measure {
     Rim all_rim;
     Moment moments[3]; ///< this frame's at index frame mod 3
     Job job;
-    Pictures *pictures; ///< NULL where none are drawn
+    Pictures *embers, *flames; ///< NULL where none are drawn
 } Measure;
 
 // ---- one frame
@@ -224,7 +228,7 @@ static void fill_row(const Wrinkles *frame, const Folds *folds, const Rim *rim, 
     row[CURL] = rim_percentile(rim->curl, 0.5);
     row[CURL_STRONG] = rim_percentile(rim->curl, 0.9);
     row[CURL_MAX] = isnan(row[CURL]) ? (double)NAN : rim->curl_max;
-    row[JITTER] = row[JITTER_COLD] = row[EMBER] = (double)NAN;
+    row[JITTER] = row[JITTER_COLD] = row[EMBER] = row[PALE] = row[LEMON] = (double)NAN;
 }
 
 static SingeResult out_of_memory(SingeError *error) {
@@ -275,13 +279,23 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
         rim_sum(rim, &measure->all_rim);
     }
 
-    // embers are measured in EMBER_FRAMES of the frames, evenly spread, as each is drawn large
+    // embers and flames are measured in DRAWN_FRAMES of the frames, evenly spread
     const int count = measure->last - measure->first + 1;
-    const bool drawn = count <= EMBER_FRAMES || (index + 1) * EMBER_FRAMES / count > index * EMBER_FRAMES / count;
-    if (!result && measure->pictures && drawn) {
+    const bool drawn = count <= DRAWN_FRAMES || (index + 1) * DRAWN_FRAMES / count > index * DRAWN_FRAMES / count;
+    if (!result && measure->embers && drawn) {
         double width;
-        result = pictures_ember_width(measure->pictures, surface, read.time, &width, error);
-        if (!result) row[EMBER] = 1e3 * width;
+        const uint8_t *rgb;
+        Frame whole = {0};
+        result = pictures_ember_width(measure->embers, surface, read.time, &width, error);
+        if (!result) result = frame_read(&measure->folder, frame, &whole, error);
+        if (!result) result = frame_draw(&whole, measure->flames, &rgb, error);
+        if (!result) {
+            const FlameShares shares = pictures_flame_shares(measure->flames);
+            row[EMBER] = 1e3 * width;
+            row[PALE] = 100 * shares.pale;
+            row[LEMON] = 100 * shares.lemon;
+        }
+        frame_free(&whole);
     }
 
     frame_free(&read);
@@ -447,13 +461,16 @@ int command_measure(int argc, char **argv) {
     int scale = EMBER_SCALE; // embers are thinner than a pixel, unless the pictures are large
     while (scale > 1 && scale * (preview->width > preview->height ? preview->width : preview->height) > EMBER_WIDE)
         scale--;
-    if (!code && !options.no_preview && pictures_open_sharp(&measure.job, scale, &measure.pictures, &error)) {
+    if (!code && !options.no_preview &&
+        (pictures_open_sharp(&measure.job, scale, &measure.embers, &error) ||
+         pictures_open_sharp(&measure.job, 1, &measure.flames, &error))) {
         console_result(&measure.console, &error);
         code = EXIT_FAILED;
     }
 
     if (!code) code = measure_all(&measure);
-    pictures_close(measure.pictures);
+    pictures_close(measure.embers);
+    pictures_close(measure.flames);
     folder_free(&measure.folder);
     job_close(&measure.job);
     return code;

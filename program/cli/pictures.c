@@ -138,6 +138,12 @@ SingeResult pictures_ember_width(Pictures *pictures, const SingeSurface *surface
     return preview_glow_width(&pictures->def, &pictures->layers, width, error);
 }
 
+FlameShares pictures_flame_shares(const Pictures *pictures) {
+    FlameShares shares;
+    preview_flame_shares(&pictures->def, &pictures->layers, pictures->rgb, &shares);
+    return shares;
+}
+
 /// Ids as they are written: counted from 1, so that 0 is none.
 static uint32_t *count_ids(const int32_t *ids, size_t count) {
     uint32_t *counted = malloc(count * sizeof *counted);

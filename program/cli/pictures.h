@@ -4,6 +4,7 @@
 #include "cli/folder.h"
 #include "cli/job.h"
 #include "formats/formats.h"
+#include "preview/preview.h"
 #include "singe/base.h"
 #include "singe/singe.h"
 
@@ -27,11 +28,14 @@ SINGE_NODISCARD SingeResult pictures_keep_layers(Pictures *pictures, SingeError 
 /// Writes the layers of the last frame drawn as an EXR (docs/formats.md).
 SINGE_NODISCARD SingeResult pictures_write_layers(const Pictures *pictures, const char *path, SingeError *error);
 
-/// The same, sharp and `scale` times as large, with its layers: for pictures_ember_width.
+/// The same, sharp and `scale` times as large, with its layers: for pictures_ember_width and pictures_flame_shares.
 SINGE_NODISCARD SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, SingeError *error);
 /// Draws a frame without gas and measures the width of the glowing line, m; NaN if nothing glows.
 SINGE_NODISCARD SingeResult pictures_ember_width(Pictures *pictures, const SingeSurface *surface, double time,
                                                  double *width, SingeError *error);
+
+/// How pale and flat the flames of the last frame drawn are.
+FlameShares pictures_flame_shares(const Pictures *pictures);
 
 void pictures_size(const Pictures *pictures, int *width, int *height);
 void pictures_close(Pictures *pictures);

@@ -1,4 +1,4 @@
-// The width of the ember line in a picture.
+// What a picture shows of its fire: the width of the ember line, and how pale and how flat its flames are.
 //
 // A pixel glows if its luminance is at least a tenth of that of the brightest hundredth of the glowing pixels. From
 // each such pixel, lines in eight directions run both ways to the end of the glow or the sheet. The shortest of the
@@ -93,4 +93,23 @@ SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layer
     *width = (double)values[lit / 2];
     free(values);
     return SINGE_OK;
+}
+
+void preview_flame_shares(const PreviewDef *def, const PreviewLayers *layers, const uint8_t *rgb, FlameShares *shares) {
+    enum { FEWEST = 100 }; // pixels of which a share is no noise
+    const size_t count = (size_t)def->width * (size_t)def->height;
+    size_t flame = 0, pale = 0, lemon = 0;
+
+    for (size_t i = 0; i < count; i++) {
+        const uint8_t *p = rgb + 3 * i;
+        const float fire = float3_luminance(float3_load(layers->fire[i]));
+        if (p[0] < 200 || p[1] < 110 || fire < 0.5f * float3_luminance(float3_load(layers->beauty[i]))) continue;
+        flame++;
+        pale += p[1] > 225 && p[2] > 150;
+        lemon += p[0] > 250 && p[1] > 225 && p[2] < 110;
+    }
+
+    const bool enough = flame >= FEWEST;
+    shares->pale = enough ? (double)pale / (double)flame : (double)NAN;
+    shares->lemon = enough ? (double)lemon / (double)flame : (double)NAN;
 }

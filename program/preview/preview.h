@@ -173,6 +173,16 @@ SINGE_NODISCARD SingeResult preview_draw_layers(Preview *preview, const SingeSur
 /// a sharp lens; NaN if nothing glows.
 SINGE_NODISCARD SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layers, double *width,
                                                SingeError *error);
+
+/// Of the pixels in which a flame is brighter than what else is seen there: how many are pale, nearly white, and how many
+/// one clipped yellow. NaN if they are fewer than 100.
+typedef struct FlameShares {
+    double pale, lemon; ///< 0 to 1
+} FlameShares;
+
+/// From a frame's fire, beauty and pixels (glow_width.c).
+void preview_flame_shares(const PreviewDef *def, const PreviewLayers *layers, const uint8_t *rgb, FlameShares *shares);
+
 /// A frame for a renderer elsewhere (pack.c has the layout): the sheets' fields as they are shaded here, the gas that is
 /// seen, the lamps. No ray is traced. Set its shapes and gas before. Free *bytes, from malloc.
 SINGE_NODISCARD SingeResult preview_pack(Preview *preview, const SingeSurface *surface, double time, uint8_t **bytes,

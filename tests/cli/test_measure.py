@@ -69,18 +69,20 @@ class Measure(Case):
         self.assertEqual([int(row["frame"]) for row in rows], [3, 4, 5])
         self.assertNotEqual(rows[1]["jitter_mm_per_s"], "")
 
-    def test_embers_are_drawn_unless_asked_otherwise(self):
+    def test_fire_is_drawn_unless_asked_otherwise(self):
         root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
         letter = os.path.join(root, "examples", "letter", "letter.yaml")
-        sets = ("pace=16", "gas=no", "preview.size=[160, 120]",
+        sets = ("pace=16", "gas.cell_size=0.02", "preview.size=[160, 120]",
                 f"sheets.0.grid.cells={[14, 20] if SANITIZED else [21, 30]}")
         self.singe("run", letter, "-o", self.path("o"), "--no-preview", "--frames", "14",
                    *(word for value in sets for word in ("--set", value)))
         drawn, without = self.rows()[1], self.rows("--no-preview")[1]
-        self.assertTrue(any(row["ember_width_mm"] for row in drawn))
-        self.assertFalse(any(row["ember_width_mm"] for row in without))
+        seen = "ember_width_mm", "flame_pale_percent", "flame_lemon_percent"
+        for name in seen:
+            self.assertTrue(any(row[name] for row in drawn), name)
+            self.assertFalse(any(row[name] for row in without), name)
         for row, other in zip(drawn, without):
-            row["ember_width_mm"] = ""
+            row.update((name, "") for name in seen)
             self.assertEqual(row, other)
 
     def test_refusals(self):

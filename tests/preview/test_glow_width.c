@@ -1,4 +1,4 @@
-// The measure of the ember line, on layers whose line is known.
+// The measures of the ember line and of flames, on layers whose line and colours are known.
 
 #include "fixture.h"
 
@@ -69,4 +69,28 @@ TEST(only_sheets_count) {
     assert_true(isnan(measured(&frame)));
     memset(frame.glow, 0, sizeof frame.glow), memset(frame.sheet, 0, sizeof frame.sheet);
     assert_true(isnan(measured(&frame)));
+}
+
+/// Of a hundred rows twenty are pale, thirty lemon and fifty orange; white paper that a flame lights does not count.
+TEST(flames_have_their_shares) {
+    static const uint8_t colours[4][3] = {{255, 245, 190}, {255, 240, 60}, {250, 150, 20}, {255, 250, 240}};
+    static uint8_t rgb[HIGH * WIDE * 3];
+    static float beauty[HIGH * WIDE][3], fire[HIGH * WIDE][4];
+    PreviewDef def = camera_above();
+    PreviewLayers layers = {.beauty = beauty, .fire = fire};
+    FlameShares shares;
+    for (int i = 0; i < WIDE * HIGH; i++) {
+        const int row = i / WIDE, what = row >= 100 ? 3 : row < 20 ? 0 : row < 50 ? 1 : 2;
+        memcpy(rgb + 3 * i, colours[what], 3);
+        for (int k = 0; k < 3; k++) {
+            beauty[i][k] = 2;
+            fire[i][k] = what == 3 ? 0.9f : 1.1f;
+        }
+    }
+
+    preview_flame_shares(&def, &layers, rgb, &shares);
+    assert_true(fabs(shares.pale - 0.2) < 1e-9 && fabs(shares.lemon - 0.3) < 1e-9);
+    for (int i = 0; i < 100 * WIDE; i++) fire[i][0] = fire[i][1] = fire[i][2] = 0.9f; // paper everywhere
+    preview_flame_shares(&def, &layers, rgb, &shares);
+    assert_true(isnan(shares.pale) && isnan(shares.lemon));
 }
