@@ -242,7 +242,9 @@ void block_draw(Preview *preview, Block *block) {
             if (active[i]) block_see_ground(preview, block, i);
     }
 
-    if (bare && !light_may_be_hidden(preview, block, active)) {
+    // in a still nothing is smoothed, so lamps, whose shadows reach far, need all samples
+    const bool lamps = is_still(preview) && preview->scene.light_count;
+    if (bare && !lamps && !light_may_be_hidden(preview, block, active)) {
         block_add_light(preview, block, active, SAMPLE_CENTRE, active);
         for (int i = 0; i < LANES; i++) taken[i] = 1;
     } else {
