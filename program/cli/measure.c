@@ -238,8 +238,14 @@ static SingeResult out_of_memory(SingeError *error) {
 static SingeResult measure_frame(Measure *measure, int frame, SingeError *error) {
     const int index = frame - measure->first;
     double *row = measure->rows[index];
+
+    // embers and flames are measured in DRAWN_FRAMES of the frames, evenly spread
+    const int count = measure->last - measure->first + 1;
+    const bool drawn =
+        measure->embers && (count <= DRAWN_FRAMES || (index + 1) * DRAWN_FRAMES / count > index * DRAWN_FRAMES / count);
     Frame read;
-    SingeResult result = frame_read_surface(&measure->folder, frame, &read, error);
+    SingeResult result = drawn ? frame_read(&measure->folder, frame, &read, error)
+                               : frame_read_surface(&measure->folder, frame, &read, error);
     const SingeSurface *surface = &read.surface;
     measure->times[index] = read.time;
     Wrinkles wrinkles = {0};
@@ -279,23 +285,17 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
         rim_sum(rim, &measure->all_rim);
     }
 
-    // embers and flames are measured in DRAWN_FRAMES of the frames, evenly spread
-    const int count = measure->last - measure->first + 1;
-    const bool drawn = count <= DRAWN_FRAMES || (index + 1) * DRAWN_FRAMES / count > index * DRAWN_FRAMES / count;
-    if (!result && measure->embers && drawn) {
+    if (!result && drawn) {
         double width;
         const uint8_t *rgb;
-        Frame whole = {0};
         result = pictures_ember_width(measure->embers, surface, read.time, &width, error);
-        if (!result) result = frame_read(&measure->folder, frame, &whole, error);
-        if (!result) result = frame_draw(&whole, measure->flames, &rgb, error);
+        if (!result) result = frame_draw(&read, measure->flames, &rgb, error);
         if (!result) {
             const FlameShares shares = pictures_flame_shares(measure->flames);
             row[EMBER] = 1e3 * width;
             row[PALE] = 100 * shares.pale;
             row[LEMON] = 100 * shares.lemon;
         }
-        frame_free(&whole);
     }
 
     frame_free(&read);
