@@ -5,6 +5,8 @@ import os
 import pty
 import resource
 import shutil
+import subprocess
+import threading
 from pathlib import Path
 
 from support import HAS_EXR, SINGE, Case
@@ -50,22 +52,24 @@ class Begin(Case):
         self.assertEqual(self.run_scene("o", "--resume", "--frames", "7", *args, preview=True)[1].count("frame 6"), 1)
 
     def on_a_terminal(self, answer, *args):
-        """Runs with a terminal as all three streams. Returns the exit code and what was shown."""
-        pid, terminal = pty.fork()
-        if pid == 0:
-            os.execv(SINGE, [SINGE, *args])
-        shown = b""
-        if answer:
-            while b"[y/N]" not in shown:
-                shown += os.read(terminal, 1000)
-            os.write(terminal, answer)
-        try:
-            while more := os.read(terminal, 1000):
-                shown += more
-        except OSError:  # the end, on Linux
-            pass
-        os.close(terminal)
-        return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), shown.decode(errors="replace")
+        """Runs with a terminal as all three streams. Returns the exit code and what was shown.
+
+        The test holds the terminal open until all is read: what a program wrote last may be lost where it closes.
+        """
+        shown, end = b"", b"\0 all is read"
+        terminal, program = pty.openpty()
+        self.addCleanup(os.close, terminal)
+        self.addCleanup(os.close, program)
+        run = subprocess.Popen([SINGE, *args], stdin=program, stdout=program, stderr=program, start_new_session=True)
+        waiter = threading.Thread(target=lambda: (run.wait(), os.write(program, end)))
+        waiter.start()
+        while end not in shown:
+            shown += os.read(terminal, 1000)
+            if answer and b"[y/N]" in shown:
+                os.write(terminal, answer)
+                answer = None
+        waiter.join()
+        return run.returncode, shown.removesuffix(end).decode(errors="replace")
 
     def test_a_terminal_is_asked_before_an_earlier_run_goes(self):
         """Only where there is something to lose, and a script never is."""
