@@ -118,8 +118,10 @@ void airborne_sight(const Preview *preview, const Float3 *points, int count, flo
         aim_ray(&rays, i, eye, float3_scale(to, 1 / distance), 0, maxf(distance - near, 0), 0.5f);
     }
     tracer_occlude(preview, valid, &rays, seen);
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count; i++) {
         if (isfinite(preview->def.ground_height) && points[i].z < preview->def.ground_height) seen[i] = 0;
+        if (wall_hit(preview, eye, float3_sub(points[i], eye)) < 1) seen[i] = 0;
+    }
 }
 
 void airborne_dot(Preview *preview, const float at[2], float radius, Float3 light, float depth) {

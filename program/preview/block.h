@@ -22,13 +22,15 @@ typedef struct Block {
     Float3 origin[LANES], direction[LANES], sum[LANES];
     float time[LANES]; ///< of the ray within the exposure, 0 to 1
     Point point[LANES];
-    FireTile *tile;                         ///< flame and smoke; NULL: none
+    bool mirrored;  ///< the rays are those that the ground mirrors: they see no pixel of the table
+    FireTile *tile; ///< flame and smoke; NULL: none
     float fire_from[LANES], fire_to[LANES]; ///< distances for which the next two are valid
     Float3 fire_light[LANES];
     float fire_clear[LANES];
     float low[LANES], high[LANES];
     float shown[LANES], squares[LANES]; ///< sums of the samples' luminance, as l / (1 + l), and of its square
     float clear[LANES];                 ///< of a shadow ray
+    bool corner;                        ///< the wall ends in it: it gets all samples
     bool hidden;                        ///< whether a part of the rays to sun or sky was blocked
     bool settled[LIT_KINDS];            ///< whether all or none of a kind's rays were: no more are needed
     float spread;                 ///< pixels over which lens and shutter spread what is seen, the largest of the points
@@ -58,8 +60,11 @@ void block_aim(const Preview *preview, Block *block, int sample, const float at[
 /// Distance to the ground along a ray; infinite: it is not met.
 float ground_hit(const Preview *preview, Float3 origin, Float3 direction);
 
-/// The point of a lane's ray where nothing is above the ground: that, or the background.
-void block_see_ground(const Preview *preview, Block *block, int lane);
+/// The same to the ground or the wall.
+float backdrop_hit(const Preview *preview, Float3 origin, Float3 direction);
+
+/// The point of a lane's ray where nothing is in front of ground and wall: one of them, or the background.
+void block_see_backdrop(const Preview *preview, Block *block, int lane);
 
 /// The nearest points of the rays of active lanes; widens block->spread.
 void block_find_points(const Preview *preview, Block *block, const int *active);

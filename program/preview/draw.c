@@ -25,6 +25,7 @@ static void draw_mirrored(Preview *preview, Block *block) {
     int active[LANES];
     Float3 origin[LANES], towards[LANES];
     block->tile = NULL;
+    block->mirrored = true;
 
     for (int i = 0; i < LANES; i++) {
         int x = block->x[0] + BLOCK * (i % BLOCK), y = block->y[0] + BLOCK * (i / BLOCK);
@@ -37,7 +38,7 @@ static void draw_mirrored(Preview *preview, Block *block) {
                    1 - 2 * ((float)y + 0.5f * BLOCK) / (float)preview->def.height, (const float[2]){0, 0}, &origin[i],
                    &towards[i]);
         float distance = ground_hit(preview, origin[i], towards[i]);
-        if (!isfinite(distance)) continue;
+        if (!isfinite(distance) || wall_hit(preview, origin[i], towards[i]) < distance) continue;
         origin[i] = float3_mad(origin[i], towards[i], distance);
         origin[i].z += preview->scene.epsilon;
         towards[i].z = -towards[i].z;
@@ -61,7 +62,7 @@ static void draw_mirrored(Preview *preview, Block *block) {
         }
         block_find_points(preview, block, active);
         for (int i = 0; i < LANES; i++) {
-            hit[i] = active[i] && block->point[i].hit ? -1 : 0;
+            hit[i] = active[i] && block->point[i].lit ? -1 : 0;
             if (active[i] && !s) reached[i] = block->point[i].distance;
         }
         block_add_light(preview, block, hit, SAMPLE_CENTRE, unasked);
@@ -100,7 +101,7 @@ static void fill_table(Preview *preview, Block *block) {
 
     // where a lens blurs the table, its grain is as fine as the distance between the samples on the lens
     block_aim(preview, block, SAMPLE_CENTRE, (const float[2]){0, 0});
-    float far = ground_hit(preview, block->origin[0], block->direction[0]);
+    float far = backdrop_hit(preview, block->origin[0], block->direction[0]);
     float blur = isfinite(far) ? camera_blur(&preview->camera, far) : 0, wide = maxf(0.7f * blur, 1);
     int samples = preview->camera.lens > 0 ? 8 : 4;
 
@@ -109,11 +110,13 @@ static void fill_table(Preview *preview, Block *block) {
         sample_offset(s, at);
         block_aim(preview, block, s, at);
         for (int i = 0; i < LANES; i++) {
-            float distance = ground_hit(preview, block->origin[i], block->direction[i]);
+            const float ground = ground_hit(preview, block->origin[i], block->direction[i]);
+            const float distance = backdrop_hit(preview, block->origin[i], block->direction[i]);
             if (!isfinite(distance)) continue;
             Table look;
             Float3 position = float3_mad(block->origin[i], block->direction[i], distance);
-            ground_look(preview, position, block->direction[i].z, wide * distance, &look);
+            if (distance < ground) wall_look(preview, position, wide * preview->camera.pixel * distance, &look);
+            else ground_look(preview, position, block->direction[i].z, wide * distance, &look);
             sum[i].albedo = float3_add(sum[i].albedo, look.albedo);
             sum[i].polish += look.polish;
             sum[i].crumb += look.crumb;

@@ -222,6 +222,12 @@ void ground_look(const Preview *preview, Float3 position, float cosine, float di
 void ground_shade(const Preview *preview, float distance, const Table *table, Point *point);
 Float3 background_colour(const Preview *preview, Float3 direction);
 
+// shade_wall.c
+/// Distance to the wall along a ray; infinite: it is not met.
+float wall_hit(const Preview *preview, Float3 origin, Float3 direction);
+void wall_look(const Preview *preview, Float3 position, float footprint, Table *table);
+void wall_shade(const Preview *preview, const Table *table, Point *point);
+
 // film.c
 void bloom_apply(Preview *preview);
 void tonemap_write(const Preview *preview, uint8_t *rgb);

@@ -117,25 +117,6 @@ static bool sky_may_be_hidden(const Preview *preview, Float3 p, float reach) {
     return false;
 }
 
-/// The sun is a disc: its rays spread by sun_spread times their length. The margin is a little more than that.
-static bool sun_may_be_hidden(const Preview *preview, Float3 p, float margin) {
-    const PreviewScene *scene = &preview->scene;
-    Float3 sun = preview->sun;
-    float spread = 1.5f * preview->sun_spread, rise = maxf(scene->high.z - p.z, 0) / maxf(sun.z, 0.02f);
-
-    if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, spread * rise + margin)) return true;
-
-    for (uint32_t k = 0; k < preview->shape_count; k++) {
-        Float3 to = float3_sub(shape_centre(&preview->shapes[k]), p);
-        float along = float3_dot(to, sun), extent = shape_extent(&preview->shapes[k], preview->def.shutter);
-        Float3 aside = float3_mad(to, sun, -along);
-        float near = extent + margin + spread * maxf(along + extent, 0);
-        if (along > -extent - margin && float3_dot(aside, aside) < near * near) return true;
-    }
-
-    return false;
-}
-
 bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active) {
     int first = 0;
     while (first < LANES && !light_reaches(block, active, first)) first++;
@@ -150,7 +131,23 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
     // a low sheet far away occludes too little of the table's sky to be seen: under 2 % where its height is less than
     // 0.28 of the distance
     float reach = minf(sky_reach(&preview->scene), 3.5f * maxf(preview->scene.high.z - p.z, 0));
-    return sky_may_be_hidden(preview, p, reach + spread) || sun_may_be_hidden(preview, p, spread);
+    if (sky_may_be_hidden(preview, p, reach + spread)) return true;
+
+    // the sun is a disc: its rays spread by sun_spread times their length, and the margin is a little more than that
+    const PreviewScene *scene = &preview->scene;
+    const Float3 sun = preview->sun;
+    const float margin = 1.5f * preview->sun_spread, rise = maxf(scene->high.z - p.z, 0) / maxf(sun.z, 0.02f);
+    if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, margin * rise + spread)) return true;
+
+    for (uint32_t k = 0; k < preview->shape_count; k++) {
+        Float3 to = float3_sub(shape_centre(&preview->shapes[k]), p);
+        float along = float3_dot(to, sun), extent = shape_extent(&preview->shapes[k], preview->def.shutter);
+        Float3 aside = float3_mad(to, sun, -along);
+        float near = extent + spread + margin * maxf(along + extent, 0);
+        if (along > -extent - spread && float3_dot(aside, aside) < near * near) return true;
+    }
+
+    return false;
 }
 
 /// Finds the open share of each point's sky by one ray.

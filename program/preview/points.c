@@ -1,4 +1,4 @@
-// What the rays of a block see: the ground, a shape, a sheet through its holes, or the background.
+// What the rays of a block see: the ground, the wall, a shape, a sheet through its holes, or the background.
 
 #include "preview/block.h"
 
@@ -42,22 +42,34 @@ float ground_hit(const Preview *preview, Float3 origin, Float3 direction) {
     return t < 1e4f ? t : INFINITY;
 }
 
+float backdrop_hit(const Preview *preview, Float3 origin, Float3 direction) {
+    return minf(ground_hit(preview, origin, direction), wall_hit(preview, origin, direction));
+}
+
 size_t block_pixel(const Preview *preview, const Block *block, int lane) {
     return (size_t)block->y[lane] * (size_t)preview->def.width + (size_t)block->x[lane];
 }
 
-void block_see_ground(const Preview *preview, Block *block, int lane) {
+void block_see_backdrop(const Preview *preview, Block *block, int lane) {
     Float3 d = block->direction[lane];
     Point *point = &block->point[lane];
-    float distance = ground_hit(preview, block->origin[lane], d);
+    const float distance = ground_hit(preview, block->origin[lane], d),
+                wall = wall_hit(preview, block->origin[lane], d);
 
-    if (!isfinite(distance)) {
+    if (!isfinite(distance) && !isfinite(wall)) {
         miss_point(point, preview, d);
         return;
     }
 
-    start_point(point, preview, block->origin[lane], d, distance);
-    ground_shade(preview, distance, &preview->table[block_pixel(preview, block, lane)], point);
+    const Table *table = &preview->table[block_pixel(preview, block, lane)];
+    Table look;
+    start_point(point, preview, block->origin[lane], d, minf(distance, wall));
+    if (wall < distance) {
+        if (block->mirrored) wall_look(preview, point->position, 4 * point->footprint, &look);
+        wall_shade(preview, block->mirrored ? &look : table, point);
+        return;
+    }
+    ground_shade(preview, distance, table, point);
     point->mirrored = mirror_see(preview, block->x[lane], block->y[lane]);
     point->glow = float3_scale(point->mirrored.light, light_mirrored(point));
 }
@@ -86,8 +98,8 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
         }
     }
 
-    if (ground_hit(preview, o, d) < distance) {
-        block_see_ground(preview, block, lane);
+    if (backdrop_hit(preview, o, d) < distance) {
+        block_see_backdrop(preview, block, lane);
         return true;
     }
 

@@ -90,6 +90,9 @@ static SingeResult check_view(const PreviewDef *def, SingeError *error) {
     if (!(float3_dot(sun, sun) > 1e-20f)) return preview_refuse(error, -1, "sun_direction must not be zero");
     if (def->sky == PREVIEW_SKY_PICTURE && !(def->sky_picture && image_is_good(def->sky_picture)))
         return preview_refuse(error, -1, "sky_picture is missing, empty or too large");
+    if (def->wall_distance > 1e4f || (def->wall_distance < -1e4f && isfinite(def->wall_distance)) ||
+        isnan(def->wall_distance))
+        return preview_refuse(error, -1, "wall_distance must lie within 10 km, or be -infinity for none");
     float ground = def->ground_height;
     if (!(ground <= 1e4f) || (ground < -1e4f && isfinite(ground)))
         return preview_refuse(error, -1, "ground_height must lie within 10 km, or be -infinity for none");

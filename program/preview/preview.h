@@ -45,6 +45,13 @@ typedef enum PreviewGround {
     PREVIEW_GROUND_PLAIN,
 } PreviewGround;
 
+/// The material of the wall.
+typedef enum PreviewWall {
+    PREVIEW_WALL_PLASTER,
+    PREVIEW_WALL_BRICK,
+    PREVIEW_WALL_PLAIN,
+} PreviewWall;
+
 /// Of office paper, 80 g/m2; its opacity of 85 to 92 % by ISO 2471 comes to about that.
 #define PREVIEW_TRANSMITTANCE 0.22f
 
@@ -85,6 +92,10 @@ typedef struct PreviewDef {
     float ground_colour[3]; ///< linear
     float ground_gloss;     ///< factor on what the ground mirrors; 0: it is dull, and no reflections are traced
     float ground_stain;     ///< how dark burning sheets stain the ground they lay on; 0: they do not
+    float wall_distance;    ///< m, of a vertical wall from the z axis; -INFINITY for none
+    PreviewWall wall;
+    float wall_turn;      ///< radians around z, seen from above; 0: the wall is towards +y
+    float wall_colour[3]; ///< linear
     float background[3];
     float exposure; ///< multiplies before tone mapping
     float sparks;   ///< how many embers throw, relative to the usual

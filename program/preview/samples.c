@@ -125,13 +125,13 @@ void block_add_light(const Preview *preview, Block *block, const int *active, in
 
 /// In a bare block the rays stay the same, unless the lens spreads them.
 static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, const int *ask) {
-    if (!bare || preview->camera.lens > 0) {
+    if (!bare || block->corner || preview->camera.lens > 0) {
         float at[2];
         sample_offset(sample, at);
         block_aim(preview, block, sample, at);
         if (!bare) block_find_points(preview, block, active);
         for (int i = 0; bare && i < LANES; i++)
-            if (active[i]) block_see_ground(preview, block, i);
+            if (active[i]) block_see_backdrop(preview, block, i);
     }
 
     block_add_light(preview, block, active, sample, ask);
@@ -182,10 +182,10 @@ static int find_restless(const Block *block, const int *active, float calm, int 
 static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
     const bool blurs = mask_blurs(preview, block->x[0], block->y[0]); // even if the first samples miss what is blurred
     int more[LANES], samples = preview->def.samples, first = SAMPLES_FIRST;
-    if (samples < first || is_still(preview)) first = samples;
+    if (samples < first || is_still(preview) || block->corner) first = samples;
     for (int s = 0; s < first; s++) {
         add_sample(preview, block, active, bare, s, active);
-        if (s != 1 || block->hidden || is_still(preview)) continue;
+        if (s != 1 || block->hidden || is_still(preview) || block->corner) continue;
         if (bare || (!blurs && block->spread <= 1 && !find_restless(block, active, 0.5f * CALM, more))) first = s + 1;
     }
 
@@ -213,6 +213,25 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
     }
 }
 
+/// Aims at the middles of the pixels. Returns whether the block shows where the wall meets the ground or the background,
+/// through any part of the lens.
+static bool aim_at_corner(const Preview *preview, Block *block, const int *active) {
+    const float centre[2] = {0, 0};
+    const int rays = !isfinite(preview->def.wall_distance) ? 0 : preview->camera.lens > 0 ? 8 : 1;
+    int walls = 0, lanes = 0;
+    for (int s = 0; s < rays; s++) {
+        block_aim(preview, block, s, centre);
+        for (int i = 0; i < LANES; i++) {
+            if (!active[i]) continue;
+            const float ground = ground_hit(preview, block->origin[i], block->direction[i]);
+            walls += wall_hit(preview, block->origin[i], block->direction[i]) < ground;
+            lanes++;
+        }
+    }
+    block_aim(preview, block, SAMPLE_CENTRE, centre);
+    return walls > 0 && walls < lanes;
+}
+
 void block_draw(Preview *preview, Block *block) {
     const PreviewDef *def = &preview->def;
     int active[LANES], taken[LANES];
@@ -236,15 +255,16 @@ void block_draw(Preview *preview, Block *block) {
     }
 
     bool bare = !mask_covers(preview, block->x[0], block->y[0]);
+    block->corner = false;
     if (bare) {
-        block_aim(preview, block, SAMPLE_CENTRE, (const float[2]){0, 0});
+        block->corner = aim_at_corner(preview, block, active);
         for (int i = 0; i < LANES; i++)
-            if (active[i]) block_see_ground(preview, block, i);
+            if (active[i]) block_see_backdrop(preview, block, i);
     }
 
     // in a still nothing is smoothed, so lamps, whose shadows reach far, need all samples
     const bool lamps = is_still(preview) && preview->scene.light_count;
-    if (bare && !lamps && !light_may_be_hidden(preview, block, active)) {
+    if (bare && !block->corner && !lamps && !light_may_be_hidden(preview, block, active)) {
         block_add_light(preview, block, active, SAMPLE_CENTRE, active);
         for (int i = 0; i < LANES; i++) taken[i] = 1;
     } else {

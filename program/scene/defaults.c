@@ -27,7 +27,7 @@ bool default_scene(SceneArena *arena, void *object) {
 
     scene->preview.def = preview_default();
     scene->preview.def.sky = PREVIEW_SKY_STUDIO;
-    scene->preview.def.ground_height = -INFINITY;
+    scene->preview.def.ground_height = scene->preview.def.wall_distance = -INFINITY;
     scene->preview.shutter = 0.5f;
     return true;
 }

@@ -7,6 +7,8 @@ static const char *const sky_names[] = {
     [PREVIEW_SKY_EVEN] = "even", [PREVIEW_SKY_STUDIO] = "studio", [PREVIEW_SKY_OPEN] = "open", NULL};
 static const char *const ground_names[] = {
     [PREVIEW_GROUND_WOOD] = "wood", [PREVIEW_GROUND_STONE] = "stone", [PREVIEW_GROUND_PLAIN] = "plain", NULL};
+static const char *const wall_names[] = {
+    [PREVIEW_WALL_PLASTER] = "plaster", [PREVIEW_WALL_BRICK] = "brick", [PREVIEW_WALL_PLAIN] = "plain", NULL};
 
 #define OF ScenePreview
 #define PREVIEW_ROW(TYPE, key, target, length, dimension, standard, range, text) \
@@ -89,6 +91,21 @@ static const Schema schema_ground = {
     ROWS(ground_rows),
     .doc = "A floor that is drawn. To let sheets rest on it, add a plane to `colliders` as well."};
 
+#define PREVIEW_WALL PREVIEW_ROW
+static const SchemaRow wall_rows[] = {
+    {"kind", ROW_ENUM, DIM_NONE, AT(ScenePreview, def.wall), .names = wall_names,
+     .doc = "`plaster`: trowelled and painted; `brick`: in a stretcher bond; `plain`: one colour"},
+    {"distance", ROW_FLOAT, DIM_LENGTH, AT(ScenePreview, def.wall_distance), .flags = ROW_NONE, WITHIN(-1e4, 1e4),
+     .doc = "from the z axis; `none`: no wall is drawn"},
+#include "preview/preview.def"
+};
+static const Schema schema_wall = {
+    .title = "the wall",
+    .size = sizeof(ScenePreview),
+    ROWS(wall_rows),
+    .doc = "A vertical wall that is drawn behind the scene, for the light of the fire and for shadows. It is seen from "
+           "the side of the z axis only."};
+
 #define PREVIEW_MAIN PREVIEW_ROW
 static const SchemaRow preview_rows[] = {
     {"size", ROW_INTS, DIM_NONE, AT(ScenePreview, def.width), .length = 2, WITHIN(16, 16384),
@@ -101,6 +118,7 @@ static const SchemaRow preview_rows[] = {
     {"environment", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_environment,
      .doc = "distribution of the sky's light"},
     {"ground", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_ground, .doc = "the floor"},
+    {"wall", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_wall, .doc = "the wall behind the scene"},
     {"shutter", ROW_FLOAT, DIM_FRACTION, AT(ScenePreview, shutter), WITHIN(0, 1),
      .doc = "share of a frame's time during which the shutter is open; film has 0.5; 0: no motion blur"},
     {"plain", ROW_BOOL, DIM_NONE, AT(ScenePreview, def.plain),

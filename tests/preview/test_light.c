@@ -178,6 +178,65 @@ TEST(a_glossy_ground_mirrors_embers) {
     assert_float_equal((seen[2] - seen[0]) / (seen[1] - seen[0]), 2, 0.1);
 }
 
+/// Where a wall meets the floor the light does not jump from one pixel to the next: the steepest step in a column is at most
+/// .56 of the way in focus, with the rim slanted, and .5 where a lens blurs it. One sample a pixel, which is enough where
+/// nothing but a floor is seen, breaks both bars: .66 and .92.
+TEST(a_wall_meets_the_floor_without_steps) {
+    static float picture[W * H][3];
+    SingeSurface nothing = {0};
+    PreviewDef def = at_night();
+    def.camera = (PreviewCamera){.eye = {0, 0, 0.1f}, .target = {0, 0.3f, 0}, .up = {0.3f, 0, 1}, .fov = 0.3f};
+    for (int c = 0; c < 3; c++) def.sun_colour[c] = 1, def.wall_colour[c] = def.ground_colour[c] = 0.3f;
+    def.sun_direction[1] = -10, def.ground_gloss = 0, def.samples = 16;
+    def.wall = PREVIEW_WALL_PLAIN, def.wall_distance = 0.3f;
+    for (int blurred = 0; blurred < 2; blurred++) {
+        def.camera.aperture = 0.02f * (float)blurred, def.camera.focus = 0.15f;
+        see(&def, &nothing, NULL, picture);
+        float sum = 0;
+        for (int x = 0; x < W; x++) {
+            float low = INFINITY, high = 0, steepest = 0;
+            for (int y = H / 4; y < H * 3 / 4; y++) {
+                const float here = picture[y * W + x][1];
+                low = fminf(low, here), high = fmaxf(high, here);
+                steepest = fmaxf(steepest, fabsf(here - picture[(y + 1) * W + x][1]));
+            }
+            sum += steepest / (high - low) / W;
+        }
+        print_message("wall and floor, blurred %d: %.2f of the way in a pixel\n", blurred, (double)sum);
+        assert_true(sum < (blurred ? 0.5f : 0.56f));
+    }
+}
+
+/// A wall behind the scene is lit by a flame, and a sheet before the flame shadows it: at most a fifth of the light is left,
+/// with the sky's. It is in no picture that is taken from behind it.
+TEST(a_wall_catches_light_and_shadows) {
+    static float open[W * H][3], hidden[W * H][3], behind[W * H][3], none[W * H][3];
+    static Ball ball;
+    Float4 q;
+    float share = 0;
+    SingeSurface nothing = {0};
+    PreviewDef def = at_night();
+    ball_make(&ball, 0, -0.1f, 0.1f, 0.03f, 4e6f, 0);
+    quad_make(&q, 0.12f, 0);
+    for (int i = 0; i < 4; i++) { // it stands in the plane y = 0
+        const float up = q.position[i][1];
+        q.position[i][1] = 0, q.position[i][2] = 0.12f + up, q.normal[i][1] = -1, q.normal[i][2] = 0;
+    }
+    for (int c = 0; c < 3; c++) def.sky_colour[c] = 0, def.wall_colour[c] = 0.5f, def.ground_colour[c] = 0.05f;
+    def.transmittances = &share, def.sheet_count = 1, def.wall = PREVIEW_WALL_PLAIN, def.wall_distance = 0.3f;
+    def.camera = (PreviewCamera){.eye = {0, 0.02f, 0.1f}, .target = {0, 0.3f, 0.1f}, .up = {0.2f, 0, 1}, .fov = 1.2f};
+    see(&def, &nothing, &ball.gas, open), see(&def, &q.surface, &ball.gas, hidden);
+    const float lit = box(open, W / 2, H / 2), dark = box(hidden, W / 2, H / 2);
+    print_message("wall: %.4f lit, %.4f in the shadow of a sheet\n", (double)lit, (double)dark);
+    assert_true(lit > 0.001f && dark < 0.2f * lit);
+
+    def.camera = (PreviewCamera){.eye = {0, 0.6f, 0.1f}, .target = {0, 0.3f, 0.1f}, .up = {0, 0, 1}, .fov = 1.2f};
+    see(&def, &nothing, &ball.gas, behind);
+    def.wall_distance = -INFINITY;
+    see(&def, &nothing, &ball.gas, none);
+    assert_memory_equal(behind, none, sizeof none);
+}
+
 static void see_shadow(int samples, float (*beauty)[3]) {
     Float4 q;
     PreviewDef def = above();

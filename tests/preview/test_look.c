@@ -211,6 +211,26 @@ TEST(each_ground_has_its_look) {
     }
 }
 
+/// So have walls; a brick has a hue of its own.
+TEST(each_wall_has_its_look) {
+    static uint8_t rgb[3][BYTES];
+    SingeSurface nothing = {0};
+    PreviewDef def = small();
+    def.wall_distance = 0.3f, def.sun_direction[1] = -0.45f;
+    def.camera = (PreviewCamera){.eye = {0, -0.4f, 0.5f}, .target = {0, 0.3f, 0.5f}, .up = {0, 0, 1}, .fov = 0.6f};
+    float spread[3];
+    for (int kind = 0; kind < 3; kind++) {
+        def.wall = (PreviewWall)kind;
+        draw(&def, &nothing, 0, rgb[kind]);
+        spread[kind] = 0;
+        for (int i = 0; i < W * H; i++) spread[kind] += fabsf(rgb[kind][3 * i + 1] - mean(rgb[kind], 1)) / (W * H);
+    }
+    print_message("walls: plaster %.1f, brick %.1f, plain %.1f levels\n", (double)spread[0], (double)spread[1],
+                  (double)spread[2]);
+    assert_float_equal(mean(rgb[PREVIEW_WALL_PLASTER], 1), mean(rgb[PREVIEW_WALL_PLAIN], 1), 20);
+    assert_true(spread[PREVIEW_WALL_PLASTER] > 2 * spread[PREVIEW_WALL_PLAIN] && spread[PREVIEW_WALL_BRICK] > 5);
+}
+
 /// The ground is stained where a sheet lay that has burnt away, and not where it is whole, beside it, below one that
 /// hung, or if it is to stay clean. The stain is darker than a tenth; without one the table is the same to a level.
 TEST(burning_sheets_stain_the_ground) {

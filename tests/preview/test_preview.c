@@ -370,6 +370,9 @@ TEST(bad_defs_are_refused) {
     REFUSED(def.sky_turn = NAN, "sky_turn");
     REFUSED(def.ground_height = NAN, "ground_height");
     REFUSED(def.ground_height = INFINITY, "ground_height");
+    REFUSED(def.wall = (PreviewWall)9, "wall");
+    REFUSED(def.wall_distance = NAN, "wall_distance");
+    REFUSED(def.wall_distance = INFINITY, "wall_distance");
     REFUSED(def.shape_count = 1, "shapes");
     PreviewShape shape = {.kind = SINGE_COLLIDER_SPHERE, .radius = 0, .temperature = 293};
     REFUSED((def.shapes = &shape, def.shape_count = 1), "shape");

@@ -1,0 +1,111 @@
+// The wall behind the scene: it catches the fire's light and the shadows of what burns.
+//
+// Plaster is trowelled and rolled: broad patches, the trowel's sweeps and the roller's grain, a few hairline cracks. Bricks
+// lie in a stretcher bond of rows of 75 mm; each has its own tone, pits and worn edges, and mortar stands behind its face.
+// Every octave fades when a pixel no longer resolves it.
+
+#include "preview/internal.h"
+
+#define BRICK_LONG 0.225f  ///< m, with a joint
+#define BRICK_HIGH 0.075f  ///< m, with a joint
+#define BRICK_JOINT 0.010f ///< m
+
+static float shown_at(float metres, float footprint) { return clampf(1.5f - 0.9f * footprint / metres, 0, 1); }
+
+/// Noise of the face, its slope added to the tilt.
+static float rough(float u, float v, float metres, float height, uint32_t seed, float footprint, Table *table) {
+    const float shown = shown_at(metres, footprint), e = 0.25f;
+    if (shown <= 0) return 0;
+    u /= metres;
+    v /= metres;
+    const float n = noise2(u, v, seed);
+    table->tilt[0] -= shown * height * (noise2(u + e, v, seed) - n) / e;
+    table->tilt[1] -= shown * height * (noise2(u, v + e, seed) - n) / e;
+    return shown * n;
+}
+
+static void plaster(float u, float v, uint32_t seed, float footprint, Table *table) {
+    const float patch = noise2(u * 1.7f, v * 1.7f, seed), cloud = noise2(u * 6, v * 6, seed + 1);
+    const float bend = 0.05f * noise2(u * 5, v * 5, seed + 2);
+    const float sweep = rough(u + bend, 2.6f * v + bend, 0.09f, 0.020f, seed + 3, footprint, table);
+    const float hand = rough(u, v, 0.022f, 0.016f, seed + 4, footprint, table);
+    const float grain = rough(u, v, 0.0035f, 0.05f, seed + 5, footprint, table);
+    float value = 0.94f + 0.08f * patch + 0.07f * cloud + 0.05f * sweep + 0.04f * hand + 0.05f * grain;
+
+    // a crack follows where two slow noises are equal, and only in places
+    const float fray = 0.02f * noise2(u * 24, v * 24, seed + 6) + 0.006f * noise2(u * 90, v * 90, seed + 7);
+    const float line = fabsf(noise2(u * 1.9f + fray, v * 1.3f + fray, seed + 8)) / 1.9f; // m, about
+    const float crack = (1 - stepf(0.0003f, 0.0012f + 0.7f * footprint, line)) *
+                        stepf(0.1f, 0.5f, noise2(u * 1.1f, v * 1.1f, seed + 9));
+    value *= 1 - 0.5f * crack * minf(1, 0.0015f / footprint);
+    table->albedo = float3_scale(float3(1 + 0.02f * cloud, 1, 1 - 0.03f * patch), value);
+}
+
+static void brick(float u, float v, uint32_t seed, float footprint, Table *table) {
+    // joints are not ruled
+    const float sag = 0.0016f * noise2(u * 7, v * 7, seed), lean = 0.0016f * noise2(u * 7, v * 7, seed + 1);
+    float along, up;
+    const int row = noise_floor((v + sag) / BRICK_HIGH, &up);
+    const int column = noise_floor((u + lean) / BRICK_LONG + (row % 2 ? 0.5f : 0), &along);
+    const uint32_t key = sample_key(row, column, seed);
+    along *= BRICK_LONG;
+    up *= BRICK_HIGH;
+    const float side = minf(along, BRICK_LONG - along), end = minf(up, BRICK_HIGH - up);
+    const float wear = 0.0022f * noise2(u * 130, v * 130, seed + 2) + 0.0012f * noise2(u * 420, v * 420, seed + 3);
+    const float edge = minf(side, end) - 0.5f * BRICK_JOINT + wear; // m into the brick
+    const float soft = maxf(0.0012f, 0.6f * footprint), face = stepf(-soft, soft, edge);
+
+    // worn edges lean towards the joint, which lies back in their shadow
+    const float bevel = (1 - stepf(0, 0.005f, fabsf(edge))) * shown_at(0.004f, footprint);
+    if (side < end) table->tilt[0] += 0.5f * bevel * (along < 0.5f * BRICK_LONG ? -1.0f : 1.0f);
+    else table->tilt[1] += 0.5f * bevel * (up < 0.5f * BRICK_HIGH ? -1.0f : 1.0f);
+
+    const float cloud = noise2(u * 16, v * 16, key & 255),
+                lump = rough(u, v, 0.011f, 0.05f, seed + 5, footprint, table);
+    const float grain = rough(u, v, 0.0022f, 0.08f, seed + 6, footprint, table);
+    const float pit = stepf(0.45f, 0.8f, noise2(u * 260, v * 260, seed + 7)) * shown_at(0.003f, footprint);
+    const float tone = hash_unit(key), hue = hash_unit(key + 1) - 0.5f;
+    float value = 0.72f + 0.5f * tone + 0.16f * cloud + 0.10f * lump + 0.10f * grain;
+    value *= (1 - 0.35f * pit) * (hash_unit(key + 2) < 0.08f ? 0.5f : 1); // one in twelve is burnt dark
+    const Float3 clay = float3_scale(float3(0.62f + 0.10f * hue, 0.30f + 0.04f * hue, 0.21f), maxf(value, 0.1f));
+    const float mortar = 0.46f + 0.09f * noise2(u * 60, v * 60, seed + 8) + 0.08f * grain;
+    const float shadow = 1 - 0.55f * (1 - stepf(-0.5f * BRICK_JOINT, 0, edge)); // deepest in its middle
+    table->albedo = float3_mix(float3_scale(float3(1, 0.96f, 0.88f), mortar * shadow), clay, face);
+}
+
+/// Horizontal and unit, along the wall to the right of who faces it.
+static Float3 wall_along(const Preview *preview) {
+    return float3(cosf(preview->def.wall_turn), sinf(preview->def.wall_turn), 0);
+}
+
+float wall_hit(const Preview *preview, Float3 origin, Float3 direction) {
+    if (!isfinite(preview->def.wall_distance)) return INFINITY;
+    const Float3 along = wall_along(preview);
+    const float before = preview->def.wall_distance - (along.x * origin.y - along.y * origin.x);
+    const float towards = along.x * direction.y - along.y * direction.x;
+    if (before <= 0 || towards < 1e-5f) return INFINITY;
+    return before / towards < 1e4f ? before / towards : INFINITY;
+}
+
+void wall_look(const Preview *preview, Float3 position, float footprint, Table *table) {
+    const float u = float3_dot(position, wall_along(preview)), v = position.z;
+    const uint32_t seed = preview->def.seed + 377;
+    *table = (Table){.albedo = {1, 1, 1}};
+    if (preview->def.wall == PREVIEW_WALL_PLASTER) plaster(u, v, seed, footprint, table);
+    if (preview->def.wall == PREVIEW_WALL_BRICK) brick(u, v, seed, footprint, table);
+    table->albedo = float3_mul(table->albedo, float3_load(preview->def.wall_colour));
+
+    // little light comes into the corner with the floor
+    const float above = v - preview->def.ground_height;
+    if (above >= 0) table->albedo = float3_scale(table->albedo, 1 - 0.5f * expf(-above / 0.03f));
+}
+
+void wall_shade(const Preview *preview, const Table *table, Point *point) {
+    const Float3 along = wall_along(preview);
+    point->geometric = float3(along.y, -along.x, 0);
+    const Float3 tilted = float3_mad(point->geometric, along, table->tilt[0]);
+    point->normal = float3_unit_or(float3_mad(tilted, float3(0, 0, 1), table->tilt[1]), point->geometric);
+    point->albedo = table->albedo;
+    point->gloss = 0.01f;
+    point->shininess = 12;
+}
