@@ -1,9 +1,11 @@
 // The colour of glowing surfaces.
 //
 // Planck: B(lambda, T) ~ lambda^-5 / (exp(c2/(lambda T)) - 1), c2 = 1.438777e-2 m K. CIE 1931 observer by the
-// multi-lobe Gaussians of Wyman, Sloan & Shirley 2013 (JCGT 2(2)), then XYZ to linear Rec. 709. Below about 1900 K blue
-// lies outside the gamut: negative values are clipped. The luminance of an ember increases 50-fold from 1020 to 1220 K;
-// eye and film compress that, so the table holds chromaticity * (Y(T)/Y(1200 K))^0.55.
+// multi-lobe Gaussians of Wyman, Sloan & Shirley 2013 (JCGT 2(2)), then XYZ to linear Rec. 709 as a camera balanced for
+// 3400 K sees it (Bradford's adaptation, then the usual matrix): light of 1900 K is amber. By daylight's white it is red,
+// and moonlight makes it pink. Below about 1550 K blue lies outside the gamut: negative values are clipped. The luminance
+// of an ember increases 50-fold from 1020 to 1220 K; eye and film compress that, so the table holds chromaticity *
+// (Y(T)/Y(1200 K))^0.55.
 
 #include "preview/light.h"
 
@@ -31,12 +33,11 @@ void blackbody_fill(Float3 table[BLACKBODY_COUNT]) {
         double temperature = (double)BLACKBODY_MIN + (double)BLACKBODY_STEP * i;
         planck_xyz(temperature, xyz);
         double x = xyz[0] / xyz[1], z = xyz[2] / xyz[1];
-        double r = 3.2406 * x - 1.5372 - 0.4986 * z, g = -0.9689 * x + 1.8758 + 0.0415 * z;
-        double b = 0.0557 * x - 0.2040 + 1.0570 * z;
-        double strength = pow(xyz[1] / reference[1], 0.55);
+        double r = fmax(2.9717 * x - 1.8473 - 0.4908 * z, 0), g = fmax(-1.0277 * x + 2.0626 + 0.0127 * z, 0);
+        double b = fmax(0.1167 * x - 0.3019 + 2.3811 * z, 0);
+        double strength = pow(xyz[1] / reference[1], 0.55) / (0.2126 * r + 0.7152 * g + 0.0722 * b);
         strength *= (double)stepf(BLACKBODY_MIN, BLACKBODY_MIN + 120, (float)temperature);
-        table[i] =
-            float3((float)(fmax(r, 0) * strength), (float)(fmax(g, 0) * strength), (float)(fmax(b, 0) * strength));
+        table[i] = float3((float)(r * strength), (float)(g * strength), (float)(b * strength));
     }
 }
 

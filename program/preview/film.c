@@ -93,15 +93,15 @@ void bloom_apply(Preview *preview) {
 // Radiance to bytes.
 //
 // Film curve: linear but for a short toe, f = x (1 - 0.4 exp(-x / 0.06)), and a long shoulder above s = 0.6, s + (1 - s)
-// u / (1 + u) with u = (f - s) / (1 - s). White paper in the sun, 0.8, becomes 0.73 (0.87 in sRGB), and the slope there
-// is still 0.44, so that its wrinkles are visible; what is five times as bright is not yet clipped. Before it, each
-// channel leaks into the others, as in film: a little where it is dim, and more the brighter it is. So the centre of a
-// flame becomes pale, where a curve for each channel alone would clip all of it to the same yellow. Then IEC 61966-2-1
-// and one level of triangular dither.
+// (1 - (1 + u/p)^-p) with u = (f - s) / (1 - s), p = 0.75. White paper in the sun, 0.8, becomes 0.72 (0.87 in sRGB), and
+// the slope there is still 0.4, so that its wrinkles are visible; what is ten times as bright is not yet clipped, so the
+// cores of flames are graded. Before it, each channel leaks into the others, as in film: a little where it is dim, and
+// more the brighter it is. So the centre of a flame becomes pale, where a curve for each channel alone would clip all of
+// it to the same yellow. Then IEC 61966-2-1 and one level of triangular dither.
 
 enum { CURVE_COUNT = 4096 };
-#define LEAK 0.03f        ///< of a dim colour
-#define LEAK_BRIGHT 0.16f ///< what is added to it in the limit of bright colours
+#define LEAK 0.02f        ///< of a dim colour
+#define LEAK_BRIGHT 0.14f ///< what is added to it in the limit of bright colours
 #define LEAK_HALF 3.0f    ///< brightness above 1 at which half of LEAK_BRIGHT is added
 
 /// The curve and the encoding as one table over sqrt(x / CURVE_MAX): the curve is slow and smooth.
@@ -114,7 +114,7 @@ void tonemap_write(const Preview *preview, uint8_t *rgb) {
         float s = (float)i / (CURVE_COUNT - 1), x = s * s * CURVE_MAX;
         float f = x * (1 - 0.4f * expf(-x / 0.06f));
         float over = maxf(f - shoulder, 0) / rest;
-        curve[i] = srgb_encode(f < shoulder ? f : shoulder + rest * over / (1 + over));
+        curve[i] = srgb_encode(f < shoulder ? f : shoulder + rest * (1 - powf(1 + over / 0.75f, -0.75f)));
     }
 
     size_t count = (size_t)preview->def.width * (size_t)preview->def.height;

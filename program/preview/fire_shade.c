@@ -26,8 +26,9 @@
 // glows. It is the hotter the more heat is released around it (core) and the further it is from the edge (strong): so a
 // flame of one or two sheets has a pale core, too.
 //
-// Soot lies in threads, which are denser and cooler than what is between them. So a sheet in front hides much of what burns
-// behind it, and a body of many sheets does not add up to one flat yellow. Soot thins out towards the tips.
+// Soot is clear and hot in threads, the creases of a noise, and denser and cooler in the folds between them. So a sheet in
+// front hides much of what burns behind it, and a body of many sheets does not add up to one flat yellow. Soot thins out
+// towards the tips.
 
 #include "preview/internal.h"
 
@@ -39,7 +40,7 @@
 #define EDDY_RATE 8.0f   ///< 1/s, eddies that pass a height
 #define EDDY_WIDE 0.014f ///< m across
 #define EDDY_FINE 0.006f
-#define EDDY_THREAD 0.0062f ///< of the soot's threads
+#define EDDY_THREAD 0.0085f ///< of the soot's threads
 #define THREAD_WARP 0.01f   ///< m, by which wide eddies bend them
 #define SWAY_WIDE 0.1f      ///< m, of the eddies that bend whole tongues
 #define SWAY_SLOPE 0.35f    ///< m aside per m above the paper
@@ -49,11 +50,13 @@
 #define SMOKE_EDDY 0.028f
 #define SMOKE_SPEED 0.5f ///< m/s, at which they rise
 
-#define FLAME_COOL 1400.0f ///< K
-#define FLAME_HOT 2050.0f
-#define FLAME_DIM 0.3f ///< radiance of a thick flame at its coolest and its hottest
-#define FLAME_BRIGHT 6.2f
-#define FLAME_BAKED 3.7f        ///< radiance of what is 1 where gas is baked
+#define FLAME_COOL 1200.0f ///< K
+#define FLAME_HOT 2000.0f
+#define FLAME_DIM 0.26f ///< radiance of a thick flame at its coolest and its hottest
+#define FLAME_BRIGHT 6.4f
+#define FLAME_CAST 1900.0f      ///< K, colour of the light that they cast
+#define FLAME_THROWN 384.0f     ///< 1/m, its luminance
+#define FLAME_BAKED 3.0f        ///< radiance of what is 1 where gas is baked
 #define SOOT_DENSE 195.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
 #define BLUE_DENSE 4.2f         ///< 1/m: radiance of the root per metre
 #define BLUE_ENDS 0.008f        ///< m
@@ -137,7 +140,10 @@ static Float3 flame_colour(const Fire *fire, float hot) {
     return float3_mix(fire->colours[i], fire->colours[i + 1], x - (float)i);
 }
 
-Float3 fire_emission(const Preview *preview) { return float3_scale(flame_colour(&preview->fire, 1), 62.0f); }
+Float3 fire_emission(const Preview *preview) {
+    const Float3 glow = blackbody_glow(preview->blackbody, FLAME_CAST);
+    return float3_scale(glow, FLAME_THROWN / float3_luminance(glow));
+}
 
 float fire_share(const Fire *fire, size_t at) {
     const FireCell *cell = &fire->cells[at];
@@ -190,16 +196,16 @@ static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float 
     const float foot = rise + 0.0012f * fine.d + 0.0016f * wide.d;
     float soot = stepf(0, SOOT_FULL, foot);
 
-    // threads are denser and cooler than what is between them
+    // threads are clear and hot, what is between them is denser and cooler
     const Float3 bent =
         float3_mad(p, float3(wide.b + 0.2f * fine.b, wide.a + 0.2f * fine.a, 0), fire->scale * THREAD_WARP);
     Noise thread = {0, 0, 0, 0};
-    if (soot > 0) thread = eddies(fire, bent, passed, sqrtf(fire->scale) * EDDY_THREAD, 5.5f * sqrtf(fire->scale));
-    float clear = stepf(-0.35f, 0.45f, 0.15f * (wide.d + fine.d) + 0.9f * torn * thread.a);
+    if (soot > 0) thread = eddies(fire, bent, passed, sqrtf(fire->scale) * EDDY_THREAD, 3.4f * sqrtf(fire->scale));
+    float clear = stepf(-0.5f, 0.6f, 0.15f * (wide.d + fine.d) + torn * (0.57f - 3.0f * fabsf(thread.a)));
 
     float core = stepf(0.35f, 0.7f, cell->flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
-    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.19f * core + 0.72f * clear - 0.14f * tip - 0.12f;
+    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.24f * core + 0.74f * clear - 0.14f * tip - 0.16f;
     hot -= FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));
 
     soot *= soot * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);

@@ -106,7 +106,7 @@ void preview_flame_shares(const PreviewDef *def, const PreviewLayers *layers, co
         if (p[0] < 200 || p[1] < 110 || fire < 0.5f * float3_luminance(float3_load(layers->beauty[i]))) continue;
         flame++;
         pale += p[1] > 225 && p[2] > 150;
-        lemon += p[0] > 250 && p[1] > 225 && p[2] < 110;
+        lemon += p[0] > 247 && p[1] > 225 && p[2] < 110;
     }
 
     const bool enough = flame >= FEWEST;

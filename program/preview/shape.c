@@ -121,8 +121,8 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
 // rises along them cools them most below, and a limb shows only the scale's peaks, which are cooler. A glow is wide, so
 // a film that is set for what it lights would show it as a white disc: it is drawn as bright as lets its colours differ.
 
-#define SHAPE_GAIN 0.12f
-#define SHAPE_MIDDLE 210.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
+#define SHAPE_GAIN 0.122f
+#define SHAPE_MIDDLE 170.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
 #define SHAPE_LIMB 190.0f   ///< K, by which the limb is cooler than the middle
 #define SHAPE_BELOW 45.0f   ///< K, by which what faces down is cooler than the middle
 

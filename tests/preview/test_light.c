@@ -48,6 +48,23 @@ static PreviewDef at_night(void) {
     return def;
 }
 
+/// Firelight on what is white is amber, as a camera that is balanced for lamps sees 1900 K: with the moon's blue it stays
+/// warm. As daylight's white sees it, it was 1, 0.28, 0.01: red, and pink under the moon.
+TEST(firelight_is_warm) {
+    static float dark[W * H][3], lit[W * H][3];
+    static Ball ball;
+    const SingeSurface nothing = {0};
+    const PreviewDef def = at_night();
+    float sum[3] = {0, 0, 0};
+    ball_make(&ball, -0.07f, 0, 0.1f, 0.03f, 4e6f, 0);
+    see(&def, &nothing, NULL, dark), see(&def, &nothing, &ball.gas, lit);
+    for (int x = W / 2; x < W / 2 + 20; x++)
+        for (int c = 0; c < 3; c++) sum[c] += lit[H / 2 * W + x][c] - dark[H / 2 * W + x][c];
+    print_message("firelight 1, %.3f, %.3f\n", (double)(sum[1] / sum[0]), (double)(sum[2] / sum[0]));
+    assert_true(sum[1] > 0.34f * sum[0] && sum[1] < 0.46f * sum[0]);
+    assert_true(sum[2] > 0.04f * sum[0] && sum[2] < 0.13f * sum[0]);
+}
+
 /// A sheet between the flame and the table: the table's light is that of the open times what comes through. An eighth
 /// of it is the bar for an opaque sheet, and a sheet that lets half through breaks it.
 TEST(a_sheet_shadows_the_light_of_a_flame) {

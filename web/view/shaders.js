@@ -437,14 +437,14 @@ out vec4 colour;
 float curve(float x) {
     float f = x * (1.0 - 0.4 * exp(-x / 0.06));
     float over = max(f - 0.6, 0.0) / 0.4;
-    f = f < 0.6 ? f : 0.6 + 0.4 * over / (1.0 + over);
+    f = f < 0.6 ? f : 0.6 + 0.4 * (1.0 - pow(1.0 + over / 0.75, -0.75));
     return f <= 0.0031308 ? 12.92 * f : 1.055 * pow(f, 1.0 / 2.4) - 0.055;
 }
 void main() {
     vec3 c = texture(map, at).rgb * exposure + 0.14 * texture(halo, at).rgb + 0.10 * texture(glare, at).rgb;
     vec2 d = (at - 0.5) * vec2(resolution.x / resolution.y, 1.0);
     c *= 1.0 - vignette * smoothstep(0.35, 1.05, length(d));
-    float over = max(max(c.r, max(c.g, c.b)) - 1.0, 0.0), leak = 0.03 + 0.16 * over * over / (over * over + 9.0);
+    float over = max(max(c.r, max(c.g, c.b)) - 1.0, 0.0), leak = 0.02 + 0.14 * over * over / (over * over + 9.0);
     c = mix(c, vec3((c.r + c.g + c.b) / 3.0), leak);
     float dither = fract(52.9829 * fract(dot(gl_FragCoord.xy, vec2(0.06711, 0.00584)))) - 0.5;
     colour = vec4(curve(c.r), curve(c.g), curve(c.b), 1.0) + dither / 255.0;

@@ -14,7 +14,7 @@ export function noiseBytes() {
     return { side, bytes };
 }
 
-/** Planck's law by the eye's three curves (blackbody.c), linear Rec. 709. */
+/** Planck's law by the eye's three curves (blackbody.c), linear Rec. 709 as a camera balanced for 3400 K sees it. */
 function blackbody(kelvin) {
     const lobe = (x, centre, left, right) => Math.exp(-0.5 * ((x - centre) * (x < centre ? left : right)) ** 2);
     const xyz = (t) => {
@@ -29,8 +29,8 @@ function blackbody(kelvin) {
     };
     const [X, Y, Z] = xyz(kelvin), reference = xyz(1200)[1], x = X / Y, z = Z / Y;
     const fade = Math.min(Math.max((kelvin - 780) / 120, 0), 1), strength = (Y / reference) ** 0.55 * fade * fade * (3 - 2 * fade);
-    return [3.2406 * x - 1.5372 - 0.4986 * z, -0.9689 * x + 1.8758 + 0.0415 * z, 0.0557 * x - 0.204 + 1.057 * z]
-        .map((c) => Math.max(c, 0) * strength);
+    const seen = [2.9717 * x - 1.8473 - 0.4908 * z, -1.0277 * x + 2.0626 + 0.0127 * z, 0.1167 * x - 0.3019 + 2.3811 * z].map((c) => Math.max(c, 0));
+    return seen.map((c) => (c * strength) / (0.2126 * seen[0] + 0.7152 * seen[1] + 0.0722 * seen[2]));
 }
 
 /** Row 0: embers from 780 K to 2100 K; row 1: flames from their coolest to their hottest. Four values each. */
