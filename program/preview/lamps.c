@@ -24,8 +24,9 @@ typedef struct Cluster {
 } Cluster;
 
 /// Embers are drawn on the film's scale, which compresses bright parts (blackbody.c). The light they cast is not
-/// compressed, and an eye in the dark sees it better than a camera set for daylight.
+/// compressed, and an eye in the dark sees it better than a camera set for daylight. Flames dazzle it.
 static const float EMBER_CAST = 5;
+static const float DAZZLED = 0.3f; ///< the share of it that is left beside flames that light far more
 
 /// A flame is drawn a few times as bright as white paper, so that its colour stays; in a room by day it is some thirty times
 /// as bright (a candle of 12 cd and 4 cm2 has 3e4 cd/m2, white paper at 1000 lx 3e2). At night the exposure makes up for
@@ -94,8 +95,17 @@ static void add_light(PreviewScene *scene, Float3 position, Float3 strength, flo
     lights->power[k] = float3_luminance(strength);
 }
 
-/// Turns the strongest clusters into lights until there are `limit`, and scales them to the total of all clusters.
-static void choose_lights(PreviewScene *scene, Cluster *clusters, int limit, float softness, float extent) {
+/// Scales the lights from `first` on.
+static void scale_lights(PreviewScene *scene, int first, float factor) {
+    for (int i = first; i < scene->light_count; i++) {
+        for (int c = 0; c < 3; c++) scene->lights.strength[c][i] *= factor;
+        scene->lights.power[i] *= factor;
+    }
+}
+
+/// Turns the strongest clusters into lights until there are `limit`, and scales them to the total of all clusters, which
+/// it returns.
+static float choose_lights(PreviewScene *scene, Cluster *clusters, int limit, float softness, float extent) {
     float total = 0, kept = 0;
     int first = scene->light_count;
     for (int i = 0; i < CELLS; i++) total += clusters[i].weight;
@@ -112,10 +122,8 @@ static void choose_lights(PreviewScene *scene, Cluster *clusters, int limit, flo
         cluster->weight = 0;
     }
 
-    for (int i = first; i < scene->light_count && kept > 0; i++) {
-        for (int c = 0; c < 3; c++) scene->lights.strength[c][i] *= total / kept;
-        scene->lights.power[i] *= total / kept;
-    }
+    if (kept > 0) scale_lights(scene, first, total / kept);
+    return total;
 }
 
 void light_gather(Preview *preview) {
@@ -140,6 +148,7 @@ void light_gather(Preview *preview) {
     }
 
     const Fire *fire = &preview->fire;
+    float flaming = 0;
     if (fire->visible) {
         Cluster flames[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
         float volume = fire->cell * fire->cell * fire->cell;
@@ -157,15 +166,17 @@ void light_gather(Preview *preview) {
         float side = float3_length(float3_sub(fire->high, fire->low)) / GRID;
         // each stands for flames all around it: near to it they are not as bright as a point
         const float square = side * side;
-        choose_lights(scene, flames, scene->light_count + FLAME_LIGHTS, 0.4f * square + 1e-4f,
-                      1.5f * sqrtf(0.1f * square + 1e-4f));
+        flaming = choose_lights(scene, flames, scene->light_count + FLAME_LIGHTS, 0.4f * square + 1e-4f,
+                                1.5f * sqrtf(0.1f * square + 1e-4f));
     }
 
     Cluster embers[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
     for (uint32_t t = 0; t < scene->triangle_count; t++) gather_triangle(preview, scene->triangles[t], embers);
     float cell = float3_length(float3_sub(scene->high, scene->low)) / GRID;
     const float softness = 0.02f * cell * cell + 4e-6f;
-    choose_lights(scene, embers, LIGHT_LIMIT, softness, 1.5f * sqrtf(softness));
+    const int first = scene->light_count;
+    const float glow = choose_lights(scene, embers, LIGHT_LIMIT, softness, 1.5f * sqrtf(softness));
+    scale_lights(scene, first, mixf(1, DAZZLED, flaming / maxf(flaming + glow, 1e-12f)));
 }
 
 // ---- their light

@@ -175,6 +175,39 @@ TEST(char_throws_the_light_that_is_seen) {
     }
 }
 
+/// Beside flames, which dazzle, embers throw a third of the light that they throw in the dark: all of it made rooms red.
+TEST(flames_outshine_embers) {
+    static Ball ball;
+    const PreviewDef def = at_night();
+    Float4 q;
+    float charred[4] = {0.4f, 0.4f, 0.4f, 0.4f}, ash[4] = {0};
+    quad_make(&q, 0.02f, 0);
+    for (int i = 0; i < 4; i++) q.burn[i] = 0.6f, q.temperature[i] = q.peak[i] = 950, q.rate[i] = 1;
+    q.surface.mass = q.surface.char_fraction = charred, q.surface.ash_fraction = ash;
+    ball_make(&ball, -0.07f, 0, 0.1f, 0.03f, 4e6f, 0);
+    float red[2] = {0, 0};
+
+    for (int k = 0; k < 2; k++) {
+        Preview *preview = NULL;
+        uint8_t *frame;
+        size_t size;
+        uint32_t lights;
+        assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+        assert_int_equal(preview_set_gas(preview, k ? &ball.gas : NULL, NULL), SINGE_OK);
+        assert_int_equal(preview_pack(preview, &q.surface, 0, &frame, &size, NULL), SINGE_OK);
+        memcpy(&lights, frame + 16, sizeof lights);
+        for (uint32_t i = 0; i < lights; i++) {
+            float strength[3];
+            memcpy(strength, frame + 80 + 32 * i + 16, sizeof strength);
+            if (strength[1] < 0.2f * strength[0]) red[k] += strength[0]; // no flame's
+        }
+        free(frame);
+        preview_destroy(preview);
+    }
+    print_message("embers throw %.3g in the dark, %.3g beside flames\n", (double)red[0], (double)red[1]);
+    assert_true(red[0] > 0 && red[1] > 0.25f * red[0] && red[1] < 0.5f * red[0]);
+}
+
 /// A glossy ground mirrors a glowing ball: the camera looks at its image. A dull ground, as all were, breaks the bar.
 TEST(a_glossy_ground_mirrors_embers) {
     static float beauty[W * H][3];
