@@ -41,6 +41,7 @@
 #define EDDY_WIDE 0.014f ///< m across
 #define EDDY_FINE 0.006f
 #define EDDY_THREAD 0.0085f ///< of the soot's threads
+#define THREAD_BLUR 0.0016f ///< m, blur from which on they are wider
 #define THREAD_WARP 0.01f   ///< m, by which wide eddies bend them
 #define SWAY_WIDE 0.1f      ///< m, of the eddies that bend whole tongues
 #define SWAY_SLOPE 0.35f    ///< m aside per m above the paper
@@ -201,7 +202,9 @@ static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float 
         float3_mad(p, float3(wide.b + 0.2f * fine.b, wide.a + 0.2f * fine.a, 0), fire->scale * THREAD_WARP);
     Noise thread = {0, 0, 0, 0};
     if (soot > 0) thread = eddies(fire, bent, passed, sqrtf(fire->scale) * EDDY_THREAD, 3.4f * sqrtf(fire->scale));
-    float clear = stepf(-0.5f, 0.6f, 0.15f * (wide.d + fine.d) + torn * (0.57f - 3.0f * fabsf(thread.a)));
+    const float sharp = maxf(3 * minf(THREAD_BLUR / maxf(blur, 1e-6f), 1), 1.7f); // thin ones would look like combs
+    float clear =
+        stepf(-0.5f, 0.6f, 0.15f * (wide.d + fine.d) + torn * (0.57f - 0.17f * (3 - sharp) - sharp * fabsf(thread.a)));
 
     float core = stepf(0.35f, 0.7f, cell->flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);

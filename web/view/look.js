@@ -287,6 +287,7 @@ const float EDDY_RATE = 8.0;
 const float EDDY_WIDE = 0.014;
 const float EDDY_FINE = 0.006;
 const float EDDY_THREAD = 0.0085;
+const float THREAD_BLUR = 0.0016;
 const float THREAD_WARP = 0.01;
 const float SWAY_WIDE = 0.1;
 const float SWAY_SLOPE = 0.35;
@@ -363,7 +364,9 @@ void shade_flame(FireCell cell, vec3 p, float rise, float passed, float slope,
         float3_mad(p, vec3(wide.b + 0.2 * fine.b, wide.a + 0.2 * fine.a, 0.0), fireScale * THREAD_WARP);
     Noise thread = Noise(0.0, 0.0, 0.0, 0.0);
     if (soot > 0.0) thread = eddies(bent, passed, sqrt(fireScale) * EDDY_THREAD, 3.4 * sqrt(fireScale));
-    float clear = stepf(-0.5, 0.6, 0.15 * (wide.d + fine.d) + torn * (0.57 - 3.0 * abs(thread.a)));
+    float sharp = max(3.0 * min(THREAD_BLUR / max(blur, 1e-6), 1.0), 1.7);
+    float clear =
+        stepf(-0.5, 0.6, 0.15 * (wide.d + fine.d) + torn * (0.57 - 0.17 * (3.0 - sharp) - sharp * abs(thread.a)));
     float core = stepf(0.35, 0.7, cell.flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0.0, 0.7, edge), low = 1.0 - stepf(0.1, 0.9, tall);
     float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.24 * core + 0.74 * clear - 0.14 * tip - 0.16;
