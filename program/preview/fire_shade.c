@@ -324,8 +324,8 @@ Matter fire_smoke_at(const Fire *fire, Float3 p) {
     const Noise small = eddies(fire, moved, passed + 0.4f * wide.c, eddy / 2.6f, 0.9f);
     moved = float3_mad(moved, float3(small.a, small.b, small.c), 0.5f * warp);
     const FireCell cell = cell_at(fire, moved, NULL);
-    const float fold = 1.7f - 2.1f * fabsf(wide.d + 0.5f * small.d);
-    const float dense = cell.smoke * maxf(fold + 0.7f * small.a, 0);
+    const float fold = maxf(1.15f - 2.1f * fabsf(wide.d + 0.5f * small.d) + 0.3f * small.a, 0);
+    const float dense = cell.smoke * 2.2f * fold * fold * fold;
 
     // soot and tar scatter about a third, in all directions
     Float3 lit = float3_mad(float3_scale(fire->daylight, 0.35f), float3(1, 0.5f, 0.16f), 0.35f * cell.glow);

@@ -398,8 +398,8 @@ Matter fire_smoke_at(vec3 p) {
     Noise small = eddies(moved, passed + 0.4 * wide.c, eddy / 2.6, 0.9);
     moved = float3_mad(moved, vec3(small.a, small.b, small.c), 0.5 * warp);
     FireCell cell = cell_at(moved);
-    float fold = 1.7 - 2.1 * abs(wide.d + 0.5 * small.d);
-    float dense = cell.smoke * max(fold + 0.7 * small.a, 0.0);
+    float fold = max(1.15 - 2.1 * abs(wide.d + 0.5 * small.d) + 0.3 * small.a, 0.0);
+    float dense = cell.smoke * 2.2 * fold * fold * fold;
     vec3 lit = float3_mad(float3_scale(fireDaylight, 0.35), vec3(1.0, 0.5, 0.16), 0.35 * cell.glow);
     return Matter(float3_scale(lit, dense), dense);
 }
