@@ -33,6 +33,7 @@ export class Renderer {
     private scene = new Scene();
     private shadowScene = new Scene();
     private lampView = new Matrix4();
+    private moved = true; // what casts shadows, or the lamp
     private ball: Mesh;
     private ember: Mesh<SphereGeometry, RawShaderMaterial>;
     private where: Where = placeOf("table");
@@ -78,12 +79,13 @@ export class Renderer {
             fireLights: { value: Array.from({ length: 6 }, () => new Vector4()) }, fireColour: { value: new Vector3(1, 0.46, 0.13) },
         };
 
-        const paperUniforms = { ...this.shared, printMap: { value: white() }, shadow: { value: 0 }, transmittance: { value: FULL_PAPER }, tint: { value: new Vector3(1, 1, 1) } };
+        const paperUniforms = { ...this.shared, printMap: { value: white() }, transmittance: { value: FULL_PAPER }, tint: { value: new Vector3(1, 1, 1) } };
         const paper = material(glsl.PAPER_VERTEX, glsl.paper(glsl.LAMP), paperUniforms);
         paper.side = DoubleSide;
         this.paper = new Mesh(new BufferGeometry(), paper);
         this.paper.frustumCulled = false;
-        const caster = material(glsl.PAPER_VERTEX, glsl.paper(glsl.LAMP), { ...paperUniforms, shadow: { value: 1 }, viewProjection: { value: this.lampView }, shadowMap: { value: null } });
+        const caster = material(glsl.PAPER_VERTEX, glsl.paper(glsl.LAMP), { ...paperUniforms, viewProjection: { value: this.lampView }, shadowMap: { value: null } });
+        caster.defines = { SHADOW: 1 };
         caster.side = DoubleSide;
         const cast = new Mesh(this.paper.geometry, caster);
         cast.frustumCulled = false;
@@ -159,6 +161,7 @@ export class Renderer {
     // ---- a frame's data
 
     show(frame: Frame): void {
+        this.moved = true;
         this.setMesh(frame);
         this.setFire(frame);
         (this.airborneBuffer.array as Float32Array).set(frame.airborne);
@@ -186,6 +189,7 @@ export class Renderer {
     /** Sets the lamp, and what else the scene has. */
     setPlace(place: Place): void {
         this.where = placeOf(place);
+        this.moved = true;
         this.ball.visible = !!this.where.ball;
         this.moveEmber(0);
         LAMP.at.copy(this.where.upright ? LAMPS.hanging : LAMPS.lying);
@@ -282,9 +286,12 @@ export class Renderer {
         (this.shared.eye!.value as Vector3).copy(camera.position);
         (this.passes.fire.uniforms.inverse_!.value as Matrix4).copy(this.shared.viewProjection!.value as Matrix4).invert();
 
-        gl.setRenderTarget(this.shadowTarget);
-        gl.clear(true, true, false);
-        gl.render(this.shadowScene, this.lamp);
+        if (this.moved) { // a turned view has the same shadows
+            this.moved = false;
+            gl.setRenderTarget(this.shadowTarget);
+            gl.clear(true, true, false);
+            gl.render(this.shadowScene, this.lamp);
+        }
         gl.setRenderTarget(this.sceneTarget);
         gl.setClearColor(0x000000, 1);
         gl.clear(true, true, false);

@@ -107,14 +107,14 @@ void main() {
     gl_Position = viewProjection * vec4(position, 1.0);
 }`;
 
-/** The sheet in this light: GLSL with lampSeen, lit, shine and mirrored. */
+/** The sheet in this light: GLSL with lampSeen, lit, shine and mirrored. With SHADOW defined, only where it is. */
 export const paper = (light) => /* glsl */ `${NOISE}${GLOW}${light}
 in vec3 vPosition, vNormal, vRest;
 in vec2 vUv;
 in vec3 vLeaf;
 in vec4 vHeat, vLook;
 uniform sampler2D printMap;
-uniform float time, shadow; // shadow: 1 while the lamp's map is drawn
+uniform float time;
 uniform float transmittance;
 uniform vec3 tint;
 out vec4 colour;
@@ -131,9 +131,12 @@ void main() {
     vec4 heat = max(vHeat, 0.0), look = max(vLook, 0.0);
     PaperState state = PaperState(vRest, heat.x, heat.y, min(look.x, 1.0), heat.z, look.y, vLeaf.z, min(look.z, 1.0), max(vLeaf.x, 0.0), heat.w, max(vLeaf.y, 0.0), look.w, 0.0, 0.0);
     Point point = Point(vPosition, normalize(vNormal), normalize(eye - vPosition), vec3(0.0), vec3(0.0), max(length(dFdx(vPosition)), length(dFdy(vPosition))), transmittance, 0.015, 14.0, 0.0);
+#ifdef SHADOW
+    if (state.burn > PAPER_WHOLE && is_hole(state, shade_paper_bend(state, point.footprint), point.footprint)) discard;
+    colour = vec4(0.0);
+#else
     Bent bent = shade_paper_bend(state, point.footprint);
     if (state.burn > PAPER_WHOLE && is_hole(state, bent, point.footprint)) discard;
-    if (shadow > 0.5) { colour = vec4(0.0); return; }
     if (dot(point.normal, point.view) < 0.0) point.normal = -point.normal;
 
     vec3 fresh = vec3(0.86, 0.852, 0.832) * tint * texture(printMap, vUv, -0.7).rgb * (1.0 + 0.018 * paper_noise(askew(state.rest), 2.4, point.footprint, 5.0));
@@ -150,6 +153,7 @@ void main() {
     vec3 c = point.albedo * lit(vPosition, point.normal, point.transmission, seen) + point.glow;
     c += point.gloss * shine(vPosition, point.normal, point.view, point.shininess, seen) + light_mirrored(point) * mirrored(reflect(-point.view, point.normal));
     colour = vec4(c, 1.0);
+#endif
 }`;
 
 export const PLAIN_VERTEX = /* glsl */ `

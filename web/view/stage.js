@@ -272,7 +272,7 @@ export class Stage {
         this.fire = true;
         this.programs = {
             wood: this.program(glsl.PLAIN_VERTEX, GROUND_WOOD), plain: this.program(glsl.PLAIN_VERTEX, GROUND_PLAIN), shape: this.program(glsl.PLAIN_VERTEX, SHAPE),
-            paper: this.program(SHEET_VERTEX, glsl.paper(DAY)), field: this.program(SHEET_VERTEX, FIELD), slice: this.program(glsl.PLAIN_VERTEX, SLICE), grid: this.program(glsl.PLAIN_VERTEX, FIELD_GROUND),
+            paper: this.program(SHEET_VERTEX, glsl.paper(DAY)), caster: this.program(SHEET_VERTEX, `#define SHADOW\n${glsl.paper(DAY)}`), field: this.program(SHEET_VERTEX, FIELD), slice: this.program(glsl.PLAIN_VERTEX, SLICE), grid: this.program(glsl.PLAIN_VERTEX, FIELD_GROUND),
             strand: this.program(STRAND_VERTEX, STRAND), flying: this.program(glsl.AIRBORNE_VERTEX, glsl.airborne(DAY)), fire: this.program(glsl.FULL_VERTEX, glsl.FIRE), merge: this.program(glsl.FULL_VERTEX, glsl.MERGE), bright: this.program(glsl.FULL_VERTEX, glsl.BRIGHT),
             blur: this.program(glsl.FULL_VERTEX, glsl.BLUR), film: this.program(glsl.FULL_VERTEX, glsl.FILM), copy: this.program(glsl.FULL_VERTEX, COPY),
         };
@@ -505,19 +505,20 @@ export class Stage {
         const shared = {
             viewProjection: matrix, eye: camera.eye, noiseMap: this.noise, glowMap: this.glow, time: frame.time % 1000, sunTo: room.towards, sunLight: room.sun,
             ambient: room.ambient, lampView: sun.matrix, shadowMap: this.shadowMap, soft, lampPlace: places, lampStrength: strengths, lampCount: frame.lightCount,
-            groundColour: room.ground_colour, background: room.background, reach, stone: room.ground === 1 ? 1 : 0, shadow: 0,
+            groundColour: room.ground_colour, background: room.background, reach, stone: room.ground === 1 ? 1 : 0,
         };
 
         if (this.layer === "contact") this.findContact();
         gl.disable(gl.BLEND);
         gl.disable(gl.CULL_FACE);
         gl.enable(gl.DEPTH_TEST);
-        if (paper) {
+        if (paper && this.shadowOf !== frame) { // a turned view has the same shadows
+            this.shadowOf = frame;
             gl.bindFramebuffer(gl.FRAMEBUFFER, this.shadowFrame);
             gl.viewport(0, 0, SHADOW, SHADOW);
             gl.clear(gl.DEPTH_BUFFER_BIT);
-            const cast = { ...shared, viewProjection: sun.matrix, shadowMap: null, shadow: 1 };
-            this.drawSheets("paper", cast);
+            const cast = { ...shared, viewProjection: sun.matrix, shadowMap: null };
+            this.drawSheets("caster", cast);
             this.drawShapes(cast);
         }
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.many);
@@ -643,7 +644,7 @@ export class Stage {
         const { gl, sheets } = this, layer = LAYERS[this.layer === "gas" ? "char" : this.layer];
         for (const { sheet, first, count } of sheets.runs) {
             const look = this.pictures[sheet] ?? { texture: this.white, colour: [1, 1, 1], transmittance: 0.22 };
-            const more = program === "paper" ? { printMap: look.texture, tint: look.colour, transmittance: look.transmittance }
+            const more = program !== "field" ? { printMap: look.texture, tint: look.colour, transmittance: look.transmittance }
                 : { colours: this.ramps[this.layer === "gas" ? "char" : this.layer], range: [layer.index, layer.low, layer.high] };
             this.use(this.programs[program], { ...shared, ...more });
             gl.bindVertexArray(sheets.array);
@@ -671,6 +672,7 @@ export class Stage {
 
     /** The triangles of a shape that is a mesh, with flat normals where edges are sharp. */
     addSolid(i, buffer) {
+        this.shadowOf = null;
         const [vertices, triangles] = new Uint32Array(buffer, 0, 2), p = new Float32Array(buffer, 8, 3 * vertices), index = new Uint32Array(buffer, 8 + 12 * vertices, 3 * triangles);
         const at = (k) => [p[3 * k], p[3 * k + 1], p[3 * k + 2]], sums = new Float32Array(3 * vertices), flat = [];
         for (let t = 0; t < index.length; t += 3) {
