@@ -3,11 +3,12 @@ import { MOUSE, Plane, Raycaster, TOUCH, Triangle, Vector2, Vector3 } from "thre
 import { loadFiles, type Files } from "singe";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { AIRBORNE_FLOATS } from "../view/airborne.js";
+import { Pixels } from "../view/pixels.js";
 import { FLOATS } from "./fields.js";
 import { glbOf } from "./glb.js";
 import { MARKS, type Frame, type FromWorker, type Shape, type ToWorker } from "./messages.js";
 import { Print } from "./print.js";
-import { Renderer } from "./renderer.js";
+import { CONTEXT, Renderer } from "./renderer.js";
 import { placed } from "./shape.js";
 import { FireSound } from "./sound.js";
 import { PLACES, placeOf, type Place, type Point } from "./places.js";
@@ -45,6 +46,7 @@ let marked: number[] = []; // lines written, at each mark of the worker
 let grabbed: { plane: Plane; to: Point } | null = null;
 let keyAt: Point = [0, -0.02, 0.002], keyHeld = false;
 let last = performance.now(), costOfStep = 4, speed = 1, motion = 0; // motion: s, of the last frame
+let scale = 0, stale = false, unseen = false, burns = false; // what is drawn, and what is not yet
 
 // ---- what the page needs
 
@@ -60,20 +62,26 @@ const SIMD = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123
 function lacking(): [string, string] | null {
     if (typeof WebAssembly === "undefined" || !WebAssembly.validate(SIMD))
         return ["This browser cannot compute the fire.", "Singe needs WebAssembly with simd128, which browsers have had since 2021 (Safari since 2023). An update brings it."];
-    const gl = document.createElement("canvas").getContext("webgl2");
+    const gl = canvas.getContext("webgl2", CONTEXT);
     if (!gl) return ["This browser cannot draw the fire.", "Singe needs WebGL 2. It may be switched off, or the card's driver may be blocked: see the browser's page about its graphics."];
     if (!gl.getExtension("EXT_color_buffer_float")) return ["This graphics card cannot draw the fire.", "Singe needs render targets of floating point (EXT_color_buffer_float)."];
     return null;
 }
 
+// it loads the core while this thread prepares the card
+const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+send({ kind: "load", wasm: new URL("./singe.wasm", import.meta.url).href });
 const lack = lacking();
-let renderer: Renderer, worker: Worker, controls: OrbitControls;
-if (lack) stop(...lack);
-else start();
+let renderer: Renderer, controls: OrbitControls, pixels: Pixels;
+if (!lack) start();
+else {
+    worker.terminate();
+    stop(...lack);
+}
 
 function start(): void {
     renderer = new Renderer(canvas);
-    renderer.scale = Math.min(devicePixelRatio, 1.5);
+    pixels = new Pixels(canvas.getContext("webgl2")!);
     controls = new OrbitControls(renderer.camera, canvas);
     controls.mouseButtons = { LEFT: null, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.ROTATE };
     controls.touches = { ONE: null, TWO: TOUCH.DOLLY_ROTATE };
@@ -91,12 +99,10 @@ function start(): void {
     });
     canvas.addEventListener("webglcontextrestored", () => {
         say("The picture is back");
-        stale = true;
+        stale = unseen = true;
     });
-    worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
     worker.onmessage = ({ data }: MessageEvent<FromWorker>) => hear(data);
     worker.onerror = () => stop("The simulation could not be loaded.", "Its worker failed to start. A reload may help; so may a browser of 2023 or later.");
-    send({ kind: "load", wasm: new URL("./singe.wasm", import.meta.url).href });
     printOwn();
     writeSettings();
     chooseTool(settings.place === "blank" ? "pen" : "match", true);
@@ -132,8 +138,8 @@ function place(): void {
 const upright = () => placeOf(shape ? "table" : settings.place).upright;
 
 function resize(): void {
-    renderer.resize(innerWidth, innerHeight);
-    draw();
+    scale = 0;
+    stale = true;
 }
 
 // ---- what is printed
@@ -142,7 +148,7 @@ function resize(): void {
 function printNow(picture: HTMLImageElement | ImageBitmap | null): void {
     print.set(picture, shape ? MESH_SIZE : placeOf(settings.place).sheets[0]!.size);
     renderer.print(print.canvas);
-    draw();
+    stale = true;
 }
 
 /** The pen goes on to what is under a place of the screen. */
@@ -203,12 +209,9 @@ function hear(message: FromWorker): void {
     sound?.fire.hear(message.burning, message.tears, motion);
     made += message.steps;
     if (message.steps) costOfStep += 0.2 * (message.ms / message.steps - costOfStep);
-    if (!stepping) {
-        renderer.show(message);
-        showFacts(message);
-        draw();
-    }
-    canvas.classList.add("ready");
+    unseen = true;
+    if (!paused) stale = true;
+    else if (!stepping) draw();
     element<HTMLButtonElement>("#undo").disabled = !message.marks;
     waiting.splice(0).forEach((resolve) => resolve());
 }
@@ -238,25 +241,33 @@ function tick(now: number): void {
     } else if (paused) {
         last = now;
     }
-    if (moved || stale) draw();
+    stale ||= moved;
+    if (stale && pixels.free) draw();
+    else if (pixels.rests(now)) draw(true);
 }
 
-let slow = 0, stale = false, drawings = 0, made = 0;
-function draw(): void {
-    if (!renderer) return;
+let drawings = 0, made = 0;
+/** Draws the newest frame. @param whole in all pixels */
+function draw(whole = false): void {
+    pixels.begin(performance.now(), whole);
     stale = false;
     drawings++;
-    const at = applying && tool === "match" ? target() : keyHeld && tool === "match" ? keyAt : frame?.match ?? null;
-    renderer.setMatch(at);
-    const before = performance.now();
-    renderer.draw();
-    // a card that cannot keep up gets fewer pixels, not a slower fire
-    slow = performance.now() - before > 60 ? slow + 1 : Math.max(0, slow - 1);
-    if (slow > 6 && renderer.scale > 0.3) {
-        renderer.scale = Math.max(0.3, renderer.scale * 0.75);
-        slow = 0;
-        renderer.resize(innerWidth, innerHeight);
+    const wanted = pixels.fixed ?? Math.min(devicePixelRatio, 1.5) * pixels.share;
+    if (wanted !== scale) {
+        scale = wanted;
+        renderer.resize(innerWidth, innerHeight, scale);
     }
+    if (frame && unseen) {
+        unseen = false;
+        renderer.show(frame);
+        showFacts(frame);
+    }
+    renderer.setMatch(applying && tool === "match" ? target() : keyHeld && tool === "match" ? keyAt : frame?.match ?? null);
+    renderer.draw();
+    const begins = !burns && frame !== null && frame.burning > 0;
+    burns = frame !== null && frame.burning > 0;
+    pixels.end(begins ? () => performance.mark("it burns", { detail: frame!.time }) : null);
+    if (frame) canvas.classList.add("ready");
 }
 
 // ---- pointing
@@ -432,7 +443,7 @@ function turn(aside: number, up: number): void {
     if (offset.z > 0.02 && Math.hypot(offset.x, offset.y) > 0.05) camera.position.copy(controls.target).add(offset);
     camera.lookAt(controls.target);
     if (!ring.hidden) showKey();
-    draw();
+    stale = true;
 }
 
 function moveKey(x: number, y: number): void {
@@ -667,7 +678,7 @@ function save(blob: Blob, name: string): void {
 
 let recorder: MediaRecorder | null = null;
 const SAVES: Record<string, () => void> = {
-    png: () => { draw(); canvas.toBlob((blob) => blob && save(blob, "singe.png")); },
+    png: () => { draw(true); canvas.toBlob((blob) => blob && save(blob, "singe.png")); },
     glb: () => print.canvas.toBlob(async (blob) => {
         if (frame && blob) save(new Blob([glbOf(frame, new Uint8Array(await blob.arrayBuffer()))], { type: "model/gltf-binary" }), "singe.glb");
     }),
@@ -689,9 +700,11 @@ const SAVES: Record<string, () => void> = {
         recorder.onstop = () => {
             save(new Blob(parts, { type: "video/webm" }), "singe.webm");
             recorder = null;
+            pixels.held = false;
             button.textContent = "WebM";
         };
         recorder.start();
+        pixels.held = true; // a film has one size
         button.textContent = "Stop";
     },
 };
@@ -730,21 +743,22 @@ Object.assign(globalThis, { page: {
         pause(true);
         return { drawings: drawings - drawnBefore, steps: made - madeBefore };
     },
-    /** ms to draw what is seen: of the page's thread, and until the card has done it. */
-    drawn(times: number): [number, number] {
+    /** ms to show and draw a frame of the worker until the card has done it, the mean of so many. */
+    drawn(times: number): number {
         const gl = canvas.getContext("webgl2")!, wait = () => gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-        renderer.draw();
-        wait();
-        const before = performance.now();
-        for (let i = 0; i < times; i++) renderer.draw();
-        const commanded = performance.now() - before;
-        wait();
-        return [commanded / times, (performance.now() - before) / times];
+        let before = 0;
+        for (let i = -1; i < times; i++) { // the first is not counted
+            if (i === 0) before = performance.now();
+            renderer.show(frame!);
+            renderer.draw();
+            wait();
+        }
+        return (performance.now() - before) / times;
     },
     /** Fewer pixels, for machines without a card. */
-    quality(scale: number): void {
-        renderer.scale = scale;
-        resize();
+    quality(share: number | null): void {
+        pixels.fixed = share;
+        draw();
     },
     get card() { return renderer.card; },
     project: (point: Point) => {

@@ -24,6 +24,8 @@ const FULL_PAPER = 0.22; // light that comes through (preview.h)
 
 const EMBER: Point = [0.62, 0.12, 0.012], EMBER_LIGHT = 0.0012; // a ball of 1300 K
 
+export const CONTEXT: WebGLContextAttributes = { antialias: false, powerPreference: "high-performance", preserveDrawingBuffer: true };
+
 type Uniforms = Record<string, IUniform>;
 
 export class Renderer {
@@ -57,10 +59,10 @@ export class Renderer {
     private airborne: Mesh<InstancedBufferGeometry, RawShaderMaterial>;
     private airborneBuffer = new InstancedInterleavedBuffer(new Float32Array(AIRBORNE_LIMIT * AIRBORNE_FLOATS), AIRBORNE_FLOATS);
     private solid: (albedo: Point, gloss: number) => RawShaderMaterial;
-    scale = 1;
 
+    /** @param canvas whose context has CONTEXT */
     constructor(canvas: HTMLCanvasElement) {
-        this.gl = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance", preserveDrawingBuffer: true });
+        this.gl = new WebGLRenderer({ canvas, context: canvas.getContext("webgl2")!, ...CONTEXT });
         this.gl.autoClear = false;
         this.gl.outputColorSpace = LinearSRGBColorSpace;
         this.camera.up.set(0, 0, 1);
@@ -126,6 +128,13 @@ export class Renderer {
             }),
         };
         this.full.frustumCulled = false;
+
+        // all programs are asked for before one is waited for
+        for (const scene of [this.shadowScene, this.scene]) this.gl.compile(scene, this.camera);
+        for (const one of Object.values(this.passes)) {
+            this.full.material = one;
+            this.gl.compile(this.full, this.fullCamera);
+        }
     }
 
     /** The card's name, to be told in a message. */
@@ -134,8 +143,8 @@ export class Renderer {
         return info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "unknown";
     }
 
-    resize(width: number, height: number): void {
-        const w = Math.max(2, Math.round(width * this.scale)), h = Math.max(2, Math.round(height * this.scale));
+    resize(width: number, height: number, scale: number): void {
+        const w = Math.max(2, Math.round(width * scale)), h = Math.max(2, Math.round(height * scale));
         this.gl.setSize(w, h, false);
         this.sceneTarget.setSize(w, h);
         this.merged.setSize(w, h);

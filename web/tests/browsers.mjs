@@ -3,7 +3,7 @@
 // Chromium is driven by playwright-core. It cannot drive an unchanged Firefox, so that one is spoken to directly in
 // WebDriver BiDi, in a window of Xvfb: without a window Firefox has no WebGL here. Needs node --experimental-websocket.
 import { spawn } from "node:child_process";
-import { existsSync } from "node:fs";
+import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { mkdtemp, rm, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -107,6 +107,37 @@ async function firefoxPage() {
     };
     await page.size(1100, 700);
     return page;
+}
+
+/**
+ * Seconds of processor time, by /proc, of what this process has started: pages' own threads, their workers', of the process
+ * that draws, and in all. A busy machine changes it less than the clock.
+ */
+export function processorTime() {
+    const TICK = 100, time = { page: 0, worker: 0, card: 0, all: 0 };
+    const read = (path) => {
+        const text = readFileSync(path, "utf8"), fields = text.slice(text.lastIndexOf(")") + 2).split(" ");
+        return { name: text.slice(text.indexOf("(") + 1, text.lastIndexOf(")")), parent: Number(fields[1]), spent: (Number(fields[11]) + Number(fields[12])) / TICK };
+    };
+    const processes = new Map();
+    for (const id of readdirSync("/proc").filter((name) => /^\d+$/.test(name)))
+        try { processes.set(Number(id), read(`/proc/${id}/stat`)); } catch { /* it has ended */ }
+    const ours = (id) => id === process.pid || (processes.has(id) && ours(processes.get(id).parent));
+    for (const [id, { parent, spent }] of processes) {
+        if (!ours(parent)) continue;
+        time.all += spent;
+        try {
+            const [, kind] = /--type=([\w-]+)/.exec(readFileSync(`/proc/${id}/cmdline`, "utf8")) ?? [];
+            if (kind === "gpu-process") time.card += spent;
+            if (kind !== "renderer") continue;
+            for (const thread of readdirSync(`/proc/${id}/task`)) {
+                const one = read(`/proc/${id}/task/${thread}/stat`);
+                if (Number(thread) === id) time.page += one.spent;
+                else if (/^DedicatedWorker/.test(one.name)) time.worker += one.spent;
+            }
+        } catch { /* it has ended */ }
+    }
+    return time;
 }
 
 /** The browsers that are here, by name. */

@@ -2,16 +2,17 @@
 import { cssGradient, LAYERS, legendOf, Stage } from "./stage.js";
 import { pick, positionOf, readFrame, sourceOf, vertexValues } from "./frame.js";
 import { Film } from "./webm.js";
+import { Pixels } from "./pixels.js";
 import { add, cross, dot, length, unit } from "./math.js";
 import { readCells } from "./strands.js";
 import { drawLines, EVENT_COLOURS, PLOTS, readTable } from "./plots.js";
 
 const $ = (id) => document.getElementById(id);
 const canvas = $("view"), KEEP_BYTES = 256 << 20;
-let stage, state = null, room = null, run = 0, record = null;
+let stage, pixels, state = null, room = null, run = 0, record = null;
 let stats = [], events = [], camera = null, wanted = 1, shown = 0, playing = false, following = true, plot = "Fire";
 let picked = null; // {source, series: Map}
-let dirty = true, played = 0, quality = 1;
+let dirty = true, played = 0;
 
 function stop(message) {
     $("stop").textContent = message;
@@ -392,7 +393,7 @@ function writeCommand() {
 // ---- buttons and keys
 
 async function saveStill() {
-    stage.draw(camera);
+    draw(true);
     const blob = await new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
     save(blob, `${room.name}.${String(shown).padStart(4, "0")}${stage.layer === "paper" ? "" : `.${stage.layer}`}.png`);
 }
@@ -406,12 +407,13 @@ async function saveFilm() {
     follow(false);
     $("film").textContent = "Stop";
     try {
+        draw(true);
         const film = await Film.make(canvas, room.fps);
         if (!film) throw new Error("this browser has no WebCodecs, which videos need");
         if (shown >= state.last) await advanceTo(state.first);
         for (let frame = shown; filming && frame <= state.last; frame++) {
             await advanceTo(frame);
-            stage.draw(camera);
+            draw(true);
             film.add();
             while (film.encoder.encodeQueueSize > 4) await new Promise((resolve) => setTimeout(resolve, 5));
         }
@@ -498,8 +500,17 @@ function bind() {
 }
 
 function fit() {
-    const scale = quality * Math.min(devicePixelRatio || 1, 2), w = Math.round(canvas.clientWidth * scale), h = Math.round(canvas.clientHeight * scale);
+    const scale = pixels.share * Math.min(devicePixelRatio || 1, 2), w = Math.round(canvas.clientWidth * scale), h = Math.round(canvas.clientHeight * scale);
     if (w !== canvas.width || h !== canvas.height) { stage.resize(w, h); dirty = true; }
+}
+
+/** @param {boolean} whole in all pixels */
+function draw(whole) {
+    pixels.begin(performance.now(), whole);
+    fit();
+    dirty = false;
+    stage.draw(camera);
+    pixels.end();
 }
 
 function tick(now) {
@@ -512,9 +523,9 @@ function tick(now) {
         }
         if (shown < state.last && !kept.has(shown + 2) && shown + 2 <= state.last) frameOf(shown + 2).catch(() => {});
     }
-    if (dirty && room && camera && stage.frame) {
-        dirty = false;
-        stage.draw(camera);
+    const still = !dirty && pixels.rests(now);
+    if ((dirty && pixels.free || still) && room && camera && stage.frame) {
+        draw(still);
         const mark = $("mark"), at = picked?.at ? stage.project(camera, picked.at) : null;
         mark.hidden = !at;
         if (at) { mark.style.left = `${at[0]}px`; mark.style.top = `${at[1]}px`; }
@@ -524,6 +535,7 @@ function tick(now) {
 
 try {
     stage = new Stage(canvas);
+    pixels = new Pixels(stage.gl);
     bind();
     setLayer("paper");
     fit();
@@ -531,7 +543,7 @@ try {
     requestAnimationFrame(tick);
     // for tests and the console
     globalThis.view = {
-        stage, goTo: async (n) => { play(false); follow(false); await advanceTo(n); }, quality: (q) => { quality = q; fit(); }, pickAt, play,
+        stage, goTo: async (n) => { play(false); follow(false); await advanceTo(n); }, quality: (q) => { pixels.fixed = q; fit(); }, pickAt, play,
         get state() { return { ...state, shown, busy, playing, picked: picked && { source: picked.source, frames: picked.series.size }, kept: kept.size, stats: stats.length }; },
         get camera() { return camera; },
     };
