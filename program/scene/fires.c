@@ -12,6 +12,7 @@ typedef struct Place {
     double low[3], high[3]; ///< m, at the start
     double fall[3];         ///< m, how far it may go from there, at most
     double slack;           ///< m, in any direction
+    double diagonal;        ///< m, of the box at the start
     double cell;            ///< m, longest side of a cell
     double start, ignition; ///< K, the hottest that it begins with, the lowest at which it burns
     double capacity;        ///< J/(m2 K) of a layer, the least
@@ -40,10 +41,10 @@ static double carried(const SceneKey *keys, uint32_t count) {
 }
 
 /// How far a sheet may come, and fall: by pins and colliders that carry it, wind, its velocity and gravity.
-static void add_motion(const Scene *scene, uint32_t index, Place *place, double diagonal) {
+static void add_motion(const Scene *scene, uint32_t index, Place *place) {
     const double time = fmax((scene->frames - 1) / (double)scene->fps, 1); // a trial of few frames is no miss
     bool held = false;
-    place->slack = diagonal;
+    place->slack = place->diagonal;
     for (uint32_t i = 0; i < scene->pin_count; i++) {
         const ScenePin *pin = &scene->pins[i];
         if (pin->sheet_index != index) continue;
@@ -114,7 +115,8 @@ static Place place_of(const Scene *scene, const SceneAssets *assets, uint32_t in
         place.cell = fmax(place.cell, sqrt(side));
     }
 
-    add_motion(scene, index, &place, sqrt(diagonal));
+    place.diagonal = sqrt(diagonal);
+    add_motion(scene, index, &place);
     return place;
 }
 
@@ -268,11 +270,13 @@ void scene_warn_of_fires(const Scene *scene, const SceneAssets *assets, const Si
     Place *places = calloc(scene->sheet_count + 1, sizeof *places);
     if (!places) return; // it is only a warning
     bool any = false, lit = false;
+    double largest = 0;
 
     // hot from the start or from the air, or lit by a hot collider: that one is taken to touch
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         places[i] = place_of(scene, assets, i);
         any = any || places[i].burns;
+        largest = fmax(largest, places[i].diagonal);
         const double hot = fmax(places[i].start, (double)scene->sim.ambient_temperature);
         lit = lit || (places[i].burns && hot >= places[i].ignition);
         for (uint32_t k = 0; k < scene->collider_count; k++) {
@@ -282,7 +286,17 @@ void scene_warn_of_fires(const Scene *scene, const SceneAssets *assets, const Si
     }
 
     uint32_t heaters = 0;
-    for (uint32_t i = 0; i < scene->source_count; i++) heaters += !source_wets_or_blows(&scene->sources[i].def);
+    for (uint32_t i = 0; i < scene->source_count; i++) {
+        const SingeSourceDef *def = &scene->sources[i].def;
+        const double reach = (double)def->radius + (double)def->falloff;
+        heaters += !source_wets_or_blows(def);
+        // most likely a unit is missing
+        if ((def->kind == SINGE_SOURCE_BALL || def->kind == SINGE_SOURCE_SPOT) && reach > 4 * largest)
+            message_warn(log, scene->text, scene->sources[i].location,
+                         "the source heats all at once: it reaches %.3g m, and the largest sheet is %.3g m large",
+                         reach, largest);
+    }
+
     if (any && heaters == 0 && !lit)
         message_warn(
             log, scene->text, (SceneLocation){0},

@@ -298,6 +298,10 @@ TEST(fires_that_miss_are_warned_of) {
          "the source lights nothing"},
         {SHEETS, GRID("[10 cm, 10 cm]", "translate: [0, 0, 5]") "\npins: [{points: [[0, 0, 5]]}]",
          "the source misses the sheets"},
+        {SOURCES, "sources: [{kind: spot, position: [-3 cm, 0, 5 cm], radius: 1, falloff: 1 cm}]",
+         "t.yaml:4:11: the source heats all at once: it reaches 1.01 m, and the largest sheet is 0.141 m large\n"},
+        {SOURCES, "sources: [{kind: ball, position: [-3 cm, 0, 5 cm], radius: 1 cm, falloff: 15}]",
+         "the source heats all at once: it reaches 15 m"},
         // a flame heats what is above it
         {SOURCES, SPOT("position: [-3 cm, 0, -15 cm], power: 100, conductance: 0") "\ngas: yes", NULL},
         {SOURCES, SPOT("position: [-3 cm, 0, -5], power: 100, conductance: 0") "\ngas: yes",
