@@ -56,6 +56,8 @@ def run(*command, both=False, **options):
 
 def bare_root(work, suite, name):
     """A fresh root of a suite; what debootstrap makes is kept and copied."""
+    if os.geteuid() or not shutil.which("debootstrap"):
+        sys.exit(f"{suite}: needs root and Debian's package debootstrap; static, conan and conda need neither")
     kept, made = work / suite, work / name
     if not kept.exists():
         run("debootstrap", "--variant=minbase", "--force-check-gpg", suite, work / f"{suite}.part")
