@@ -172,6 +172,9 @@ static Answer answer_room(const Exhibit *shown) {
         (double)def.sun_angle, (int)def.ground, (double)def.pace, (double)def.sparks, (double)def.flakes);
     fputs(", \"ground_height\": ", out);
     text_json_number(out, (double)def.ground_height); // null: there is none
+    fprintf(out, ", \"wall\": %d, \"wall_turn\": %.9g, \"wall_distance\": ", (int)def.wall, (double)def.wall_turn);
+    text_json_number(out, (double)def.wall_distance); // null: there is none
+    put_numbers(out, "wall_colour", def.wall_colour, 3);
     put_numbers(out, "eye", def.camera.eye, 3);
     put_numbers(out, "target", def.camera.target, 3);
     put_numbers(out, "up", def.camera.up, 3);

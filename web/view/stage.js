@@ -106,6 +106,35 @@ void main() {
     colour = vec4(c, 1.0);
 }`;
 
+/** After shade_wall.c. */
+const WALL = /* glsl */ `${glsl.NOISE}${DAY}
+in vec3 vPosition;
+out vec4 colour;
+uniform vec3 wallColour, wallAlong, background;
+uniform float reach, bricks, floorHeight;
+float hash(vec2 p) { return fract(sin(dot(p, vec2(127.1, 311.7))) * 43758.5453); }
+void main() {
+    vec3 p = vPosition, view = normalize(eye - p), face = vec3(wallAlong.y, -wallAlong.x, 0.0), albedo = wallColour;
+    if (dot(view, face) <= 0.0) discard;
+    vec2 at = vec2(dot(p, wallAlong), p.z), tilt = vec2(0.0);
+    float cloud = noise4(vec3(at * 6.0, 3.5)).r, sweep = noise4(vec3(at * 11.0, 4.5)).g, grain = noise4(vec3(at * 250.0, 5.5)).b;
+    if (bricks > 0.5) {
+        float row = floor(at.y / 0.075), shift = at.x / 0.225 + 0.5 * mod(row, 2.0), soft = 0.0012 + 0.6 * fwidth(at.y);
+        vec2 from = vec2(fract(shift) * 0.225, at.y - row * 0.075), side = min(from, vec2(0.225, 0.075) - from);
+        float tone = hash(vec2(row, floor(shift))), edge = min(side.x, side.y) - 0.005 + 0.002 * noise4(vec3(at * 130.0, 6.5)).r, isFace = smoothstep(-soft, soft, edge);
+        vec3 clay = vec3(0.62, 0.30, 0.21) * (0.72 + 0.5 * tone + 0.16 * cloud + 0.10 * grain);
+        albedo *= mix(vec3(0.46, 0.44, 0.40) * (1.0 - 0.55 * (1.0 - smoothstep(-0.005, 0.0, edge))), clay, isFace);
+        tilt = 0.04 * vec2(grain, sweep);
+    } else if (bricks > -0.5) {
+        albedo *= 0.94 + 0.08 * cloud + 0.05 * sweep + 0.05 * grain;
+        tilt = 0.03 * vec2(sweep, grain);
+    }
+    albedo *= 1.0 - 0.5 * exp(-max(p.z - floorHeight, 0.0) / 0.03);
+    vec3 c = albedo * lit(p, normalize(face + tilt.x * wallAlong + vec3(0.0, 0.0, tilt.y)), 0.0, lampSeen(p + 0.0006 * face));
+    ${FADE}
+    colour = vec4(c, 1.0);
+}`;
+
 const SHAPE = /* glsl */ `${glsl.NOISE}${glsl.GLOW}${DAY}
 in vec3 vPosition, vNormal;
 uniform vec3 albedo;
@@ -271,7 +300,7 @@ export class Stage {
         this.slice = 0.5;
         this.fire = true;
         this.programs = {
-            wood: this.program(glsl.PLAIN_VERTEX, GROUND_WOOD), plain: this.program(glsl.PLAIN_VERTEX, GROUND_PLAIN), shape: this.program(glsl.PLAIN_VERTEX, SHAPE),
+            wood: this.program(glsl.PLAIN_VERTEX, GROUND_WOOD), plain: this.program(glsl.PLAIN_VERTEX, GROUND_PLAIN), wall: this.program(glsl.PLAIN_VERTEX, WALL), shape: this.program(glsl.PLAIN_VERTEX, SHAPE),
             paper: this.program(SHEET_VERTEX, glsl.paper(DAY)), caster: this.program(SHEET_VERTEX, `#define SHADOW\n${glsl.paper(DAY)}`), field: this.program(SHEET_VERTEX, FIELD), slice: this.program(glsl.PLAIN_VERTEX, SLICE), grid: this.program(glsl.PLAIN_VERTEX, FIELD_GROUND),
             strand: this.program(STRAND_VERTEX, STRAND), flying: this.program(glsl.AIRBORNE_VERTEX, glsl.airborne(DAY)), fire: this.program(glsl.FULL_VERTEX, glsl.FIRE), merge: this.program(glsl.FULL_VERTEX, glsl.MERGE), bright: this.program(glsl.FULL_VERTEX, glsl.BRIGHT),
             blur: this.program(glsl.FULL_VERTEX, glsl.BLUR), film: this.program(glsl.FULL_VERTEX, glsl.FILM), copy: this.program(glsl.FULL_VERTEX, COPY),
@@ -536,6 +565,7 @@ export class Stage {
             this.use(this.programs[!paper ? "grid" : room.ground === 0 ? "wood" : "plain"], { ...shared, modelMatrix: placed([camera.target[0], camera.target[1], room.ground_height - 1e-4], [0, 0, 0, 1], [s, s, 1]) });
             this.drawMesh(this.quad);
         }
+        if (room.wall_distance !== null && paper) this.drawWall({ ...shared, reach }, 3 * reach);
 
         if (paper && this.fire) this.flying.draw(this, shared);
         if (this.layer === "gas" && frame.gas) this.drawSlice(camera, matrix);
@@ -686,6 +716,19 @@ export class Stage {
             values.push(...at(v), ...(dot(face, smooth) > 0.75 ? smooth : face));
         }
         this.solids.set(this.solidKey(i), { ...this.mesh(values, Uint32Array.from({ length: index.length }, (_, k) => k)), points: p, triangles: index });
+    }
+
+    /** The wall behind the scene, `size` m from its middle to its sides. */
+    drawWall(shared, size) {
+        const { room } = this, turn = room.wall_turn, along = [Math.cos(turn), Math.sin(turn), 0], away = [-along[1], along[0], 0];
+        const middle = dot(room.target, along), half = [Math.sin(turn / 2) * Math.SQRT1_2, Math.cos(turn / 2) * Math.SQRT1_2];
+        const place = [0, 1, 2].map((k) => room.wall_distance * away[k] + middle * along[k] + (k === 2 ? room.target[2] : 0));
+        const modelMatrix = placed(place, [half[1], half[0], half[0], half[1]], [size, size, 1]); // upright, then turned
+        this.use(this.programs.wall, {
+            ...shared, modelMatrix, wallColour: room.wall_colour, wallAlong: along, bricks: [0, 1, -1][room.wall],
+            floorHeight: room.ground_height ?? -1e4,
+        });
+        this.drawMesh(this.quad);
     }
 
     drawMesh({ array, count }) {
