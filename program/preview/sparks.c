@@ -18,6 +18,7 @@ enum { SPARKS_A_SLOT = 4 }; ///< that a site may throw in a slot
 #define SPARK_COLD 900.0f   ///< K
 #define COOLING 1.7f
 #define SPARK_OPEN (1 / 120.0f) ///< s, the shortest exposure of a spark: eye and film keep it
+#define BLUR_MOST 2.0f          ///< pixels
 #define SPARKS_A_METRE 900.0f   ///< 1/(m s), of sites that glow along a few cm
 #define SPARKS_CROWD 0.25f      ///< m of glowing line above which sparks become rarer
 
@@ -54,8 +55,10 @@ static void spark_draw(Preview *preview, const Spark *spark, float begin, float 
     airborne_sight(preview, points, SIGHT_POINTS, seen);
 
     const float pixel = preview->camera.pixel * depth;
-    const float radius = maxf(maxf(1.15f, 1.2f * spark->size / pixel), camera_blur(&preview->camera, depth));
-    const int dots = 1 + (int)minf(streak / (0.45f * radius), 400);
+    // a wide lens would draw those that pass before the focus as capsules, which no eye takes for sparks
+    const float radius =
+        maxf(maxf(1.1f, 1.1f * spark->size / pixel), minf(camera_blur(&preview->camera, depth), BLUR_MOST));
+    const int dots = 1 + (int)minf(streak / 0.5f, 400);
     const float wide = maxf(spark->size / pixel, 0.6f); // a lens spreads any point
     for (int k = 0; k < dots; k++) {
         float part = ((float)k + 0.5f) / (float)dots, age = mixf(begin, end, part);
@@ -64,11 +67,12 @@ static void spark_draw(Preview *preview, const Spark *spark, float begin, float 
         Float3 glow = blackbody_glow(preview->blackbody, temperature);
         if (!airborne_project(preview, spark_at(spark, age), at, &depth)) return;
 
-        // a shutter opens and closes gradually, so that streaks end in points
-        const float lets = 1.5f * (1 - (2 * part - 1) * (2 * part - 1));
+        // a bright head, and a tail that fades and tapers behind it, as eye and film keep it; the mean of `lets` is 1
+        const float lets = 2.3f * part * sqrtf(part) * (1 - stepf(0.88f, 1, part)) + 0.15f;
+        const float thin = mixf(0.45f, 1, part);
         const float flicker = 1 + 0.7f * sinf((60 + 90 * spark->turn[0]) * age + 7 * spark->turn[1]);
         float light = EMBER_GAIN * strength * flicker * left * open * lets * 0.25f * PI_F * wide * wide / (float)dots;
-        airborne_dot(preview, at, radius, float3_scale(glow, light), 0);
+        airborne_dot(preview, at, thin * radius, float3_scale(glow, light), 0);
     }
 }
 
@@ -110,15 +114,16 @@ void sparks_draw(Preview *preview) {
                 const Spark spark = {.from = float3_mad(sites[i].position, float3(r[6] - 0.5f, r[7] - 0.5f, 0), 0.006f),
                                      .launch = float3_scale(float3(out * cosf(turn), out * sinf(turn), up), speed),
                                      .air = float3(0.28f * (r[8] - 0.5f), 0.28f * (r[9] - 0.5f),
-                                                   updraft * (0.3f + 1.1f * r[9]) - 0.7f * large),
+                                                   updraft * (0.12f + 1.6f * r[9] * r[9]) - 0.7f * large),
                                      .life = LIFE * (0.2f + 0.8f * r[3] * r[3]),
                                      .hot = 1300 + 700 * r[4] * r[4] * r[4],
-                                     .size = 0.00022f + 0.0012f * large,
+                                     .size = 0.00013f + 0.0005f * large,
                                      .wander = 0.02f + 0.10f * r[6],
                                      .turn = {2 * PI_F * r[7], 2 * PI_F * r[8]}};
                 float age = now - ((float)slot + hash_unit(key ^ 0x5bd1e995u)) * SLOT;
                 float begin = maxf(age - 0.5f * open, 0), end = minf(age + 0.5f * open, spark.life);
-                if (begin < end) spark_draw(preview, &spark, begin, end, strength * (end - begin) / open);
+                const float bright = 0.25f + 3.2f * r[4] * r[4] * r[4];
+                if (begin < end) spark_draw(preview, &spark, begin, end, bright * strength * (end - begin) / open);
             }
         }
 }
