@@ -93,6 +93,10 @@ bool cloth_is_hole(const Cloth *cloth);
 /// Tilts the normal; returns a factor on the albedo.
 float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *cloth, Point *point);
 
+/// Char and ash in its bundles of threads, and what glows there. `threads`: from cloth_shade.
+void cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth, float burn, float threads,
+                Point *point);
+
 /// False at a hole.
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 

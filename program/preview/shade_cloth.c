@@ -11,7 +11,7 @@
 #include "preview/internal.h"
 
 enum { OCTAVES = 5 };
-#define FRAY 7.0f ///< threads, mean depth to which a burnt edge loses them
+#define FRAY 10.0f ///< threads, mean depth to which a burnt edge loses them
 #define FATE_MOST 1.0f
 #define LONG 16.0f     ///< how much longer than wide the patches are in which a bundle has one fate
 #define CLOSED 0.5f    ///< half a thread's width over the pitch, of whole cloth
@@ -93,14 +93,14 @@ static float thread_fate(int thread, float along, float wide, uint32_t seed) {
 
 /// How far burnt cloth has fallen to pieces there, about -1 to 1: rips along both families, of sizes in octaves.
 static float cloth_damage(float x, float y, float wide) {
-    const float aspect = 3.5f;
-    float sum = 0, weight = 0.55f;
+    const float aspect = 4.5f;
+    float sum = 0, weight = 0.6f;
     for (uint32_t octave = 0; octave < 4; octave++) {
         const float size = 36 / (float)(1 << octave) / (1 + 0.4f * (float)octave), shown = resolved(size, wide);
         if (shown <= 0) break;
         const float warp = noise2(x / size, y / (aspect * size), 151 + octave);
         const float weft = noise2(x / (aspect * size), y / size, 161 + octave);
-        sum += shown * weight * (warp + weft);
+        sum += shown * weight * (maxf(warp, weft) + 0.4f * minf(warp, weft)); // slits along either, no round holes
         weight *= 0.8f;
     }
     return sum;
@@ -123,7 +123,7 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
     }
 
     const float damage = burnt > 0 ? cloth_damage(at[0], at[1], wide) : 0, worn = 1.1f - 0.5f * stepf(0.45f, 1, burn);
-    const float reach = FRAY * (0.45f + FATE_MOST + 2.1f * maxf(damage, 0)) + 3;
+    const float reach = FRAY * (0.4f + 1.7f * FATE_MOST + 2.1f * maxf(damage, 0)) + 3;
     int thread[2];
     for (int k = 0; k < 2; k++) {
         float within, along = at[1 - k];
@@ -144,7 +144,7 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
         const float doubt = 0.5f * FATE_MOST + 0.5f * cloth->tone[k];
         if (edge > reach && damage + doubt < worn) continue;
         const float fate = thread_fate(thread[k], along, wide, seed);
-        const float bite = burnt * FRAY * (1 - 0.75f * hot) * maxf(0.45f + fate + 2.1f * maxf(damage, -0.1f), 0);
+        const float bite = burnt * FRAY * (1 - 0.75f * hot) * maxf(0.4f + 1.7f * fate + 2.1f * maxf(damage, -0.1f), 0);
         cloth->gone[k] = cloth->gone[k] || edge < bite || damage + 0.5f * fate + 0.5f * cloth->tone[k] > worn;
         cloth->end[k] = 1 - stepf(0, 3, edge - bite);
     }
@@ -178,4 +178,42 @@ float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *clot
     const float a2 = across * across, dip = over * over;
     const float tone = 1 + 0.16f * cloth->tone[top] - 0.30f * a2 * a2 - 0.22f * dip * dip;
     return (1 + slub) * mixf(1, 1.12f * tone, cloth->shown);
+}
+
+void cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth, float burn, float threads,
+                Point *point) {
+    const float wide = point->footprint / weave->pitch;
+    float bundle[2], relief[2];
+    for (int k = 0; k < 2; k++) {
+        const float at = state->uv[k] * weave->threads[k], along = state->uv[1 - k] * weave->threads[1 - k];
+        float sum = 0, slope = 0, size = 3, weight = 0.55f;
+        for (uint32_t octave = 0; octave < 4; octave++, size *= 2.2f, weight *= 0.85f) {
+            const float shown = resolved(0.5f * size, wide);
+            if (shown <= 0) continue;
+            const uint32_t seed = 171 + 10 * (uint32_t)k + octave;
+            const float n = noise2(at / size, along / (9 * size), seed);
+            sum += shown * weight * n;
+            slope += shown * weight * (noise2(at / size + 0.3f, along / (9 * size), seed) - n) / 0.3f;
+        }
+        bundle[k] = sum;
+        relief[k] = slope;
+    }
+
+    // it shrinks in bundles, over and under each other: crowns are grey with ash, and hollows black; where it has just
+    // charred it is brown
+    const float charred = stepf(0.2f, 0.45f, burn), up = bundle[0] + bundle[1], top = maxf(bundle[0], bundle[1]);
+    const float ash =
+        charred * stepf(0.42f, 0.7f, burn) * stepf(0.15f, 0.95f, top) * (1 - stepf(520, 760, state->temperature));
+    const float brown = charred * (1 - stepf(0.45f, 0.75f, burn)) * stepf(-0.4f, 0.6f, up);
+    point->albedo = float3_mix(point->albedo, float3(0.060f, 0.030f, 0.015f), 0.7f * brown);
+    point->albedo = float3_scale(point->albedo, 1 + charred * clampf(0.75f * up, -0.6f, 0.9f));
+    point->albedo = float3_mix(point->albedo, float3(0.155f, 0.150f, 0.143f), 0.75f * ash);
+    Float3 lean = float3_mad(float3_scale(point->across[0], relief[0]), point->across[1], relief[1]);
+    Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, -0.30f * charred), point->normal);
+    if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
+
+    const float glows = 1 + charred * clampf(0.9f * top - 0.25f, -0.7f, 0.6f);
+    point->albedo = float3_scale(point->albedo, threads);
+    point->glow =
+        float3_scale(point->glow, glows * mixf(1, threads, cloth->shown) * (1 + 1.5f * cloth->end[cloth->top]));
 }

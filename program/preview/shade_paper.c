@@ -488,10 +488,6 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     if (coating > 0) coat(coating, &bent, point);
     ash_shade(state, &bent, print, point);
     ember_shade(preview, state, &bent, point);
-    if (weave) {
-        point->albedo = float3_scale(point->albedo, threads);
-        point->glow = float3_scale(point->glow, mixf(1, threads, cloth.shown) * (1 + 1.5f * cloth.end[cloth.top]));
-    }
-
+    if (weave) cloth_char(weave, state, &cloth, bent.burn, threads, point);
     return true;
 }
