@@ -144,40 +144,66 @@ Float3 background_colour(const Preview *preview, Float3 direction) {
     return float3_scale(base, height > 0 ? mixf(1.12f, 0.62f, height) : mixf(1.12f, 0.75f, -height));
 }
 
-/// Crumbs of pale ash and of char, one or none in each square of three lattices, as they lie where the stain is full: in
-/// drifts, few of them large. A large one is in parts char and in parts ash. Around each the table is darker.
+/// A scale of ash or char: torn off along a few lines, so that it has corners. `x`, `y`: m from its middle.
+typedef struct Scale {
+    float x, y, size; ///< m, half of its length
+    uint32_t key;
+} Scale;
+
+/// How far inside the scale's outline a point is, over its size: 1 in the middle, 0 on the outline, negative outside.
+static float scale_depth(const Scale *scale) {
+    enum { SIDES = 5 };
+    const float torn = noise2(3 * scale->x / scale->size, 3 * scale->y / scale->size, scale->key & 255) +
+                       0.5f * noise2(8 * scale->x / scale->size, 8 * scale->y / scale->size, scale->key >> 8 & 255);
+    float depth = 1;
+    for (uint32_t k = 0; k < SIDES; k++) {
+        const float turn = 2 * PI_F * ((float)k + 0.7f * hash_unit(scale->key + 20 + k)) / SIDES;
+        const float out = mixf(0.35f, 1, hash_unit(scale->key + 30 + k));
+        depth = minf(depth, out - (cosf(turn) * scale->x + sinf(turn) * scale->y) / scale->size);
+    }
+    return depth + 0.13f * torn;
+}
+
+/// Scales of pale ash and of char, one or none in each square of three lattices, as they lie where the stain is full: in
+/// drifts, few of them large. A scale is curled, so that a part of it is brighter and its shadow is wider on one side, and
+/// it is palest at its edge and along its creases.
 static void crumbs(const Preview *preview, Float3 position, float footprint, Table *table) {
-    static const float squares[3] = {0.0105f, 0.0047f, 0.0019f}, most[3] = {0.28f, 0.5f, 0.4f}; // m; share that has one
+    static const float squares[3] = {0.019f, 0.0085f, 0.0026f}, most[3] = {0.5f, 0.5f, 0.35f}; // m; share that has one
     const uint32_t seed = preview->def.seed;
-    const float drift = 1.5f * noise2(position.x * 26, position.y * 26, seed) +
-                        0.8f * noise2(position.x * 75, position.y * 75, seed + 310);
-    const float often = clampf(0.55f + 1.5f * drift, 0.02f, 1.6f);
+    const float drift =
+        noise2(position.x * 21, position.y * 21, seed) + 0.6f * noise2(position.x * 57, position.y * 57, seed + 310);
+    const float often = 0.06f + 1.9f * stepf(-0.1f, 0.8f, drift);
     for (uint32_t k = 0; k < 3; k++) {
         const float wide = squares[k];
         float fx, fy, shown = visible(0.4f * wide, footprint);
         if (shown <= 0) continue;
         int i = noise_floor(position.x / wide + 0.37f * (float)k, &fx);
         int j = noise_floor(position.y / wide + 0.61f * (float)k, &fy);
-        uint32_t key = sample_key(i, j, seed + 311 + k);
+        const uint32_t key = sample_key(i, j, seed + 311 + k);
         if (hash_unit(key) > most[k] * often) continue;
-        const float size = mixf(0.07f, 0.31f, hash_unit(key + 4) * hash_unit(key + 5)), room = 1.2f * size + 0.12f;
-        const float x = fx - mixf(room, 1 - room, hash_unit(key + 1)),
-                    y = fy - mixf(room, 1 - room, hash_unit(key + 2));
-        const float turn = 2 * PI_F * hash_unit(key + 3), c = cosf(turn), s = sinf(turn);
-        const float narrow = mixf(1, 2.2f, hash_unit(key + 7)), along = c * x + s * y,
-                    across = narrow * (c * y - s * x);
-        const float fine = 1 / (size * wide); // 1/m: its edge is torn at its own scale
-        const float torn = noise2(1.1f * position.x * fine, 1.1f * position.y * fine, key & 255);
-        const float fray = noise2(3.1f * position.x * fine, 3.1f * position.y * fine, key & 255);
-        const float edge = size * maxf(1 + 0.85f * torn + 0.45f * fray, 0.1f);
-        const float reach = sqrtf(along * along + across * across) / edge;
+        const float size = mixf(0.13f, 0.36f, hash_unit(key + 4) * hash_unit(key + 5)), room = 1.05f * size + 0.08f;
+        const Scale scale = {.x = wide * (fx - mixf(room, 1 - room, hash_unit(key + 1))),
+                             .y = wide * (fy - mixf(room, 1 - room, hash_unit(key + 2))),
+                             .size = wide * size,
+                             .key = key};
+        const float depth = scale_depth(&scale);
+        const float lean = 2 * PI_F * hash_unit(key + 3),
+                    side = (cosf(lean) * scale.x + sinf(lean) * scale.y) / scale.size;
 
-        const float beside = minf(0.0008f / wide, 0.12f) / size;
-        const float shadow = 0.75f * shown * (1 - stepf(0.95f, 1.1f + beside, reach));
-        const float cover = shown * (1 - stepf(0.85f, 1.12f, reach));
-        const float ash = clampf(1.6f * hash_unit(key + 6) - 0.55f + 0.9f * torn, 0, 1);
-        float value = mixf(0.016f, 0.11f + 0.25f * hash_unit(key + 8), ash * ash);
-        value *= 1 + 0.3f * noise2(position.x * 2600, position.y * 2600, key & 255) + 0.25f * fray;
+        // its curled side stands off the ground
+        const float beside = 0.20f + 0.30f * stepf(-0.2f, 0.9f, side), soft = 0.6f * footprint / scale.size;
+        const float shadow = 0.8f * shown * stepf(-beside - soft, 0.05f, depth);
+        const float cover = shown * stepf(-soft, 0.06f + soft, depth);
+        if (shadow <= 0) continue;
+        const float ash = stepf(0.3f, 0.65f, hash_unit(key + 6));
+        const float crease =
+            1 -
+            stepf(0, 0.16f, fabsf(noise2(2.2f * scale.x / scale.size, 2.2f * scale.y / scale.size, key >> 16 & 255)));
+        const float rim = 1 - stepf(0.02f, 0.22f, depth),
+                    grain = noise2(position.x * 2600, position.y * 2600, key & 255);
+        float value = mixf(0.020f, 0.20f + 0.24f * hash_unit(key + 8), ash);
+        value *= (1 + 0.5f * clampf(side, -1, 1)) * (1 + 0.16f * grain);
+        value += (0.03f + 0.12f * ash) * maxf(rim, 0.6f * crease);
         table->crumb = mixf(table->crumb * (1 - shadow), value, cover);
         table->crumbs += (1 - table->crumbs) * maxf(shadow, cover);
     }

@@ -106,8 +106,8 @@ static float paper_cracks(const Bent *bent, float millimetres, float width, floa
     return minf(1, open / min) * (1 - stepf(0.4f, 1, wall / maxf(open, min)));
 }
 
-/// Tilts the normal by the gradient of noise of that size, as crumpling does. `folded`: the height is the noise's absolute value, with an edge where it changes sign, and steep slopes are
-/// flattened.
+/// Tilts the normal by the gradient of noise of that size, as crumpling does. `folded`: the height is the noise's absolute
+/// value, with an edge where it changes sign, and steep slopes are flattened.
 static void tilt(Float3 position, float millimetres, float height, bool folded, uint32_t seed, Point *point) {
     height *= clampf(1.6f - point->footprint * 1000 / millimetres, 0, 1);
     if (height < 0.02f) return;
@@ -143,13 +143,18 @@ static float near_border(const PaperState *state, const Bent *bent, float width)
     return minf(1, 5 * state->rim) * (1 - stepf(0.1f * width, width * maxf(uneven, 0.2f), distance));
 }
 
-/// The share of ash on cold char, `cloud` its patches: plates have pale, ragged borders, and in time a film of ash.
+/// The share of ash on cold char, `cloud` its patches: plates have pale, ragged borders, to which torn scales of ash cling,
+/// and in time a film of ash, in scales as well.
 static float ash_on_char(const PaperState *state, const Bent *bent, float cloud) {
     const float cold = stepf(PAPER_WHOLE, 0.5f, bent->burn) * (1 - stepf(520, 760, bent->temperature));
     if (cold <= 0) return 0;
     const float border = 0.85f * stepf(0, 5, state->age + 2 * bent->coarse) * near_border(state, bent, 1.1e-3f);
-    const float film = 0.36f * stepf(0.53f, 0.62f, bent->burn) * stepf(0.15f, 0.9f, cloud) * stepf(2, 9, state->age);
-    return cold * maxf(border, film);
+    const float torn = bent->coarse + 0.7f * bent->medium + 0.5f * bent->fine; // a scale ends abruptly
+    const float edge = near_border(state, bent, 3.5e-3f), cling = stepf(0.55f, 0.75f, edge + 0.45f * torn);
+    const float scales = 0.8f * stepf(1, 4, state->age + bent->coarse) * cling * stepf(0, 0.1f, edge);
+    const float film =
+        0.5f * stepf(0.53f, 0.62f, bent->burn) * stepf(0.4f, 0.62f, cloud + 0.25f * torn) * stepf(2, 9, state->age);
+    return cold * maxf(border, maxf(scales, film));
 }
 
 /// Noise that wears ash to lace: holes above 0.7.

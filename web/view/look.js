@@ -103,8 +103,12 @@ float ash_on_char(PaperState state, Bent bent, float cloud) {
     float cold = stepf(PAPER_WHOLE, 0.5, bent.burn) * (1.0 - stepf(520.0, 760.0, bent.temperature));
     if (cold <= 0.0) return 0.0;
     float border = 0.85 * stepf(0.0, 5.0, state.age + 2.0 * bent.coarse) * near_border(state, bent, 1.1e-3);
-    float film = 0.36 * stepf(0.53, 0.62, bent.burn) * stepf(0.15, 0.9, cloud) * stepf(2.0, 9.0, state.age);
-    return cold * max(border, film);
+    float torn = bent.coarse + 0.7 * bent.medium + 0.5 * bent.fine;
+    float edge = near_border(state, bent, 3.5e-3), cling = stepf(0.55, 0.75, edge + 0.45 * torn);
+    float scales = 0.8 * stepf(1.0, 4.0, state.age + bent.coarse) * cling * stepf(0.0, 0.1, edge);
+    float film =
+        0.5 * stepf(0.53, 0.62, bent.burn) * stepf(0.4, 0.62, cloud + 0.25 * torn) * stepf(2.0, 9.0, state.age);
+    return cold * max(border, max(scales, film));
 }
 float ash_lace(Bent bent, float footprint) {
     return paper_noise(bent.position, 2.6, footprint, 15.0) + 0.25 * bent.fine - 0.45 * bent.coarse;
