@@ -124,15 +124,15 @@ static void stone(const Preview *preview, Float3 position, float footprint, Tabl
     float rough = uneven(x, y, 9, 0.022f, seed + 4, footprint, table);
     float grain = uneven(x, y, 1.6f, 0.03f, seed + 5, footprint, table);
     float speck = noise2(x * 900, y * 900, seed + 6) * visible(0.0011f, footprint);
-    float value = 0.95f + 0.30f * cloud + 0.22f * patch + 0.13f * rough + 0.10f * grain;
+    float value = 0.95f + 0.13f * cloud + 0.13f * patch + 0.13f * rough + 0.13f * grain;
     value += 0.35f * stepf(0.55f, 0.9f, speck) - 0.2f * stepf(0.5f, 0.9f, -speck);
 
     // pale veins of varying thickness that break off
     float line = fabsf(noise2((x + warp + fold) * 7.5f + 3, (y + fold + warp) * 2.6f, seed + 7));
-    float width = 0.008f + 0.022f * (0.5f + 0.5f * noise2(x * 21, y * 21, seed + 8));
+    float width = 0.004f + 0.010f * (0.5f + 0.5f * noise2(x * 21, y * 21, seed + 8));
     float vein = 1 - stepf(0.3f * width, width + 1.5f * footprint, line);
     vein *= stepf(-0.45f, 0.25f, noise2(x * 3, y * 3, seed + 9));
-    value += 1.1f * vein * minf(1, 0.003f / footprint + 0.35f);
+    value += 0.6f * vein * minf(1, 0.002f / footprint + 0.25f);
     float warm = 0.5f * cloud - 0.3f * patch;
     table->albedo = float3_scale(float3(1 + 0.05f * warm, 1, 1 - 0.07f * warm), maxf(value, 0.1f));
     table->polish = 0.42f + 0.12f * patch - 0.1f * vein;
