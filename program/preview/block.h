@@ -82,6 +82,16 @@ void block_draw(Preview *preview, Block *block);
 /// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
 Float3 light_reflect(const Point *point, Float3 l);
 
+/// The light along l that a shape's lobe sends to the eye, per unit of what white paper reflects of it at normal incidence.
+/// `wide`: the square of the light's apparent size.
+Float3 light_shine(const Point *point, Float3 l, float wide);
+
+/// The same of all lamps.
+Float3 light_shine_of_lamps(const PreviewScene *scene, const Point *point);
+
+/// What a shape's lobe reflects of what it mirrors of the view.
+Float3 light_fresnel(const Point *point);
+
 /// The share of the light along the mirrored view that the point reflects.
 float light_mirrored(const Point *point);
 
@@ -118,3 +128,10 @@ void seen_finish(Preview *preview, Block *block);
 // soften.c
 /// Smooths the noise that is left where lens and shutter blur. Called per block once the light has been added.
 void soften(Preview *preview, Block *block);
+
+// glints.c
+/// Traces what metal mirrors in the 4 x 4 blocks of which this is the first.
+void glints_draw(Preview *preview, Block *block);
+
+/// Adds it to the points of active lanes.
+void glints_add(const Preview *preview, Block *block, const int *active);

@@ -200,6 +200,8 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     stain_fill(preview);
     draw_all(preview, draw_mirrored);
     mirror_smooth(preview);
+    draw_all(preview, glints_draw);
+    glints_smooth(preview);
     draw_all(preview, block_draw);
     draw_all(preview, seen_smooth);
     draw_all(preview, seen_finish);

@@ -34,6 +34,13 @@ typedef struct Table {
     float crumb, crumbs; ///< albedo of the crumbs there if the ground is stained, times their cover; and that
 } Table;
 
+/// A point of a piece of wood.
+typedef struct Plank {
+    float along, across, deep; ///< m, from its own corner, from its middle, and above its face
+    float width, edge;         ///< m, its own, and to the nearest joint
+    float tone, hue, shift;    ///< its own, 0 to 1, 0 to 1, and m
+} Plank;
+
 /// The sheets that are drawn, and the lamps.
 typedef struct PreviewScene {
     Bvh bvh;
@@ -46,7 +53,7 @@ typedef struct PreviewScene {
     Float3 low, high; ///< bounds of the drawn triangles
     float epsilon;    ///< m, distance by which secondary rays leave a surface
     EmberLights lights;
-    int light_count;
+    int light_count, flames[2]; ///< the first of the flames, and behind the last
 } PreviewScene;
 
 /// What burning sheets leave on the ground (stain.c).
@@ -61,6 +68,12 @@ typedef struct Mirrored {
     Float3 light;
     float hides; ///< share of the sky behind
 } Mirrored;
+
+/// What metal mirrors in a block of pixels, and the share of the block that is metal.
+typedef struct Glint {
+    Float3 light;
+    float share;
+} Glint;
 
 /// The data of a PreviewSolid for rays.
 typedef struct Facets {
@@ -101,6 +114,7 @@ struct Preview {
     Fire fire;
     Stain stain;
     Mirrored *mirrored[2]; ///< [mask_size] for each block, and the same while it is smoothed; NULL: the ground is dull
+    Glint *glints[2];      ///< [mask_size] for each block, and the same while it is smoothed
     PreviewLayers layers;  ///< being drawn
     double time;
 };
@@ -112,8 +126,11 @@ typedef struct Point {
     float transmission;                       ///< share of the light from behind that is transmitted
     float gloss, shininess;                   ///< Blinn-Phong lobe of the sun
     float mirror;                             ///< reflectance for the blurred sky
+    Float3 shine, brush;                      ///< of a shape: what it mirrors seen from above, and along its scratches
+    float rough[2];                           ///< widths of that lobe along them and across
     Float3 across[2];                         ///< unit, across the warp and the weft of woven sheets
     Mirrored mirrored;                        ///< in front of the sky
+    bool glints;                              ///< its mirror image is traced, and no lobe holds flames and sky
     float footprint;                          ///< m, a pixel's size here
     float fade;                               ///< 0 visible to 1 faded into the background
     bool lit;                                 ///< false: glow only
@@ -179,6 +196,8 @@ Float3 shape_centre(const PreviewShape *shape);
 
 /// Radius of a sphere around that centre that contains the shape while the shutter is open.
 float shape_extent(const PreviewShape *shape, float shutter);
+
+// shade_shape.c
 void shape_shade(const Preview *preview, const PreviewShape *shape, float moment, Point *point);
 
 // mask.c
@@ -216,6 +235,23 @@ void mirror_smooth(Preview *preview);
 
 /// What a pixel of the ground mirrors.
 Mirrored mirror_see(const Preview *preview, int x, int y);
+
+// glints.c
+SingeResult glints_create(Preview *preview, SingeError *error);
+void glints_free(Preview *preview);
+
+/// Whether a shape's mirror image is traced where a pixel is that large (m).
+bool glints_may_be(const PreviewShape *shape, float footprint);
+
+/// Smooths what was traced for the frame.
+void glints_smooth(Preview *preview);
+
+// shade_wood.c
+/// (x, y): where its wear and its fibres are counted from.
+void wood_look(const Plank *plank, float x, float y, uint32_t seed, float footprint, Table *table);
+
+/// Whether details of that size are seen, 0 to 1.
+static inline float visible(float metres, float footprint) { return clampf(1.5f - 0.9f * footprint / metres, 0, 1); }
 
 // shade_ground.c
 void ground_look(const Preview *preview, Float3 position, float cosine, float distance, Table *table);

@@ -128,7 +128,7 @@ static float choose_lights(PreviewScene *scene, Cluster *clusters, int limit, fl
 
 void light_gather(Preview *preview) {
     PreviewScene *scene = &preview->scene;
-    scene->light_count = 0;
+    scene->light_count = scene->flames[0] = scene->flames[1] = 0;
     scene->lights = (EmberLights){.x = {0}};
     for (int k = 0; k < LIGHT_LIMIT; k++) scene->lights.softness[k] = 1;
 
@@ -166,8 +166,10 @@ void light_gather(Preview *preview) {
         float side = float3_length(float3_sub(fire->high, fire->low)) / GRID;
         // each stands for flames all around it: near to it they are not as bright as a point
         const float square = side * side;
+        scene->flames[0] = scene->light_count;
         flaming = choose_lights(scene, flames, scene->light_count + FLAME_LIGHTS, 0.4f * square + 1e-4f,
                                 1.5f * sqrtf(0.1f * square + 1e-4f));
+        scene->flames[1] = scene->light_count;
     }
 
     Cluster embers[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
@@ -278,6 +280,7 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
         }
 
         Float3 light = float3_mul(block->lamp_white[i], point->albedo);
+        if (point->shine.x > 0) light = float3_add(light, light_shine_of_lamps(scene, point));
         light = float3_scale(float3(minf(light.x, 40), minf(light.y, 40), minf(light.z, 40)), through[i]);
         block->lit[LIT_LAMPS][i] = float3_add(block->lit[LIT_LAMPS][i], light);
         float luminance = float3_luminance(light);

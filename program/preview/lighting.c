@@ -4,11 +4,51 @@
 //
 // with V, A the visibilities, tau the paper's transmission and E the ambient light (environment.c); V by rays to random
 // points of the sun's disc, A by ambient-occlusion rays, each smoothed over neighbours (seen.c).
-// Glossy surfaces reflect the blurred sky S along r. Lamps are flames and embers (lamps.c).
+// Glossy surfaces reflect the blurred sky S along r. Metal and oiled wood mirror all lights in a lobe, wider across the
+// scratches than along them (GGX: Walter et al. 2007; Burley 2012), S as well. Lamps are flames and embers (lamps.c).
 
 #include "preview/block.h"
 
 static const float occluded_sky = 0.22f; ///< light from occluded directions
+
+/// What a lobe of that width mirrors where its half vector is aligned with the view, (Schlick 1994); less at grazing angles
+/// than what is smooth.
+static Float3 shine_fresnel(const Point *point, float aligned) {
+    const float rest = 1 - clampf(aligned, 0, 1), rest2 = rest * rest, grazing = rest2 * rest2 * rest;
+    const float most = 1 - maxf(point->rough[0], point->rough[1]);
+    const Float3 f = point->shine;
+    return float3(f.x + maxf(most - f.x, 0) * grazing, f.y + maxf(most - f.y, 0) * grazing,
+                  f.z + maxf(most - f.z, 0) * grazing);
+}
+
+Float3 light_fresnel(const Point *point) { return shine_fresnel(point, float3_dot(point->normal, point->view)); }
+
+Float3 light_shine(const Point *point, Float3 l, float wide) {
+    const float nl = float3_dot(point->normal, l), nv = maxf(float3_dot(point->normal, point->view), 0.02f);
+    if (nl <= 0 || point->shine.x <= 0) return float3(0, 0, 0);
+    const Float3 half = float3_unit_or(float3_add(l, point->view), point->normal);
+    const float hn = float3_dot(half, point->normal), hx = float3_dot(half, point->brush);
+    const float along2 = point->rough[0] * point->rough[0] + 0.25f * wide;
+    const float across2 = point->rough[1] * point->rough[1] + 0.25f * wide;
+    const float slope = hx * hx / along2 + maxf(1 - hn * hn - hx * hx, 0) / across2 + hn * hn;
+    if (slope > 40) return float3(0, 0, 0); // the lobe is dark there
+    const float k = 0.5f * point->rough[1], masked = 0.25f / ((nl * (1 - k) + k) * (nv * (1 - k) + k));
+    return float3_scale(shine_fresnel(point, float3_dot(half, point->view)),
+                        nl * masked / (sqrtf(along2 * across2) * slope * slope));
+}
+
+Float3 light_shine_of_lamps(const PreviewScene *scene, const Point *point) {
+    const EmberLights *l = &scene->lights;
+    Float3 sum = {0, 0, 0};
+    for (int k = 0; k < scene->light_count; k++) {
+        if (point->glints && k >= scene->flames[0] && k < scene->flames[1]) continue; // it mirrors themselves
+        Float3 to = float3_sub(float3(l->x[k], l->y[k], l->z[k]), point->position);
+        const float d2 = float3_dot(to, to) + l->softness[k], wide = l->softness[k] / d2;
+        Float3 light = float3_scale(float3(l->strength[0][k], l->strength[1][k], l->strength[2][k]), 1 / d2);
+        sum = float3_add(sum, float3_mul(light, light_shine(point, float3_scale(to, 1 / sqrtf(d2)), wide)));
+    }
+    return sum;
+}
 
 Float3 light_reflect(const Point *point, Float3 l) {
     float cosine = float3_dot(point->normal, l), side = float3_dot(point->geometric, l);
@@ -18,7 +58,7 @@ Float3 light_reflect(const Point *point, Float3 l) {
     if (side <= 0) return float3_scale(float3_mul(point->albedo, warm), point->transmission * maxf(-cosine, 0));
     if (cosine <= 0) return float3(0, 0, 0);
 
-    Float3 out = float3_scale(point->albedo, cosine);
+    Float3 out = float3_mad(light_shine(point, l, 0), point->albedo, cosine);
     if (point->gloss > 0) {
         Float3 half = float3_unit_or(float3_add(l, point->view), point->normal);
         float aligned = float3_dot(half, point->normal);
@@ -196,6 +236,12 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
             Float3 out = float3_mad(float3_scale(point->view, -1), point->normal, 2 * cosine);
             float clear = light_mirrored(point) * (1 - point->mirrored.hides);
             light = float3_add(light, float3_scale(sky_mirrored(&preview->sky, out), clear));
+        }
+
+        if (point->shine.x > 0 && !point->glints) {
+            const float cosine = maxf(float3_dot(point->normal, point->view), 0);
+            Float3 out = float3_mad(float3_scale(point->view, -1), point->normal, 2 * cosine);
+            light = float3_add(light, float3_mul(light_fresnel(point), sky_mirrored(&preview->sky, out)));
         }
 
         light = float3_scale(light, through[i]);

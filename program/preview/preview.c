@@ -53,7 +53,8 @@ static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, Sing
         const PreviewShape *shape = &shapes[i];
         const float *q = shape->rotation, length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
         bool good = all_between(shape->position, 3, -1e4f, 1e4f) && all_between(shape->velocity, 3, -1e4f, 1e4f) &&
-                    all_between(shape->colour, 3, 0, 1e4f) && shape->temperature >= 0 && shape->temperature < 1e5f;
+                    all_between(shape->colour, 3, 0, 1e4f) && shape->temperature >= 0 && shape->temperature < 1e5f &&
+                    shape->surface >= PREVIEW_SURFACE_MATT && shape->surface <= PREVIEW_SURFACE_CLOTH;
         switch (shape->kind) {
         case SINGE_COLLIDER_PLANE: break;
         case SINGE_COLLIDER_SPHERE: good = good && shape->radius > 0 && shape->radius <= 1e4f; break;
@@ -68,7 +69,8 @@ static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, Sing
 
         if (shape->kind != SINGE_COLLIDER_SPHERE) good = good && fabsf(length - 1) < 0.01f;
         if (!good)
-            return preview_refuse(error, i, "shape: kind, size, position, rotation or temperature is out of range");
+            return preview_refuse(error, i,
+                                  "shape: kind, size, position, rotation, surface or temperature is out of range");
     }
 
     return SINGE_OK;
@@ -187,6 +189,7 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
     result = preview_allocate(preview, error);
     if (!result) result = stain_create(preview, error);
     if (!result) result = mirror_create(preview, error);
+    if (!result) result = glints_create(preview, error);
     if (!result) result = preview_set_shapes(preview, def->shapes, def->shape_count, error);
     if (result) preview_destroy(preview);
     else *out = preview;
@@ -243,6 +246,7 @@ void preview_destroy(Preview *preview) {
     fire_free(preview);
     stain_free(preview);
     mirror_free(preview);
+    glints_free(preview);
     facets_free(preview);
 
     for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);

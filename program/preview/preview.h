@@ -19,12 +19,21 @@ typedef struct PreviewSolid {
     bool passing;        ///< one of many that a shape has in turn: its data is freed with the next shapes
 } PreviewSolid;
 
+/// What a shape is made of.
+typedef enum PreviewSurface {
+    PREVIEW_SURFACE_MATT,
+    PREVIEW_SURFACE_WOOD,
+    PREVIEW_SURFACE_METAL,
+    PREVIEW_SURFACE_CLOTH,
+} PreviewSurface;
+
 /// A rigid shape: one of the scene's colliders and hot balls at the frame's time.
 typedef struct PreviewShape {
     SingeColliderKind kind;
     float position[3], rotation[4], radius, half_size[3], height;
-    float velocity[3];           ///< m/s, for motion blur
-    float colour[3];             ///< linear albedo
+    float velocity[3]; ///< m/s, for motion blur
+    PreviewSurface surface;
+    float colour[3];             ///< linear albedo; of metal, what it mirrors
     float temperature;           ///< K; glows by black-body colour above about 800 K
     const PreviewSolid *solid;   ///< of a heightfield or a mesh, in the shape's frame
     const struct Facets *facets; ///< the preview's own; NULL

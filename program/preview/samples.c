@@ -129,7 +129,10 @@ static void add_sample(const Preview *preview, Block *block, const int *active, 
         float at[2];
         sample_offset(sample, at);
         block_aim(preview, block, sample, at);
-        if (!bare) block_find_points(preview, block, active);
+        if (!bare) {
+            block_find_points(preview, block, active);
+            glints_add(preview, block, active);
+        }
         for (int i = 0; bare && i < LANES; i++)
             if (active[i]) block_see_backdrop(preview, block, i);
     }

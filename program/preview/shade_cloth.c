@@ -8,7 +8,7 @@
 // single threads, and tufts of them, stand out at a burnt edge, and holes in burnt cloth are slits along threads, of many
 // sizes. There is a hole where neither thread is left.
 
-#include "preview/internal.h"
+#include "preview/shape_look.h"
 
 enum { OCTAVES = 5 };
 #define FRAY 10.0f ///< threads, mean depth to which a burnt edge loses them
@@ -216,4 +216,59 @@ void cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth,
     point->albedo = float3_scale(point->albedo, threads);
     point->glow =
         float3_scale(point->glow, glows * mixf(1, threads, cloth->shown) * (1 + 1.5f * cloth->end[cloth->top]));
+}
+
+// ---- cloth over a shape
+
+#define COVER_PITCH 0.0011f ///< m from thread to thread
+#define COVER_SEAMS 4       ///< around what is round
+
+void shape_cloth(const Place *place, Point *point) {
+    const float footprint = point->footprint;
+    const Float3 p = place->p, n = place->normal;
+    const float side = fabsf(n.x), front = fabsf(n.y), top = fabsf(n.z);
+    float s = side > maxf(front, top) ? p.y : p.x, t = top > maxf(side, front) ? p.y : p.z, seam = 1;
+    if (place->shape->kind == SINGE_COLLIDER_SPHERE || place->shape->kind == SINGE_COLLIDER_CAPSULE) {
+        const float turn = atan2f(p.y, p.x) / (2 * PI_F);
+        float within;
+        noise_floor(turn * COVER_SEAMS, &within);
+        s = turn * 2 * PI_F * place->shape->radius;
+        t = p.z;
+        seam = minf(within, 1 - within) * 2 * PI_F * hypotf(p.x, p.y) / COVER_SEAMS;
+    }
+
+    float tone = 0, relief[2] = {0, 0};
+
+    // threads of uneven thickness, in bundles of 1 to 8
+    float weight = 0.060f;
+    for (uint32_t octave = 0; octave < 4; octave++, weight *= 0.55f) {
+        const float wide = COVER_PITCH * (float)(1 << octave), shown = visible(1.4f * wide, footprint);
+        if (shown <= 0) continue;
+        const float warp = noise2(s / wide, t / (7 * wide), 421 + octave),
+                    weft = noise2(s / (8 * wide), t / wide, 431 + octave);
+        tone += shown * weight * (warp + weft);
+        relief[0] += shown * 0.025f * warp;
+        relief[1] += shown * 0.025f * weft;
+    }
+
+    const float shown = visible(COVER_PITCH, footprint);
+    if (shown > 0) {
+        float fs, ft;
+        const int over = (noise_floor(s / COVER_PITCH, &fs) + noise_floor(t / COVER_PITCH, &ft)) & 1;
+        const float x = 2 * fs - 1, y = 2 * ft - 1;
+        tone -= shown * 0.28f * (over ? x * x : y * y);
+        relief[over ? 0 : 1] += shown * 0.3f * (over ? x : y);
+    }
+
+    // a seam: a fold that casts a shadow, and puckers beside it
+    const float groove = (1 - stepf(0.0003f, 0.0009f + footprint, seam)) * minf(1, 0.0012f / footprint);
+    const float beside = expf(-seam / 0.006f), pucker = beside * noise2(7.3f, t / 0.005f, 441);
+    const float stains = noise3(float3_scale(place->p, 14), 442) + 0.5f * noise3(float3_scale(place->p, 37), 443);
+    tone += 0.05f * stains - 0.45f * groove + 0.04f * pucker;
+    point->albedo = float3_scale(point->albedo, maxf(1 + tone, 0.2f));
+    point->gloss = 0;
+    point->mirror = 0.25f; // fuzz
+
+    const float z = place->shape->kind == SINGE_COLLIDER_BOX ? 0.0f : relief[0];
+    shape_lean(place, float3(place->normal.y * z, -place->normal.x * z, relief[1] + 0.2f * pucker), point);
 }

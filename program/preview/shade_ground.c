@@ -1,22 +1,12 @@
 // The table and the background.
 //
-// Wood is planks along x, each cut from its own trunk: the year rings are cylinders around an axis oblique to the
-// plank, so that the cut shows parallel lines or pointed arches. A ring darkens towards its end, the late wood, and
-// ends abruptly. Fibres and pores run along the plank. Stone is a honed slab: clouds, grains and a few pale veins, with
-// an uneven face. Every octave fades when a pixel no longer resolves it.
+// Stone is a honed slab: clouds, grains and a few pale veins, with an uneven face. Every octave fades when a pixel no
+// longer resolves it.
 
 #include "preview/internal.h"
 
 #define PLANK_WIDTH 0.118f
 #define PLANK_LENGTH 1.3f
-
-static float visible(float metres, float footprint) { return clampf(1.5f - 0.9f * footprint / metres, 0, 1); }
-
-typedef struct Plank {
-    float along, across;    ///< m, from its own corner
-    float edge;             ///< m to the nearest joint
-    float tone, hue, shift; ///< its own
-} Plank;
 
 static Plank find_plank(uint32_t seed, float x, float y) {
     float across, along;
@@ -28,82 +18,11 @@ static Plank find_plank(uint32_t seed, float x, float y) {
 
     return (Plank){.along = along * PLANK_LENGTH,
                    .across = (across - 0.5f) * PLANK_WIDTH,
+                   .width = PLANK_WIDTH,
                    .edge = minf(side, end),
                    .tone = hash_unit(key),
                    .hue = hash_unit(key + 1),
                    .shift = 60 * hash_unit(key + 2)};
-}
-
-/// Late wood, 0 to 1, of the year rings: years differ in width and in strength, and fade in and out along a plank.
-static float year_rings(const Plank *p, uint32_t seed, float footprint) {
-    float u = p->along + p->shift, bend = 0.011f * noise2(u * 2.3f, p->across * 9, seed);
-    bend += 0.0022f * noise2(u * 9, p->across * 40, seed + 1);
-
-    // the trunk's axis is below the plank and rises along it
-    float aside = p->across + 0.09f * (p->hue - 0.5f) + bend;
-    float depth = 0.012f + 0.09f * p->tone + 0.05f * (p->along - 0.6f);
-    float radius = sqrtf(aside * aside + depth * depth), year = radius / (0.0034f + 0.0022f * p->hue);
-    year += 0.35f * noise2(u * 1.3f, radius * 60, seed + 2) + 1.1f * noise2(p->shift, radius * 85, seed + 9);
-    float within;
-    int ring = noise_floor(year, &within);
-    float strength = 0.2f + 0.8f * hash_unit((uint32_t)ring * 0x27d4eb2fu + seed + (uint32_t)(1024 * p->tone));
-    strength *= 0.75f + 0.5f * noise2(u * 3.7f, radius * 110, seed + 10);
-    float slope = maxf(fabsf(aside) / maxf(radius, 1e-4f), 0.12f); // slope of the cut through the rings
-    float late = stepf(0.05f, 0.88f, within) * (1 - stepf(0.86f, 1.0f, within));
-
-    return mixf(0.33f, late, visible(0.0035f / slope, footprint)) * strength;
-}
-
-/// Fibres: streaks along the grain, from 8 mm to half a millimetre across, each finer one shorter.
-static float wood_fibres(float u, float y, uint32_t seed, float footprint) {
-    float sum = 0, wide = 0.008f, weight = 0.5f;
-    for (uint32_t octave = 0; octave < 5; octave++, wide *= 0.5f, weight *= 0.86f) {
-        const float shown = visible(wide, footprint);
-        if (shown <= 0) break;
-        sum += shown * weight * noise2(u / (26 * wide), y / wide, seed + octave);
-    }
-    return sum;
-}
-
-/// Pores: dark dashes along the grain, a few tenths of a millimetre across, crowded in the early wood.
-static float wood_pores(float u, float y, float late, uint32_t seed, float footprint) {
-    float sum = 0;
-    for (uint32_t k = 0; k < 2; k++) {
-        const float wide = k ? 0.00045f : 0.0008f, shown = visible(1.3f * wide, footprint);
-        const float n = noise2(u / (30 * wide), y / wide + 0.5f * (float)k, seed + k);
-        sum += shown * stepf(0.28f + 0.3f * late, 0.72f + 0.3f * late, n);
-    }
-    return minf(sum, 1);
-}
-
-static void wood(const Preview *preview, Float3 position, float footprint, Table *table) {
-    uint32_t seed = preview->def.seed + 77;
-    Plank p = find_plank(seed, position.x, position.y);
-    float u = p.along + p.shift, late = year_rings(&p, seed, footprint);
-    float bow = 0.011f * noise2(u * 2.3f, p.across * 9, seed), y = position.y + 0.6f * bow; // fibres follow the rings
-    const float fibre = wood_fibres(u, y, seed + 20, footprint), pores = wood_pores(u, y, late, seed + 30, footprint);
-
-    // planks differ, and the heart of a tree is darker than its outside
-    float blotch = noise2(u * 3.1f, p.across * 14, seed + 5), wear = noise2(position.x * 5, position.y * 5, seed + 6);
-    float heart = noise2(u * 0.9f, p.across * 11 + 7 * p.hue, seed + 8);
-    float value = 1.09f + 0.42f * (p.tone - 0.5f) - 0.44f * late + 0.17f * fibre + 0.10f * blotch + 0.05f * wear;
-    value += 0.10f * heart;
-    value *= 1 - 0.42f * pores;
-
-    // a joint: a dark gap, soft-edged, and a bevel next to it that leans towards it
-    float soft = maxf(0.0011f, 0.7f * footprint), joint = 1 - stepf(0.0003f, soft + 0.0003f, p.edge);
-    float bevel = (1 - stepf(0.0008f, 0.0026f, p.edge)) * visible(0.0016f, footprint);
-    value *= (1 - 0.86f * joint * minf(1, 0.0016f / footprint)) * (1 - 0.18f * bevel);
-
-    // late wood is redder, early wood more golden; planks differ
-    float red = clampf(0.35f * late + 0.6f * (p.hue - 0.5f) - 0.12f * fibre, -0.35f, 0.5f);
-    table->albedo = float3_scale(float3(1 + 0.22f * red, 1 - 0.10f * red, 1 - 0.42f * red), maxf(value, 0.04f));
-
-    // an oiled face: dull in the pores and where it is worn, and its mirror image breaks up along the fibres
-    table->polish = (0.44f - 0.14f * late + 0.16f * wear + 0.10f * fibre) * (1 - 0.8f * joint) * (1 - 0.6f * pores);
-    float across = clampf(p.across / (0.5f * PLANK_WIDTH), -1, 1);
-    table->tilt[0] = 0.004f * wear;
-    table->tilt[1] = 0.012f * blotch + 0.030f * fibre + 0.010f * across + 0.16f * bevel * (across > 0 ? 1.0f : -1.0f);
 }
 
 /// Noise of the slab, its slope added to the tilt.
@@ -217,7 +136,9 @@ static float footprint(const Preview *preview, float distance, float cosine) {
 void ground_look(const Preview *preview, Float3 position, float cosine, float distance, Table *table) {
     float size = footprint(preview, distance, cosine);
     *table = (Table){.albedo = {1, 1, 1}, .polish = 0.1f};
-    if (preview->def.ground == PREVIEW_GROUND_WOOD) wood(preview, position, size, table);
+    const uint32_t seed = preview->def.seed + 77;
+    const Plank plank = find_plank(seed, position.x, position.y);
+    if (preview->def.ground == PREVIEW_GROUND_WOOD) wood_look(&plank, position.x, position.y, seed, size, table);
     if (preview->def.ground == PREVIEW_GROUND_STONE) stone(preview, position, size, table);
     table->albedo = float3_mul(table->albedo, float3_load(preview->def.ground_colour));
     if (stain_may_be(preview, position.x, position.y)) crumbs(preview, position, size, table);

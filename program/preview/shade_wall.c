@@ -10,11 +10,9 @@
 #define BRICK_HIGH 0.075f  ///< m, with a joint
 #define BRICK_JOINT 0.010f ///< m
 
-static float shown_at(float metres, float footprint) { return clampf(1.5f - 0.9f * footprint / metres, 0, 1); }
-
 /// Noise of the face, its slope added to the tilt.
 static float rough(float u, float v, float metres, float height, uint32_t seed, float footprint, Table *table) {
-    const float shown = shown_at(metres, footprint), e = 0.25f;
+    const float shown = visible(metres, footprint), e = 0.25f;
     if (shown <= 0) return 0;
     u /= metres;
     v /= metres;
@@ -56,14 +54,14 @@ static void brick(float u, float v, uint32_t seed, float footprint, Table *table
     const float soft = maxf(0.0012f, 0.6f * footprint), face = stepf(-soft, soft, edge);
 
     // worn edges lean towards the joint, which lies back in their shadow
-    const float bevel = (1 - stepf(0, 0.005f, fabsf(edge))) * shown_at(0.004f, footprint);
+    const float bevel = (1 - stepf(0, 0.005f, fabsf(edge))) * visible(0.004f, footprint);
     if (side < end) table->tilt[0] += 0.5f * bevel * (along < 0.5f * BRICK_LONG ? -1.0f : 1.0f);
     else table->tilt[1] += 0.5f * bevel * (up < 0.5f * BRICK_HIGH ? -1.0f : 1.0f);
 
     const float cloud = noise2(u * 16, v * 16, key & 255),
                 lump = rough(u, v, 0.011f, 0.05f, seed + 5, footprint, table);
     const float grain = rough(u, v, 0.0022f, 0.08f, seed + 6, footprint, table);
-    const float pit = stepf(0.45f, 0.8f, noise2(u * 260, v * 260, seed + 7)) * shown_at(0.003f, footprint);
+    const float pit = stepf(0.45f, 0.8f, noise2(u * 260, v * 260, seed + 7)) * visible(0.003f, footprint);
     const float tone = hash_unit(key), hue = hash_unit(key + 1) - 0.5f;
     float value = 0.72f + 0.5f * tone + 0.16f * cloud + 0.10f * lump + 0.10f * grain;
     value *= (1 - 0.35f * pit) * (hash_unit(key + 2) < 0.08f ? 0.5f : 1); // one in twelve is burnt dark

@@ -1,4 +1,4 @@
-// Balls, boxes, capsules and solids: rays against them, and their appearance.
+// Balls, boxes, capsules and solids: rays against them.
 //
 // Sphere: |o + t d - c|^2 = r^2. Capsule: the segment's cylinder, then its two end spheres. Box: slabs in the
 // box's frame (Kay & Kajiya 1986).
@@ -113,39 +113,4 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
     if (t > 0) *normal = quat_rotate(shape->rotation, n);
 
     return t;
-}
-
-// ---- appearance
-
-// Balls, boxes, capsules and solids: matt when cold; hot, they glow like metal with patches of darker scale. Air that
-// rises along them cools them most below, and a limb shows only the scale's peaks, which are cooler. A glow is wide, so
-// a film that is set for what it lights would show it as a white disc: it is drawn as bright as lets its colours differ.
-
-#define SHAPE_GAIN 0.122f
-#define SHAPE_MIDDLE 170.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
-#define SHAPE_LIMB 190.0f   ///< K, by which the limb is cooler than the middle
-#define SHAPE_BELOW 45.0f   ///< K, by which what faces down is cooler than the middle
-
-void shape_shade(const Preview *preview, const PreviewShape *shape, float moment, Point *point) {
-    point->albedo = float3_load(shape->colour);
-    point->gloss = 0.12f;
-    point->shininess = 40;
-    point->mirror = 0.5f;
-    if (!(shape->temperature > BLACKBODY_MIN)) return;
-
-    float size = shape->kind == SINGE_COLLIDER_BOX ? shape->half_size[0] : shape->radius;
-    if (shape->facets) size = 0.5f * shape->facets->extent;
-    Float3 centre = float3_mad(float3_load(shape->position), float3_load(shape->velocity), moment);
-    Float3 local = quat_unrotate(shape->rotation, float3_sub(point->position, centre));
-    Float3 p = float3_scale(local, 3.5f / maxf(size, 1e-6f));
-    float scale =
-        0.6f * noise3(p, 41) + 0.3f * noise3(float3_scale(p, 2.7f), 42) + 0.2f * noise3(float3_scale(p, 7.1f), 43);
-    const float facing = clampf(float3_dot(point->normal, point->view), 0, 1), aside = 1 - facing;
-    const float temperature = shape->temperature * (1 + 0.025f * scale) - SHAPE_LIMB * aside * sqrtf(aside) +
-                              SHAPE_BELOW * minf(point->normal.z, 0.5f) + SHAPE_MIDDLE * facing * facing;
-    const float limb = 0.25f + 0.75f * facing;
-    Float3 glow = blackbody_glow(preview->blackbody, temperature);
-    point->glow = float3_scale(glow, SHAPE_GAIN * limb * (1 + 0.3f * scale));
-    point->albedo = float3_scale(point->albedo, 0.45f);
-    point->mirror = 0.15f;
 }

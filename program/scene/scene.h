@@ -166,6 +166,7 @@ typedef struct SceneCollider {
     uint32_t key_count;   ///< at least 1
     SceneKey *keys;
     float colour[3]; ///< linear, in the preview
+    int surface;     ///< PreviewSurface
     bool visible;
 } SceneCollider;
 

@@ -5,6 +5,11 @@
     (BIT(SINGE_COLLIDER_SPHERE) | BIT(SINGE_COLLIDER_BOX) | BIT(SINGE_COLLIDER_CAPSULE) | \
      BIT(SINGE_COLLIDER_HEIGHTFIELD) | BIT(SINGE_COLLIDER_MESH))
 
+static const char *const surface_names[] = {[PREVIEW_SURFACE_MATT] = "matt",
+                                            [PREVIEW_SURFACE_WOOD] = "wood",
+                                            [PREVIEW_SURFACE_METAL] = "metal",
+                                            [PREVIEW_SURFACE_CLOTH] = "cloth",
+                                            NULL};
 static const char *const units_names[] = {[SCENE_UNITS_M] = "m",   [SCENE_UNITS_CM] = "cm", [SCENE_UNITS_MM] = "mm",
                                           [SCENE_UNITS_IN] = "in", [SCENE_UNITS_FT] = "ft", NULL};
 static const char *const up_names[] = {[SCENE_UP_Z] = "z", [SCENE_UP_Y] = "y", NULL};
@@ -221,6 +226,9 @@ static const SchemaRow collider_rows[] = {
      .doc = "its trajectory"},
     {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = DRAWN, WITHIN(0, 1),
      .doc = "linear red, green, blue in the preview"},
+    {"surface", ROW_ENUM, DIM_NONE, AT(SceneCollider, surface), .kinds = DRAWN, .names = surface_names,
+     .doc = "what it is made of in the preview, in its colour: `matt`; `wood`, cut along its longest side; `metal`, "
+            "brushed, with temper colours when it is hot; or `cloth`, stretched over it"},
     {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = DRAWN, .doc = "drawn in the preview"},
 };
 #undef OF

@@ -221,6 +221,7 @@ bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, d
     *shape = (PreviewShape){.kind = def->kind,
                             .radius = def->radius,
                             .height = def->height,
+                            .surface = (PreviewSurface)collider->surface,
                             .temperature = def->conductance > 0 ? def->temperature : scene->sim.ambient_temperature};
     if (def->kind == SINGE_COLLIDER_MESH || def->kind == SINGE_COLLIDER_HEIGHTFIELD)
         shape->solid = &assets->solids[slot].surface;

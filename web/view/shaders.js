@@ -167,7 +167,7 @@ void main() {
     gl_Position = viewProjection * p;
 }`;
 
-/** Planks after shade_ground.c, each with its own trunk's rings; `fade` is GLSL that changes c. */
+/** Planks after shade_wood.c, each with its own trunk's rings; `fade` is GLSL that changes c. */
 export const table = (light, colour, fade) => /* glsl */ `${NOISE}${light}
 in vec3 vPosition, vNormal;
 out vec4 colour;

@@ -1,0 +1,102 @@
+// Metal: brushed, tempered by heat, or glowing under scale.
+
+#include "preview/shape_look.h"
+
+/// What a film of oxide that grew at that temperature leaves of the light that the metal mirrors.
+static Float3 temper_colour(float temperature) {
+    enum { STOPS = 8 };
+    static const float stop[STOPS][4] = {
+        {460, 1.00f, 1.00f, 1.00f}, {500, 1.00f, 0.86f, 0.56f}, {530, 0.88f, 0.58f, 0.33f}, {553, 0.62f, 0.36f, 0.52f},
+        {578, 0.30f, 0.40f, 0.78f}, {605, 0.46f, 0.62f, 0.80f}, {640, 0.62f, 0.66f, 0.68f}, {800, 0.42f, 0.42f, 0.44f}};
+    int i = 1;
+    while (i < STOPS - 1 && temperature > stop[i][0]) i++;
+    const float f = clampf((temperature - stop[i - 1][0]) / (stop[i][0] - stop[i - 1][0]), 0, 1);
+    return float3_mix(float3_load(stop[i - 1] + 1), float3_load(stop[i] + 1), f);
+}
+
+void shape_metal(const Place *place, Point *point) {
+    const PreviewShape *shape = place->shape;
+    const bool turned = shape->kind == SINGE_COLLIDER_SPHERE || shape->kind == SINGE_COLLIDER_CAPSULE;
+    const float footprint = point->footprint;
+
+    // streaks along the scratches of a brush, from 1.6 mm to a fifth of one across
+    float streaks = 0, wide = 0.0016f, weight = 0.6f;
+    for (uint32_t octave = 0; octave < 4; octave++, wide *= 0.5f, weight *= 0.8f) {
+        const float shown = visible(wide, footprint), fine = 1 / wide, coarse = fine / 40;
+        if (shown <= 0) break;
+        const Float3 q = turned ? float3(coarse * place->p.x, coarse * place->p.y, fine * place->p.z)
+                                : float3(coarse * place->p.x, fine * place->p.y, fine * place->p.z);
+        streaks += shown * weight * noise3(q, 401 + octave);
+    }
+
+    const float worn = noise3(float3_scale(place->p, 48), 411) + 0.5f * noise3(float3_scale(place->p, 130), 412);
+    const float patina = stepf(0.45f, 1.15f, worn),
+                grime = visible(0.004f, footprint) * noise3(float3_scale(place->p, 420), 413);
+
+    // single scratches, in any direction
+    Float3 q = float3(300 * place->p.x + 90 * place->p.y, 20 * place->p.y - 30 * place->p.z, 260 * place->p.z);
+    const float scratch = visible(0.0012f, footprint) * (1 - stepf(0.01f, 0.05f, fabsf(noise3(q, 414)))) *
+                          stepf(0.1f, 0.5f, noise3(float3_scale(place->p, 75), 415));
+
+    Float3 shine = point->albedo;
+    if (shape->temperature > 460) {
+        // it cools upwards, from what heats it
+        const float height = shape->facets ? (place->p.z - shape->facets->centre.z) / shape->facets->extent : -1;
+        const float grown = shape->temperature - 330 * clampf(height + 0.33f, 0, 1) + 14 * worn + 5 * grime;
+        shine = float3_mul(shine, temper_colour(grown));
+    }
+
+    point->shine =
+        float3_scale(shine, clampf(1 + 0.22f * streaks - 0.30f * patina + 0.08f * grime + 0.25f * scratch, 0.3f, 1.5f));
+    point->albedo =
+        float3_mul(point->albedo, float3_mix(float3(0.07f, 0.07f, 0.07f), float3(0.20f, 0.14f, 0.11f), patina));
+    point->rough[0] = 0.11f + 0.20f * patina + 0.03f * grime + 0.02f * worn;
+    point->rough[1] = point->rough[0] + 0.12f;
+    point->gloss = point->mirror = 0;
+    point->glints = glints_may_be(shape, footprint);
+
+    const Float3 along = turned ? float3_unit_or(float3(-place->p.y, place->p.x, 0), float3(1, 0, 0)) : float3(1, 0, 0);
+    point->brush = quat_rotate(shape->rotation, along);
+    const Float3 across = float3_unit_or(float3_cross(place->normal, along), place->normal);
+    Float3 dents = noise3_gradient(float3_scale(place->p, 36), noise3(float3_scale(place->p, 36), 416), 416);
+    shape_lean(place, float3_mad(float3_scale(dents, 0.020f), across, 0.10f * streaks + 0.3f * scratch), point);
+}
+
+// ---- heat
+
+// What glows is drawn as bright as lets its colours differ: a glow is wide, so a film that is set for what it lights would
+// show it as a white disc. Its scale is cooler than the metal, which shows in cracks and where scale has come off. Air
+// that rises along it cools it most below.
+
+#define SHAPE_GAIN 0.142f
+#define SHAPE_MIDDLE 183.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
+#define SHAPE_LIMB 190.0f   ///< K, by which the limb is cooler than the middle
+#define SHAPE_BELOW 60.0f   ///< K, by which what faces down is cooler than the middle
+#define SCALE_COOLER 120.0f ///< K, scale over metal
+
+void shape_glow(const Preview *preview, const Place *place, Point *point) {
+    const float unit = 3.5f / maxf(place->size, 1e-6f);
+    const Float3 p = float3_scale(place->p, unit);
+    const float small = noise3(float3_scale(p, 7.1f), 43), middle = noise3(float3_scale(p, 2.7f), 42);
+    const float broad = noise3(float3_scale(p, 0.8f), 41);
+    const float fine = visible(0.2f / unit, point->footprint) * noise3(float3_scale(p, 19), 44);
+    const float lies = broad + 0.6f * middle + 0.35f * small + 0.15f * fine; // scale lies where it is high
+    const float scale = stepf(-0.22f, -0.08f, lies), rim = scale * (1 - stepf(-0.08f, 0.10f, lies));
+    const float wall = noise_walls(float3_mad(float3_scale(p, 0.9f), float3(small, middle, broad), 0.22f), 45);
+    const float crack = scale * (1 - stepf(0.02f, 0.07f + 0.4f * unit * point->footprint, wall));
+
+    const float facing = clampf(float3_dot(point->normal, point->view), 0, 1), aside = 1 - facing;
+    const float cool = scale * (1 - 0.8f * crack) * (0.75f + 0.5f * middle + 0.3f * small) + 0.25f * rim;
+    const float temperature = place->shape->temperature * (1 + 0.012f * broad) - SCALE_COOLER * cool -
+                              SHAPE_LIMB * aside * sqrtf(aside) + SHAPE_BELOW * minf(point->normal.z, 0.5f) +
+                              SHAPE_MIDDLE * facing * facing;
+    Float3 glow = blackbody_glow(preview->blackbody, temperature);
+    point->glow = float3_scale(glow, SHAPE_GAIN * (0.45f + 0.55f * facing) * (1 + 0.15f * fine));
+    point->albedo = float3_scale(float3(0.045f, 0.042f, 0.040f), 0.6f + 0.4f * scale);
+    point->gloss = 0;
+    point->mirror = 0.15f;
+    point->shine = float3_scale(float3(0.05f, 0.05f, 0.05f), 1 - 0.6f * rim);
+    point->rough[0] = point->rough[1] = 0.42f;
+    const Float3 q = float3_scale(p, 2.7f);
+    shape_lean(place, float3_scale(noise3_gradient(q, middle, 42), 0.10f * scale), point);
+}

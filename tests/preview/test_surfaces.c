@@ -1,0 +1,114 @@
+// What shapes are made of: wood, metal and cloth.
+
+#include "fixture.h"
+
+#include <math.h>
+
+static const PreviewSurface SURFACES[4] = {PREVIEW_SURFACE_MATT, PREVIEW_SURFACE_WOOD, PREVIEW_SURFACE_METAL,
+                                           PREVIEW_SURFACE_CLOTH};
+
+/// A box of 12 x 6 x 8 cm seen from aslant, without a ground, `aside` from the origin as its camera is.
+static PreviewDef box_make(PreviewSurface surface, float aside, PreviewShape *box) {
+    *box = (PreviewShape){.kind = SINGE_COLLIDER_BOX,
+                          .position = {aside, -aside, 0.5f * aside},
+                          .rotation = {0, 0, 0, 1},
+                          .half_size = {0.06f, 0.03f, 0.04f},
+                          .surface = surface,
+                          .colour = {0.4f, 0.4f, 0.4f},
+                          .temperature = 293};
+    PreviewDef def = small();
+    def.camera = (PreviewCamera){.eye = {aside + 0.05f, -aside - 0.3f, 0.5f * aside + 0.12f},
+                                 .target = {aside, -aside, 0.5f * aside},
+                                 .up = {0, 0, 1},
+                                 .fov = 0.3f};
+    def.ground_height = -INFINITY;
+    def.shapes = box, def.shape_count = 1;
+    return def;
+}
+
+/// The front of the box in a picture: the means of its channels, and the standard deviation of green over its mean.
+typedef struct Front {
+    float mean[3], varies;
+} Front;
+
+static Front front_of(const uint8_t *rgb) {
+    Front front = {.varies = 0};
+    float squares = 0;
+    enum { ACROSS = 40, DOWN = 16, COUNT = ACROSS * DOWN };
+    for (int i = 0; i < COUNT; i++) {
+        const uint8_t *p = pixel(rgb, W / 2 - ACROSS / 2 + i % ACROSS, H / 2 + i / ACROSS);
+        for (int c = 0; c < 3; c++) front.mean[c] += (float)p[c] / COUNT;
+        squares += (float)p[1] * (float)p[1] / COUNT;
+    }
+    front.varies = sqrtf(fmaxf(squares - front.mean[1] * front.mean[1], 0)) / front.mean[1];
+    return front;
+}
+
+/// Each surface has a pattern, which moves with its shape. The largest change is in thousandths of a metre's rounding.
+TEST(patterns_stay_on_their_shape) {
+    static uint8_t here[BYTES], there[BYTES];
+    SingeSurface nothing = {0};
+    PreviewShape box;
+    for (int k = 0; k < 4; k++) {
+        PreviewDef def = box_make(SURFACES[k], 0, &box);
+        draw(&def, &nothing, 0, here);
+        def = box_make(SURFACES[k], 0.25f, &box);
+        draw(&def, &nothing, 0, there);
+        float change = 0;
+        for (int i = 0; i < BYTES; i++) change += fabsf((float)here[i] - (float)there[i]) / BYTES;
+        const Front front = front_of(here);
+        print_message("surface %d varies by %.3f; moved by %.2f\n", k, (double)front.varies, (double)change);
+        assert_true(change < 0.3f);
+        assert_true((front.varies > 0.02f) == (SURFACES[k] != PREVIEW_SURFACE_MATT));
+    }
+}
+
+/// Metal mirrors the flame before it; what is matt is lit by it all over.
+TEST(metal_mirrors_a_flame) {
+    static float beauty[W * H][3];
+    static Ball ball;
+    SingeSurface nothing = {0};
+    PreviewShape box;
+    float share[2];
+    for (int k = 0; k < 2; k++) {
+        PreviewDef def = box_make(k ? PREVIEW_SURFACE_METAL : PREVIEW_SURFACE_MATT, 0, &box);
+        for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
+        ball_make(&ball, 0, -0.12f, -0.05f, 0.02f, 4e6f, 0); // below what the camera sees
+        Preview *preview = NULL;
+        SingeError error;
+        PreviewLayers layers = {.beauty = beauty};
+        assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+        assert_int_equal(preview_set_gas(preview, &ball.gas, &error), SINGE_OK);
+        assert_int_equal(preview_draw_layers(preview, &nothing, 0.3, NULL, &layers, &error), SINGE_OK);
+        preview_destroy(preview);
+
+        float sum = 0, most = 0, count = 0;
+        for (int y = H / 2 - 4; y < H / 2 + 20; y++)
+            for (int x = W / 2 - 24; x < W / 2 + 24; x++, count++) {
+                const float green = beauty[y * W + x][1];
+                sum += green, most = fmaxf(most, green);
+            }
+        share[k] = most * count / sum;
+    }
+    print_message("brightest over mean: matt %.2f, metal %.2f\n", (double)share[0], (double)share[1]);
+    assert_true(share[1] > 2 * share[0]);
+}
+
+/// Steel that a fire has heated wears straw at 235 C and blue at 300 C.
+TEST(heated_metal_wears_temper_colours) {
+    static const float kelvin[3] = {293, 505, 576};
+    static uint8_t rgb[BYTES];
+    SingeSurface nothing = {0};
+    PreviewShape box;
+    float blue[3];
+    for (int k = 0; k < 3; k++) {
+        PreviewDef def = box_make(PREVIEW_SURFACE_METAL, 0, &box);
+        box.temperature = kelvin[k];
+        draw(&def, &nothing, 0, rgb);
+        const Front front = front_of(rgb);
+        blue[k] = front.mean[2] / front.mean[0];
+    }
+    print_message("blue over red: cold %.2f, straw %.2f, blue %.2f\n", (double)blue[0], (double)blue[1],
+                  (double)blue[2]);
+    assert_true(blue[1] < 0.85f * blue[0] && blue[2] > 1.2f * blue[0]);
+}
