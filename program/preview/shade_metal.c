@@ -68,10 +68,10 @@ void shape_metal(const Place *place, Point *point) {
 // show it as a white disc. Its scale is cooler than the metal, which shows in cracks and where scale has come off. Air
 // that rises along it cools it most below.
 
-#define SHAPE_GAIN 0.142f
-#define SHAPE_MIDDLE 183.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
+#define SHAPE_GAIN 0.147f
+#define SHAPE_MIDDLE 205.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
 #define SHAPE_LIMB 190.0f   ///< K, by which the limb is cooler than the middle
-#define SHAPE_BELOW 60.0f   ///< K, by which what faces down is cooler than the middle
+#define SHAPE_BELOW 30.0f   ///< K, by which what faces down is cooler than the middle
 #define SCALE_COOLER 120.0f ///< K, scale over metal
 
 void shape_glow(const Preview *preview, const Place *place, Point *point) {
