@@ -56,7 +56,7 @@ TEST(the_default_light_leaves_room_for_fire) {
         see(&def, &white, &colour);
         print_message("%s: %.3f of the paper is white, colour of the flame %.2f\n", day ? "by day" : "by default",
                       (double)white, (double)colour);
-        assert_true((white < 0.05f) == !day && (colour > 0.47f) == !day);
+        assert_true((white < 0.05f) == !day && (colour > 0.56f) == !day);
     }
     scene_messages_free(&messages);
     scene_assets_free(&assets);
