@@ -209,7 +209,7 @@ void cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth,
     point->albedo = float3_scale(point->albedo, 1 + charred * clampf(0.75f * up, -0.6f, 0.9f));
     point->albedo = float3_mix(point->albedo, float3(0.155f, 0.150f, 0.143f), 0.75f * ash);
     Float3 lean = float3_mad(float3_scale(point->across[0], relief[0]), point->across[1], relief[1]);
-    Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, -0.30f * charred), point->normal);
+    Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, -0.55f * charred), point->normal);
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
 
     const float glows = 1 + charred * clampf(0.9f * top - 0.25f, -0.7f, 0.6f);

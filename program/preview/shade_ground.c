@@ -63,30 +63,11 @@ Float3 background_colour(const Preview *preview, Float3 direction) {
     return float3_scale(base, height > 0 ? mixf(1.12f, 0.62f, height) : mixf(1.12f, 0.75f, -height));
 }
 
-/// A scale of ash or char: torn off along a few lines, so that it has corners. `x`, `y`: m from its middle.
-typedef struct Scale {
-    float x, y, size; ///< m, half of its length
-    uint32_t key;
-} Scale;
-
-/// How far inside the scale's outline a point is, over its size: 1 in the middle, 0 on the outline, negative outside.
-static float scale_depth(const Scale *scale) {
-    enum { SIDES = 5 };
-    const float torn = noise2(3 * scale->x / scale->size, 3 * scale->y / scale->size, scale->key & 255) +
-                       0.5f * noise2(8 * scale->x / scale->size, 8 * scale->y / scale->size, scale->key >> 8 & 255);
-    float depth = 1;
-    for (uint32_t k = 0; k < SIDES; k++) {
-        const float turn = 2 * PI_F * ((float)k + 0.7f * hash_unit(scale->key + 20 + k)) / SIDES;
-        const float out = mixf(0.35f, 1, hash_unit(scale->key + 30 + k));
-        depth = minf(depth, out - (cosf(turn) * scale->x + sinf(turn) * scale->y) / scale->size);
-    }
-    return depth + 0.13f * torn;
-}
-
 /// Scales of pale ash and of char, one or none in each square of three lattices, as they lie where the stain is full: in
 /// drifts, few of them large. A scale is curled, so that a part of it is brighter and its shadow is wider on one side, and
 /// it is palest at its edge and along its creases.
 static void crumbs(const Preview *preview, Float3 position, float footprint, Table *table) {
+    enum { SIDES = 5 };
     static const float squares[3] = {0.019f, 0.0085f, 0.0026f}, most[3] = {0.5f, 0.5f, 0.35f}; // m; share that has one
     const uint32_t seed = preview->def.seed;
     const float drift =
@@ -101,23 +82,25 @@ static void crumbs(const Preview *preview, Float3 position, float footprint, Tab
         const uint32_t key = sample_key(i, j, seed + 311 + k);
         if (hash_unit(key) > most[k] * often) continue;
         const float size = mixf(0.13f, 0.36f, hash_unit(key + 4) * hash_unit(key + 5)), room = 1.05f * size + 0.08f;
-        const Scale scale = {.x = wide * (fx - mixf(room, 1 - room, hash_unit(key + 1))),
-                             .y = wide * (fy - mixf(room, 1 - room, hash_unit(key + 2))),
-                             .size = wide * size,
-                             .key = key};
-        const float depth = scale_depth(&scale);
-        const float lean = 2 * PI_F * hash_unit(key + 3),
-                    side = (cosf(lean) * scale.x + sinf(lean) * scale.y) / scale.size;
+        const float x = (fx - mixf(room, 1 - room, hash_unit(key + 1))) / size;
+        const float y = (fy - mixf(room, 1 - room, hash_unit(key + 2))) / size;
+
+        // how far inside its outline the point is: 1 in the middle. It is torn off along a few lines, so that it has corners
+        float depth = 1;
+        for (uint32_t s = 0; s < SIDES; s++) {
+            const float turn = 2 * PI_F * ((float)s + 0.7f * hash_unit(key + 20 + s)) / SIDES;
+            depth = minf(depth, mixf(0.35f, 1, hash_unit(key + 30 + s)) - cosf(turn) * x - sinf(turn) * y);
+        }
+        depth += 0.13f * noise2(3 * x, 3 * y, key & 255) + 0.065f * noise2(8 * x, 8 * y, key >> 8 & 255);
+        const float lean = 2 * PI_F * hash_unit(key + 3), side = cosf(lean) * x + sinf(lean) * y;
 
         // its curled side stands off the ground
-        const float beside = 0.20f + 0.30f * stepf(-0.2f, 0.9f, side), soft = 0.6f * footprint / scale.size;
+        const float beside = 0.20f + 0.30f * stepf(-0.2f, 0.9f, side), soft = 0.6f * footprint / (wide * size);
         const float shadow = 0.8f * shown * stepf(-beside - soft, 0.05f, depth);
         const float cover = shown * stepf(-soft, 0.06f + soft, depth);
         if (shadow <= 0) continue;
         const float ash = stepf(0.3f, 0.65f, hash_unit(key + 6));
-        const float crease =
-            1 -
-            stepf(0, 0.16f, fabsf(noise2(2.2f * scale.x / scale.size, 2.2f * scale.y / scale.size, key >> 16 & 255)));
+        const float crease = 1 - stepf(0, 0.16f, fabsf(noise2(2.2f * x, 2.2f * y, key >> 16 & 255)));
         const float rim = 1 - stepf(0.02f, 0.22f, depth),
                     grain = noise2(position.x * 2600, position.y * 2600, key & 255);
         float value = mixf(0.020f, 0.20f + 0.24f * hash_unit(key + 8), ash);

@@ -19,7 +19,7 @@ enum { SPARKS_A_SLOT = 4 }; ///< that a site may throw in a slot
 #define COOLING 1.7f
 #define SPARK_OPEN (1 / 120.0f) ///< s, the shortest exposure of a spark: eye and film keep it
 #define BLUR_MOST 2.0f          ///< pixels
-#define SPARKS_A_METRE 900.0f   ///< 1/(m s), of sites that glow along a few cm
+#define SPARKS_A_METRE 1300.0f  ///< 1/(m s), of sites that glow along a few cm
 #define SPARKS_CROWD 0.25f      ///< m of glowing line above which sparks become rarer
 
 /// A spark's flight.

@@ -76,12 +76,12 @@ TEST(dye_burns_with_its_threads) {
 }
 
 /// Char of cloth whose threads of 0.4 mm no pixel of 0.9 mm resolves keeps relief and tones of its bundles: how much its light
-/// varies from pixel to pixel along a row, over the mean.
+/// varies over 4 pixels along a row, over the mean.
 TEST(char_of_cloth_shows_its_bundles) {
     static uint8_t rgb[BYTES];
     Float4 q;
     quad_make(&q, 0.12f, 0);
-    for (int i = 0; i < 4; i++) q.burn[i] = 0.62f, q.peak[i] = 900;
+    for (int i = 0; i < 4; i++) q.burn[i] = 0.5f, q.peak[i] = 900;
     const PreviewLook look = {.weave = 4e-4f};
     const PreviewStart start = {4, 1, q.position[0], QUAD, q.uv[0], NULL};
     PreviewDef def = above();
@@ -91,12 +91,12 @@ TEST(char_of_cloth_shows_its_bundles) {
     float steps = 0, sum = 0;
     for (int y = 8; y < H - 8; y++)
         for (int x = 8; x < W - 8; x++) {
-            const float step = (float)pixel(rgb, x + 1, y)[1] - (float)pixel(rgb, x, y)[1];
+            const float step = (float)pixel(rgb, x + 4, y)[1] - (float)pixel(rgb, x, y)[1];
             steps += step * step, sum += (float)pixel(rgb, x, y)[1];
         }
     const float count = (float)((W - 16) * (H - 16)), varies = sqrtf(steps * count) / sum;
     print_message("char of cloth is %.1f, and varies by %.2f of it\n", (double)(sum / count), (double)varies);
-    assert_true(varies > 0.22f); // 0.17: flat
+    assert_true(varies > 0.28f); // 0.23: flat
 }
 
 /// What is left of a burnt sheet, seen from straight above.
