@@ -54,8 +54,8 @@
 #define FLAME_COOL 1200.0f ///< K
 #define FLAME_HOT 2000.0f
 #define FLAME_DIM 0.26f ///< radiance of a thick flame at its coolest and its hottest
-#define FLAME_BRIGHT 6.4f
-#define FLAME_CAST 1900.0f      ///< K, colour of the light that they cast
+#define FLAME_BRIGHT 6.8f
+#define FLAME_CAST 0.875f       ///< of that range, 1900 K: the colour of the light that they cast
 #define FLAME_THROWN 384.0f     ///< 1/m, its luminance
 #define FLAME_BAKED 3.0f        ///< radiance of what is 1 where gas is baked
 #define SOOT_DENSE 195.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
@@ -142,8 +142,8 @@ static Float3 flame_colour(const Fire *fire, float hot) {
 }
 
 Float3 fire_emission(const Preview *preview) {
-    const Float3 glow = blackbody_glow(preview->blackbody, FLAME_CAST);
-    return float3_scale(glow, FLAME_THROWN / float3_luminance(glow));
+    const Float3 colour = flame_colour(&preview->fire, FLAME_CAST);
+    return float3_scale(colour, FLAME_THROWN / float3_luminance(colour));
 }
 
 float fire_share(const Fire *fire, size_t at) {
@@ -202,13 +202,13 @@ static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float 
         float3_mad(p, float3(wide.b + 0.2f * fine.b, wide.a + 0.2f * fine.a, 0), fire->scale * THREAD_WARP);
     Noise thread = {0, 0, 0, 0};
     if (soot > 0) thread = eddies(fire, bent, passed, sqrtf(fire->scale) * EDDY_THREAD, 3.4f * sqrtf(fire->scale));
-    const float sharp = maxf(3 * minf(THREAD_BLUR / maxf(blur, 1e-6f), 1), 1.7f); // thin ones would look like combs
+    const float sharp = maxf(3 * minf(THREAD_BLUR / maxf(blur, 1e-6f), 1), 2.2f); // thin ones would look like combs
     float clear =
         stepf(-0.5f, 0.6f, 0.15f * (wide.d + fine.d) + torn * (0.57f - 0.17f * (3 - sharp) - sharp * fabsf(thread.a)));
 
     float core = stepf(0.35f, 0.7f, cell->flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
-    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.24f * core + 0.74f * clear - 0.14f * tip - 0.16f;
+    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.16f;
     hot -= FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));
 
     soot *= soot * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);

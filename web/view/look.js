@@ -1,5 +1,5 @@
 // Made by scripts/write_look.py from program/preview: do not edit.
-export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.017, FLAME_SEEN: 0.15, FLAME_END: 0.3, FIRE_SWAY: 0.018, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 6.4, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, FIRE_PASSING: 0.75 };
+export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.017, FLAME_SEEN: 0.15, FLAME_END: 0.3, FIRE_SWAY: 0.018, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 6.8, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, FIRE_PASSING: 0.75 };
 
 export const PAPER = /* glsl */ `
 const float EMBER_BURN = 0.74;
@@ -368,12 +368,12 @@ void shade_flame(FireCell cell, vec3 p, float rise, float passed, float slope,
         float3_mad(p, vec3(wide.b + 0.2 * fine.b, wide.a + 0.2 * fine.a, 0.0), fireScale * THREAD_WARP);
     Noise thread = Noise(0.0, 0.0, 0.0, 0.0);
     if (soot > 0.0) thread = eddies(bent, passed, sqrt(fireScale) * EDDY_THREAD, 3.4 * sqrt(fireScale));
-    float sharp = max(3.0 * min(THREAD_BLUR / max(blur, 1e-6), 1.0), 1.7);
+    float sharp = max(3.0 * min(THREAD_BLUR / max(blur, 1e-6), 1.0), 2.2);
     float clear =
         stepf(-0.5, 0.6, 0.15 * (wide.d + fine.d) + torn * (0.57 - 0.17 * (3.0 - sharp) - sharp * abs(thread.a)));
     float core = stepf(0.35, 0.7, cell.flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0.0, 0.7, edge), low = 1.0 - stepf(0.1, 0.9, tall);
-    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.24 * core + 0.74 * clear - 0.14 * tip - 0.16;
+    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.16;
     hot -= FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
     soot *= soot * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
     float root =
