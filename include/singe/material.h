@@ -177,6 +177,9 @@ typedef struct SingeMaterialDef {
     /// m, 0 to 1; what burns of other sheets within this distance of the sheet, in either layer, gets no air and goes
     /// out; 0: none. A blanket has 2 mm or so, and more than the contact's thickness, which sheets keep
     SingeParam smother_distance;
+    /// kg/(m2 s), > 0; mass that air at either face lets burn per area and second where a large area burns; a front,
+    /// whose air comes from the side, is not limited by it. inf: as in the paper
+    SingeParam air_supply;
 } SingeMaterialDef;
 
 SINGE_API void singe_init_material(SingeMaterialDef *def, size_t struct_size);

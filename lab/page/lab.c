@@ -197,6 +197,7 @@ void lab_sets_mass(SingeMaterialDef *material) {
     material->temperature = singe_param(600);
     material->ignition_temperature = singe_param(500);
     material->rate_ceiling = singe_param(1e6f);
+    material->air_supply = singe_param(INFINITY);
     material->mass_rate = singe_param(0.1f);
     material->ash_exponent = singe_param(0);
     material->ash_density = singe_param(1);

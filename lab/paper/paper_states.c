@@ -2,6 +2,7 @@
 
 #include "bench/hung_sheet.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 const char *const paper_state_names[PAPER_STATE_COUNT] = {[PAPER_SWING] = "swing", [PAPER_SHRINK] = "shrink"};
@@ -48,6 +49,7 @@ static SingeResult state_build(SingeSim *sim, PaperState state, int n) {
             def.material.ignition_temperature = singe_param(500);
             def.material.mass_rate = singe_param(rate);
             def.material.rate_ceiling = singe_param(1e6f);
+            def.material.air_supply = singe_param(INFINITY);
             def.material.ash_exponent = singe_param(0);
             def.material.heat_share = singe_param(0);
             def.material.mass_min = singe_param(0.8f);

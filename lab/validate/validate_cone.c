@@ -66,7 +66,7 @@ static void cone_heats(void *context, const SingeView *view, float *flux, float 
 /// Cotton as it is, its patches by their means, flat and held, under a flux.
 static SingeResult cone_burn(Lab *lab, const SingeMaterialDef *cotton, const Board *board, double kilowatt,
                              ConeRun *run, SingeError *error) {
-    LabGrid grid = lab_grid(2, 2, 0.01f);
+    LabGrid grid = lab_grid(10, 10, 9.4e-3f); // the specimen, 88.4 cm2
     SingeSim *sim;
     SingeSourceDef source = singe_default_source();
     SingeSourceId id;
@@ -76,8 +76,9 @@ static SingeResult cone_burn(Lab *lab, const SingeMaterialDef *cotton, const Boa
     Cone cone = {cotton, board, {0}, 1e3 * kilowatt * (0.88 - 0.11 * (heater - 600) / 600)};
     for (int k = 0; k < BOARD_CELLS; k++) cone.temperature[k] = ambient;
     grid.material = *cotton;
-    grid.material.mass_loss = singe_param(0); // burnt or not, it stays on its plate
-    grid.material.thickening = 1;             // no front
+    grid.material.mass_loss = singe_param(0);                         // burnt or not, it stays on its plate
+    grid.material.thickening = 1;                                     // no front
+    if (board->conductivity > 0) grid.material.air_supply.value /= 2; // one face is open to the air
     source.kind = SINGE_SOURCE_CALLBACK;
     source.callback = cone_heats;
     source.callback_context = &cone;
@@ -138,6 +139,10 @@ SingeResult validate_cone(Lab *lab, SingeError *error) {
                            run->ignition, measured[i], run->ignition / measured[i], run->peak, cone_peak[i],
                            run->peak / cone_peak[i]);
         }
+    SingeMaterialDef fierce = cotton;
+    fierce.air_supply = singe_param(INFINITY);
+    ConeRun most;
+    if (!result) result = cone_burn(lab, &fierce, &boards[INSULATING], cone_flux[1], &most, error);
     if (result) return result;
 
     for (int i = 0; i < SECONDS; i++) {
@@ -148,12 +153,13 @@ SingeResult validate_cone(Lab *lab, SingeError *error) {
     plot_add(&plot, (PlotLine){"FSRI", "#111", seconds, cone_release, SECONDS, true, false});
     plot_add(&plot, (PlotLine){"here", "#b2182b", seconds, runs[1].release, SECONDS, false, false});
     report_plot(lab->report, &plot);
-    report_text(lab->report,
-                "Nothing was set by these runs but the sheet's mass per area (1.06 g on 88.4 cm²). Its own numbers are "
-                "those of a <em>front</em>, within which a strip of a millimetre burns in a fraction of a second; a "
-                "whole sheet that is heated at once burns at that rate, too, where in the calorimeter air must come "
-                "from above it. The heat in all is right, its time is not. Times to ignition depend on the board as "
-                "much as on the sheet; which one it was is not reported.");
+    report_text(
+        lab->report,
+        "Nothing was set by these runs but the sheet's mass per area (1.06 g on 88.4 cm²). Its rates are those of a "
+        "<em>front</em>, within which a strip of a millimetre burns in a fraction of a second, as far as air "
+        "reaches it: a whole sheet that is heated at once burns by <code>air_supply</code>, on its one open "
+        "face. Times to ignition depend on the board as much as on the sheet; which one it was is not "
+        "reported.");
     static const char *const names[FLUXES] = {"ignition_25", "ignition_50", "ignition_75"};
     for (int i = 0; i < FLUXES; i++)
         report_bar(lab->report, names[i], "time to ignition over the measured one", runs[i].ignition / measured[i],
@@ -161,8 +167,9 @@ SingeResult validate_cone(Lab *lab, SingeError *error) {
     const double power = log(runs[2].ignition / runs[0].ignition) / log(cone_flux[2] / cone_flux[0]);
     report_measure(lab->report, "power", "exponent of the time to ignition over the flux, less the measured one",
                    power - log(measured[2] / measured[0]) / log(cone_flux[2] / cone_flux[0]), -0.25, 0.25);
-    report_measure(lab->report, "peak", "peak of the heat release at 50 kW/m² over the measured one",
-                   runs[1].peak / cone_peak[1], VALIDATE_LOW, VALIDATE_HIGH);
+    report_bar(lab->report, "peak", "peak of the heat release at 50 kW/m² over the measured one",
+               runs[1].peak / cone_peak[1], VALIDATE_LOW, VALIDATE_HIGH, most.peak / cone_peak[1],
+               "with as much air as in a front");
     report_measure(lab->report, "total", "heat released at 50 kW/m² within 16 s over the measured one",
                    runs[1].total / total, VALIDATE_LOW, VALIDATE_HIGH);
     return SINGE_OK;

@@ -77,6 +77,7 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
                             &material.heat_share,
                             &material.mass_rate,
                             &material.rate_ceiling,
+                            &material.air_supply,
                             &material.ash_exponent,
                             &material.mass_min,
                             &material.mass_loss,

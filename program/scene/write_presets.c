@@ -25,6 +25,11 @@ static const PresetRow params[] = {
 /// The shortest decimal number that reads back as the value.
 static void write_float(FILE *out, float value) {
     char text[40] = "";
+    if (isinf(value)) {
+        fprintf(out, "INFINITY");
+        return;
+    }
+
     if (value == (float)(int)value && fabsf(value) < 1e6f) {
         fprintf(out, "%d", (int)value);
         return;
@@ -105,9 +110,10 @@ int main(int argc, char **argv) {
     FILE *out = open_memstream(&text, &size);
     if (!out) return 1;
 
-    fprintf(out,
-            "// Made by scene_presets from the files of this folder. Do not edit: change those and run\n"
-            "// `build/program/scene/scene_presets > src/materials/presets.c`.\n#include \"materials/preset.h\"\n\n");
+    fprintf(
+        out,
+        "// Made by scene_presets from the files of this folder. Do not edit: change those and run\n"
+        "// `build/program/scene/scene_presets > src/materials/presets.c`.\n#include \"materials/preset.h\"\n\n#include <math.h>\n\n");
     for (int i = 0; (name = scene_material_name(i)); i++) {
         // read as a scene does
         Scene *scene;

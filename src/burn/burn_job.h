@@ -11,6 +11,8 @@ typedef struct BurnJob {
     float time;              ///< s, time stamp of this step
     const float *thickening; ///< [sheets] F
     double *partial;         ///< [pool_blocks(particles)]
+    BurnAir *air;            ///< NULL: it is not limited
+    bool shares;             ///< there is too little air for all in this step
     BurnState *burn;
 } BurnJob;
 

@@ -33,7 +33,8 @@ static void mark_ignited(void *context, int begin, int end) {
     }
 }
 
-SingeResult burn_step(const StepContext *context, const float *thickening, double *partial, BurnState *burn) {
+SingeResult burn_step(const StepContext *context, const float *thickening, double *partial, BurnAir *air,
+                      BurnState *burn) {
     const Shell *shell = context->shell;
     const StateInput *state = &context->state;
     Pool *pool = context->pool;
@@ -45,6 +46,7 @@ SingeResult burn_step(const StepContext *context, const float *thickening, doubl
         .time = (float)state->time,
         .thickening = thickening,
         .partial = partial,
+        .air = air,
         .burn = burn,
     };
 

@@ -47,16 +47,11 @@ static float fall(float x, float k, float p) {
     return r >= 1 ? x : -x * real_expm1f(real_log1pf(-r) / (1 - p));
 }
 
-/// Both reactions of one particle.
-static void react(BurnJob *job, uint32_t i, float excess) {
+/// The fuel of a particle that pyrolyses in a step where air is not limited; NaN propagates.
+static float pyrolysis(const BurnJob *job, uint32_t i, float excess) {
     const Matter *matter = &job->shell->matter;
-    BurnState *burn = job->burn;
-    float dt = job->dt / job->thickening[matter->sheet[i]], floor_mass = field_at(matter->loss_mass_floor, i);
-    float min = field_at(matter->mass_min, i), yield = field_at(matter->char_yield, i), span = yield - min;
-    float before = burn->mass[i], fuel = burn->fuel[i];
-
-    // pyrolysis: k, then what it leaves of the fuel; NaN propagates
-    float k = field_at(matter->mass_rate, i) * dt * excess / (1 - yield), left = fuel;
+    const float dt = job->dt / job->thickening[matter->sheet[i]], fuel = job->burn->fuel[i];
+    float k = field_at(matter->mass_rate, i) * dt * excess / (1 - field_at(matter->char_yield, i));
     if (field_at(matter->pre_exponential, i) > 0) {
         const float gas_constant = 8.314462618f; // J/(mol K)
         float temperature = field_at(matter->ignition_temperature, i) + excess;
@@ -64,11 +59,19 @@ static void react(BurnJob *job, uint32_t i, float excess) {
         k = field_at(matter->pre_exponential, i) * real_expf(-exponent) * dt;
     }
 
-    if (!(fuel <= 0 || k <= 0)) {
-        if (k > STRENGTH_MAX) k = STRENGTH_MAX; // all burns; infinity times a vanishing f^p would be NaN
-        left = fuel - fall(fuel, k, field_at(matter->ash_exponent, i));
-        if (left < 0) left = 0;
-    }
+    if (fuel <= 0 || k <= 0) return 0;
+    if (k > STRENGTH_MAX) k = STRENGTH_MAX; // all burns; infinity times a vanishing f^p would be NaN
+    return fall(fuel, k, field_at(matter->ash_exponent, i));
+}
+
+/// Both reactions of one particle, of whose fuel `gone` pyrolyses.
+static void react(BurnJob *job, uint32_t i, float gone) {
+    const Matter *matter = &job->shell->matter;
+    BurnState *burn = job->burn;
+    float dt = job->dt / job->thickening[matter->sheet[i]], floor_mass = field_at(matter->loss_mass_floor, i);
+    float min = field_at(matter->mass_min, i), yield = field_at(matter->char_yield, i), span = yield - min;
+    float before = burn->mass[i], fuel = burn->fuel[i], left = fuel;
+    if (!(gone <= 0)) left = fuel - gone < 0 ? 0 : fuel - gone; // NaN propagates
 
     // the char that it makes, and what is left of it after glowing
     float fresh = shell_char(before, fuel, min, yield) + (span > 0 ? fuel - left : 0);
@@ -84,35 +87,67 @@ static void react(BurnJob *job, uint32_t i, float excess) {
     burn->release[i] = (field_at(matter->heating, i) * (1 - yield) * (fuel - left) + glow) / job->h;
 }
 
+/// The fuel that pyrolyses by eq 4, in burn_rate until lose_mass; 0 where nothing is hot. What a block has of it is its
+/// partial.
+static void wish(void *context, int begin, int end) {
+    BurnJob *job = context;
+    const Matter *matter = &job->shell->matter;
+    const float *temperature = job->state->heat->temperature;
+    const uint8_t *flags = job->state->ablate->particle_flags;
+    float *wish = job->burn->burn_rate;
+
+    for (int block = begin; block < end; block++) {
+        uint32_t first, last, run;
+        double sum = 0;
+        burn_block(job, block, &first, &last);
+        for (; first < last; first = run) {
+            run = burn_run_end(first, last);
+            memset(wish + first, 0, (run - first) * sizeof *wish);
+            if (!burn_is_hot(job, first, run)) continue;
+            for (uint32_t i = first; i < run; i++) {
+                float excess = temperature[i] - field_at(matter->ignition_temperature, i);
+                float ceiling = field_at(matter->rate_ceiling, i);
+                if (excess <= 0 || !(flags[i] & SINGE_ALIVE)) continue;
+                wish[i] = pyrolysis(job, i, excess > ceiling ? ceiling : excess); // NaN stays NaN
+                sum += (double)wish[i];
+            }
+        }
+
+        job->partial[block] = sum;
+    }
+}
+
 /// Lets the particles of blocks react; the mass that they lose, kg, is the block's partial.
 static void lose_mass(void *context, int begin, int end) {
     BurnJob *job = context;
     const Matter *matter = &job->shell->matter;
     const float *temperature = job->state->heat->temperature;
     const uint8_t *flags = job->state->ablate->particle_flags;
+    const float(*x)[4] = (const float(*)[4])job->state->dynamics->position;
     BurnState *burn = job->burn;
 
     for (int block = begin; block < end; block++) {
         uint32_t first, last, run;
         double lost = 0;
+        BurnAirNear near = {0};
         burn_block(job, block, &first, &last);
         for (; first < last; first = run) {
             run = burn_run_end(first, last);
             if (!burn_is_hot(job, first, run)) {
-                memset(burn->burn_rate + first, 0, (run - first) * sizeof *burn->burn_rate);
                 memset(burn->release + first, 0, (run - first) * sizeof *burn->release);
                 continue;
             }
 
             for (uint32_t i = first; i < run; i++) {
-                float excess = temperature[i] - field_at(matter->ignition_temperature, i);
-                float ceiling = field_at(matter->rate_ceiling, i), before = burn->mass[i];
-                if (excess <= 0 || !(flags[i] & SINGE_ALIVE)) {
-                    burn->burn_rate[i] = burn->release[i] = 0;
+                float before = burn->mass[i], gone = burn->burn_rate[i];
+                if (temperature[i] <= field_at(matter->ignition_temperature, i) || !(flags[i] & SINGE_ALIVE)) {
+                    burn->release[i] = 0;
                     continue;
                 }
 
-                react(job, i, excess > ceiling ? ceiling : excess); // NaN stays NaN
+                if (job->shares && gone > 0 && field_at(matter->air_supply, i) < INFINITY)
+                    gone *= burn_air_share(job->air, &near, x[i]);
+                react(job, i, gone);
                 float after = burn->mass[i];
                 if (after < field_at(matter->mass_loss, i) && burn->time_burnt[i] < 0) burn->time_burnt[i] = job->time;
                 lost += ((double)before - (double)after) * (double)matter->mass[i];
@@ -123,9 +158,32 @@ static void lose_mass(void *context, int begin, int end) {
     }
 }
 
+/// Puts what would burn into the grid of air, particle after particle. False: there is enough for all.
+static bool ask_for_air(BurnJob *job, int blocks) {
+    const Matter *matter = &job->shell->matter;
+    const float(*x)[4] = (const float(*)[4])job->state->dynamics->position, *wish = job->burn->burn_rate;
+    BurnAirNear near = {0};
+    bool any = false;
+    for (int block = 0; block < blocks; block++) {
+        uint32_t first, last;
+        burn_block(job, block, &first, &last);
+        for (; first < last && !(job->partial[block] == 0); first++) {
+            const float supply = field_at(matter->air_supply, first);
+            if (!(wish[first] > 0 && supply < INFINITY)) continue;
+            if (!any) burn_air_clear(job->air);
+            any = true;
+            const float burns = (1 - field_at(matter->char_yield, first)) * matter->mass[first] * wish[first];
+            burn_air_add(job->air, &near, x[first], burns / (job->dt * supply));
+        }
+    }
+    return any && burn_air_is_short(job->air);
+}
+
 double burn_lose_mass(BurnJob *job, Pool *pool) {
     int blocks = pool_blocks((int)job->shell->particle_count);
     double lost = 0;
+    pool_for(pool, blocks, 1, wish, job);
+    job->shares = job->air && ask_for_air(job, blocks);
     pool_for(pool, blocks, 1, lose_mass, job);
     for (int block = 0; block < blocks; block++) lost += job->partial[block];
     return lost;

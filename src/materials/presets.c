@@ -2,6 +2,8 @@
 // `build/program/scene/scene_presets > src/materials/presets.c`.
 #include "materials/preset.h"
 
+#include <math.h>
+
 static void cotton(SingeMaterialDef *def) {
     (void)def; // holds the defaults
     def->grammage = singe_param(0.12f);
@@ -60,6 +62,7 @@ static void one_reaction(SingeMaterialDef *def) {
     def->shrink_back = singe_param(0.3f);
     def->char_strength = singe_param(0.3f);
     def->curvature_max = singe_param(0);
+    def->air_supply = singe_param(INFINITY);
 }
 
 static void tissue(SingeMaterialDef *def) {

@@ -150,6 +150,7 @@ static void sim_unbuild(SingeSim *sim) {
     sim->gas = NULL;
     sim->tear = NULL;
     FREE(memory, sim->thickening, sim->shell.sheet_count);
+    burn_air_free(memory, &sim->air);
     FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
     FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
     sim->events = (EventList){0};
@@ -263,6 +264,7 @@ SingeResult sim_build(SingeSim *sim) {
     float h_sub = ok ? def->time_step / (float)dynamics_plan_substeps(sim->dynamics) : 0;
     ok = ok && (shell->spare_count == 0 || tear_plan_create(memory, shell, h_sub, &sim->tear) == SINGE_OK);
     ok = ok && NEW(memory, sim->thickening, shell->sheet_count);
+    ok = ok && burn_air_create(memory, shell, &sim->air) == SINGE_OK;
     ok = ok && NEW(memory, sim->partial, pool_blocks((int)shell->particle_count));
     ok = ok && NEW(memory, sim->sample, shell->springs[SINGE_BLUE].count);
     if (!ok) return sim_fail(sim, SINGE_ERROR_MEMORY, "commit", -1, "out of memory");

@@ -55,8 +55,9 @@ struct SingeSim {
     HeatPlan *heat;
     AblatePlan *ablate;
     DynamicsPlan *dynamics;
-    GasPlan *gas;    ///< NULL without gas
-    TearPlan *tear;  ///< NULL where sheets cannot tear
+    GasPlan *gas;   ///< NULL without gas
+    TearPlan *tear; ///< NULL where sheets cannot tear
+    BurnAir air;
     double *partial; ///< [pool_blocks(particles)]
     float *sample;   ///< [blue springs], at least as many as cells: of a statistic
 };

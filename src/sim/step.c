@@ -108,7 +108,7 @@ static SingeResult step_stages(SingeSim *sim) {
     // 2. masses of particles above the ignition point, and target lengths (eq 4 to 6)
     context = all;
     context.state.burn = NULL;
-    TRY(burn_step(&context, sim->thickening, sim->partial, &state->burn));
+    TRY(burn_step(&context, sim->thickening, sim->partial, &sim->air, &state->burn));
     step_lap(sim, SINGE_STAGE_BURN, &start);
 
     // 3. burnt springs and particles are removed (eq 7)

@@ -14,6 +14,7 @@ typedef struct BurningSheet {
     Memory memory;
     Shell shell;
     State state;
+    BurnAir air;
     EventList events;
     SingeError error;
     uint32_t nx, ny;
@@ -35,7 +36,7 @@ static inline SingeResult sheet_burn(BurningSheet *b, Pool *pool, float h, float
                                      double *partial) {
     StepContext context = sheet_context(b, pool, h, pace);
     context.state.burn = NULL;
-    return burn_step(&context, thickening, partial, &b->state.burn);
+    return burn_step(&context, thickening, partial, &b->air, &b->state.burn);
 }
 
 static inline void sheet_ablate(BurningSheet *b, AblatePlan *plan) {
@@ -51,7 +52,7 @@ static inline SingeMaterialDef plain_material(void) {
     material.mass_loss = singe_param(0.25f);
     material.ash_exponent = singe_param(0);
     material.mass_rate = singe_param(1e-3f);
-    material.rate_ceiling = singe_param(INFINITY);
+    material.rate_ceiling = material.air_supply = singe_param(INFINITY);
     material.ignition_temperature = singe_param(500);
     material.temperature = singe_param(300);
     material.ash_density = singe_param(1);
@@ -102,6 +103,7 @@ static inline BurningSheet *burning_spare_sheets(uint32_t sheets, uint32_t nx, u
     for (uint32_t k = 0; k < sheets; k++) sources[k].sheet.spare_count = spares;
     assert_int_equal(shell_create(&b->memory, sources, sheets, &b->shell, &b->error), SINGE_OK);
     assert_int_equal(state_create(&b->memory, &b->shell, &b->state), SINGE_OK);
+    assert_int_equal(burn_air_create(&b->memory, &b->shell, &b->air), SINGE_OK);
     for (uint32_t k = 0; k < sheets; k++) sheet_source_free(&b->memory, &sources[k]);
     b->events.capacity = 4096;
     b->events.items = calloc(b->events.capacity, sizeof *b->events.items);
@@ -124,6 +126,7 @@ static inline float *burning_sheet_vary(BurningSheet *b, Field *field) {
 }
 
 static inline void burning_sheet_free(BurningSheet *b) {
+    burn_air_free(&b->memory, &b->air);
     state_free(&b->memory, &b->state);
     shell_free(&b->memory, &b->shell);
     assert_int_equal(b->memory.held, 0);

@@ -86,6 +86,47 @@ static double exact(double k, double t, double p) {
     return y <= 0 ? 0 : pow(y, 1 / (1 - p));
 }
 
+/// By eq 4 40 g/(m2 s) would burn everywhere: what is within 8 mm of the middle does, and a large sheet burns the 24 for
+/// which its two faces have air, however large its cells are and however it lies. Two threads do the same.
+TEST(a_large_area_burns_what_it_has_air_for) {
+    static const struct {
+        uint32_t side;
+        float cell, slope; // of the sheet along x
+        bool all;          // is hot, or 8 mm about the middle
+        double expected;   // g/(m2 s)
+    } cases[] = {
+        {40, 5e-3f, 0, true, 24}, {40, 5e-3f, 0.7f, true, 24}, {12, 20e-3f, 0.1f, true, 24}, {40, 5e-3f, 0, false, 40}};
+    SingeMaterialDef material = plain_material();
+    material.air_supply = singe_param(0.012f);
+    Memory memory = memory_make((SingeAllocator){0});
+    Pool *pool;
+    assert_int_equal(pool_create(&memory, (SingeTasks){0}, 2, &pool), SINGE_OK);
+
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const float length = (float)cases[k].side * cases[k].cell, middle = length / 2;
+        BurningSheet *b[2];
+        for (int n = 0; n < 2; n++) {
+            b[n] = burning_sheet(cases[k].side, cases[k].side, cases[k].cell, &material);
+            float(*x)[4] = b[n]->state.dynamics.position;
+            for (uint32_t i = 0; i < b[n]->shell.particle_count; i++) {
+                const bool hot = cases[k].all || fabsf(x[i][0] - middle) < 4e-3f;
+                b[n]->state.heat.temperature[i] = hot ? 1000 : 300;
+                x[i][2] = cases[k].slope * x[i][0], x[i][0] *= sqrtf(1 - cases[k].slope * cases[k].slope);
+            }
+            assert_int_equal(step(b[n], n ? pool : NULL, 1e-3f, 1, 1), SINGE_OK);
+        }
+
+        const uint32_t at = cases[k].side / 2 * (cases[k].side + 1) + cases[k].side / 2;
+        const double burns = 80 * (double)b[0]->state.burn.burn_rate[at];
+        print_message("%.1f g/(m2 s)\n", burns);
+        assert_float_equal(burns, cases[k].expected, 0.1 * cases[k].expected);
+        assert_memory_equal(b[1]->state.arena, b[0]->state.arena, b[0]->state.arena_size);
+        burning_sheet_free(b[0]), burning_sheet_free(b[1]);
+    }
+
+    pool_destroy(&memory, pool);
+}
+
 TEST(exponents_follow_their_solutions) {
     const float exponents[] = {0, 0.25f, 0.5f, 0.999f, 1, 1.5f, 2, 3};
     for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++) {

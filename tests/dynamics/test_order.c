@@ -178,6 +178,7 @@ TEST(a_shrinking_sheet_stays_ordered) {
     material.ash_exponent = material.convection = material.emissivity = material.heat_share = singe_param(0);
     material.fibre_shrink = singe_param(1), material.shrink_front = material.shrink_back = singe_param(1);
     material.char_yield = singe_param(0), material.ash_density = singe_param(0.3f);
+    material.air_supply = singe_param(INFINITY);
     TestMesh mesh = test_grid(30, 30, 0.01f, 0.01f);
     test_mesh_raise(&mesh);
     SingeSimDef def = singe_default_sim();

@@ -45,6 +45,23 @@ TEST(calibrated_paper_burns_at_its_real_pace) {
     compare(&material, 4.4e-3, 7.0e-3);
 }
 
+/// A front that is 10 cm wide has its air from the side, as one of three cells has.
+TEST(a_wide_front_is_not_short_of_air) {
+    static const float widths[] = {6e-3f, 0.1f};
+    double speed[2];
+    for (int k = 0; k < 2; k++) {
+        const SingeMaterialDef material = singe_default_material();
+        StripSetup setup = strip_setup(&material);
+        StripResult result = {0};
+        SingeError error = {0};
+        setup.cell = setup.time_step = 2e-3f, setup.length = 0.08f, setup.width = widths[k];
+        if (strip_burn(&setup, &result, &error)) fail_msg("%s", error.message);
+        print_message("%.0f mm wide: %.3f mm/s\n", 1e3 * (double)widths[k], 1e3 * result.speed);
+        speed[k] = result.speed;
+    }
+    CHECK_NEAR(speed[1] / speed[0], 1, 0.01);
+}
+
 /// The same material at other grammages, all of it derived from fluxes per area: a lighter sheet's front is faster in
 /// proportion, as thick and as hot, to the rounding where its steps are shorter in proportion too. The ranges at 45 and
 /// 20 g/m2 (Thomas & Law again) are predictions.

@@ -332,6 +332,7 @@ static double strain_by_order(SingeSolverMethod method, const SingeColour order[
     SingeMaterialDef material = singe_default_material();
     material.temperature = singe_param(600), material.ignition_temperature = singe_param(500);
     material.rate_ceiling = singe_param(1e6f), material.mass_rate = singe_param(0.02f);
+    material.air_supply = singe_param(INFINITY);
     material.ash_exponent = material.heat_share = singe_param(0), material.ash_density = singe_param(1);
     material.shrink_front = singe_param(0), material.shrink_back = material.fibre_shrink = singe_param(1);
     material.mass_min = singe_param(0.9f), material.mass_loss = material.char_yield = singe_param(0);

@@ -509,7 +509,7 @@ TEST(faces_of_many_corners_are_cut) {
 TEST(materials_follow_keys_and_numbered_pictures) {
 #define HOT                                                                                                                                                 \
     "fps: 10\nsteps: 4\npace: 5\nsheets:\n  - grid: {size: [0.1, 0.1], cells: [6, 6]}\n    material: {temperature: 300 C, convection: 0, emissivity: 0, \n" \
-    "        diffusivity: 0, "
+    "        diffusivity: 0, air_supply: inf, "
     double burnt[7][2] = {{0}};
     burn_frames(HOT "ignition_temperature: [{time: 0.1, value: 240 C}, {time: 0.2, value: 9000 C}]}\n", NULL, 4, burnt);
     assert_true(burnt[1][0] > 0.1 && burnt[2][0] > burnt[1][0] + 0.1); // frame 2 is at 0.1 s

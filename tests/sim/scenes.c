@@ -3,13 +3,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <math.h>
+
 SingeMaterialDef scene_quick_material(void) {
     SingeMaterialDef material = singe_default_material();
     material.thickening = 1;
     material.diffusivity = singe_param(1e-4f);
     material.ignition_temperature = singe_param(450);
     material.heat_of_combustion = singe_param(1500 * 1400), material.heat_share = singe_param(1);
-    material.mass_rate = singe_param(0.08f);
+    material.mass_rate = singe_param(0.08f), material.air_supply = singe_param(INFINITY);
     material.shrink_back = singe_param(0.9f);
 
     // one reaction, and no leaf that stays: holes open wherever it burns

@@ -284,6 +284,7 @@ static double flames_above(float distance) {
     SingeSheetDef sheet = test_sheet(&low), blanket = test_sheet(&high);
     sheet.material.drag = blanket.material.drag = singe_param(0);
     sheet.material.ablate = false;
+    sheet.material.air_supply = singe_param(INFINITY);
     sheet.material.temperature = singe_param(800); // gives off gas whatever its flame does
     blanket.material.mass_rate = singe_param(0);
     blanket.material.smother_distance = singe_param(distance);

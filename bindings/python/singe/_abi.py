@@ -117,7 +117,7 @@ class SingeMaterialDef(Structure):
                 ("damping", SingeParam), ("crease_radius", SingeParam), ("crease_share", SingeParam),
                 ("strength", SingeParam), ("char_strength", SingeParam), ("pre_exponential", SingeParam),
                 ("activation_energy", SingeParam), ("curvature_max", SingeParam), ("moisture", SingeParam),
-                ("bending", SingeParam), ("smother_distance", SingeParam)]
+                ("bending", SingeParam), ("smother_distance", SingeParam), ("air_supply", SingeParam)]
 
 
 class SingePoseKey(Structure):
