@@ -31,26 +31,20 @@ export const POSITION = 0, REST = 3, TEMPERATURE = 6, RATE = 7, GLOWING = 8, BUR
 
 /** Where embers glow: of each such triangle the length of its glowing line (m), its flaming part, its place, and that at rest. */
 function embersOf(triangles, value) {
-    const embers = [], v = [0, 0, 0];
+    const embers = [];
     for (let t = 0; t < triangles.length; t += 3) {
-        let hottest = 0, low = 1, high = 0;
-        for (let k = 0; k < 3; k++) {
-            v[k] = triangles[t + k];
-            hottest = Math.max(hottest, value(v[k], TEMPERATURE));
-        }
-        if (hottest < 800) continue;
-        for (let k = 0; k < 3; k++) {
-            low = Math.min(low, value(v[k], BURN));
-            high = Math.max(high, value(v[k], BURN));
-        }
+        const a = triangles[t], b = triangles[t + 1], c = triangles[t + 2];
+        if (Math.max(value(a, TEMPERATURE), value(b, TEMPERATURE), value(c, TEMPERATURE)) < 800) continue;
+        const burnA = value(a, BURN), burnB = value(b, BURN), burnC = value(c, BURN), low = Math.min(burnA, burnB, burnC, 1), high = Math.max(burnA, burnB, burnC, 0);
         if (high < 0.15) continue;
-        const mean = (field) => (value(v[0], field) + value(v[1], field) + value(v[2], field)) / 3;
-        const side = (k, c) => value(v[k], POSITION + c) - value(v[0], POSITION + c);
-        const [ax, ay, az, bx, by, bz] = [side(1, 0), side(1, 1), side(1, 2), side(2, 0), side(2, 1), side(2, 2)];
-        const area = 0.5 * Math.hypot(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx), rate = mean(RATE), glowing = mean(GLOWING);
+        const mean = (field) => (value(a, field) + value(b, field) + value(c, field)) / 3;
+        const x = value(a, POSITION), y = value(a, POSITION + 1), z = value(a, POSITION + 2);
+        const ax = value(b, POSITION) - x, ay = value(b, POSITION + 1) - y, az = value(b, POSITION + 2) - z;
+        const bx = value(c, POSITION) - x, by = value(c, POSITION + 1) - y, bz = value(c, POSITION + 2) - z;
+        const area = 0.5 * Math.sqrt((ay * bz - az * by) ** 2 + (az * bx - ax * bz) ** 2 + (ax * by - ay * bx) ** 2), rate = mean(RATE), glowing = mean(GLOWING);
         const line = low < LOOK.EMBER_BURN && high > LOOK.EMBER_BURN ? (area * Math.max(mean(GRADIENT), 20)) / Math.max(high - low, 0.02) : 0;
-        const length = activity(rate) * Math.min(line, 2 * Math.sqrt(area)) + (leaf(glowing, mean(STARVED), mean(BURN)) * area) / LOOK.LEAF_WIDTH;
-        if (length > 0) embers.push({ length, flaming: rate > 0 ? length * (1 - glowing / rate) : 0, at: [0, 1, 2].map((c) => mean(POSITION + c)), rest: [0, 1, 2].map((c) => mean(REST + c)) });
+        const length = activity(rate) * Math.min(line, 2 * Math.sqrt(area)) + (leaf(glowing, mean(STARVED), (burnA + burnB + burnC) / 3) * area) / LOOK.LEAF_WIDTH;
+        if (length > 0) embers.push({ length, flaming: rate > 0 ? length * (1 - glowing / rate) : 0, at: [mean(POSITION), mean(POSITION + 1), mean(POSITION + 2)], rest: [mean(REST), mean(REST + 1), mean(REST + 2)] });
     }
     return embers;
 }

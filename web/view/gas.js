@@ -37,7 +37,7 @@ export function spreadHeight([x, y, z], cells, reach, cell) {
     for (let i = 0; i < known.length; i++) known[i] = cells[4 * i] > 19 ? 1 : 0; // half of FLAME_SEEN
     for (let far = 1; far <= reach; far++)
         for (let i = rows; i < known.length - rows; i++) {
-            if (known[i]) continue;
+            if (known[i] || !(known[i + 1] | known[i - 1] | known[i + x] | known[i - x] | known[i + rows] | known[i - rows])) continue;
             let sum = 0, count = 0;
             for (const [over, above] of near) {
                 if (!known[i + over] || known[i + over] > far) continue;
