@@ -713,15 +713,15 @@ document.querySelectorAll<HTMLElement>("[data-save]").forEach((button) => button
 // ---- for tests: motion by request, without a clock
 
 Object.assign(globalThis, { page: {
-    /** Some seconds of motion in frames of 1/24 s; the clock stands still afterwards. */
-    async step(seconds: number): Promise<Omit<Frame, "vertices" | "triangles" | "fire" | "lights" | "airborne">> {
+    /** Some seconds of motion, in so many frames a second; the clock stands still afterwards. */
+    async step(seconds: number, rate = 24): Promise<Omit<Frame, "vertices" | "triangles" | "fire" | "lights" | "airborne">> {
         pause(true);
         const idle = async () => { while (busy) await new Promise<void>((resolve) => { waiting.push(resolve); }); };
         await idle();
         stepping = true; // only the last frame is drawn
-        for (let left = Math.round(seconds * 24); left > 0; left--) {
+        for (let left = Math.round(seconds * rate); left > 0; left--) {
             stepping = left > 1;
-            advance(1 / 24, 0);
+            advance(1 / rate, 0);
             await idle();
         }
         stepping = false;

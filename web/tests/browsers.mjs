@@ -111,10 +111,10 @@ async function firefoxPage() {
 
 /**
  * Seconds of processor time, by /proc, of what this process has started: pages' own threads, their workers', of the process
- * that draws, and in all. A busy machine changes it less than the clock.
+ * that draws, whose memory is told as well, and in all. A busy machine changes it less than the clock.
  */
 export function processorTime() {
-    const TICK = 100, time = { page: 0, worker: 0, card: 0, all: 0 };
+    const TICK = 100, time = { page: 0, worker: 0, card: 0, cardBytes: 0, all: 0 };
     const read = (path) => {
         const text = readFileSync(path, "utf8"), fields = text.slice(text.lastIndexOf(")") + 2).split(" ");
         return { name: text.slice(text.indexOf("(") + 1, text.lastIndexOf(")")), parent: Number(fields[1]), spent: (Number(fields[11]) + Number(fields[12])) / TICK };
@@ -128,12 +128,15 @@ export function processorTime() {
         time.all += spent;
         try {
             const [, kind] = /--type=([\w-]+)/.exec(readFileSync(`/proc/${id}/cmdline`, "utf8")) ?? [];
-            if (kind === "gpu-process") time.card += spent;
+            if (kind === "gpu-process") {
+                time.card += spent;
+                time.cardBytes += 1024 * Number(/VmRSS:\s*(\d+)/.exec(readFileSync(`/proc/${id}/status`, "utf8"))[1]);
+            }
             if (kind !== "renderer") continue;
             for (const thread of readdirSync(`/proc/${id}/task`)) {
-                const one = read(`/proc/${id}/task/${thread}/stat`);
-                if (Number(thread) === id) time.page += one.spent;
-                else if (/^DedicatedWorker/.test(one.name)) time.worker += one.spent;
+                const { name } = read(`/proc/${id}/task/${thread}/stat`), spent = parseInt(readFileSync(`/proc/${id}/task/${thread}/schedstat`, "utf8")) / 1e9;
+                if (Number(thread) === id) time.page += spent;
+                else if (/^DedicatedWorker/.test(name)) time.worker += spent;
             }
         } catch { /* it has ended */ }
     }
