@@ -147,9 +147,12 @@ check-web: web
 web-speed: web
 	cd web && ONLY=speed node tests/check.mjs
 
-# pictures of the page for docs/web.md, its first minute among them, into build/web-pictures
+# pictures of the page for docs/web.md, its first minute among them, into build/web-pictures; with CACHE=out/letter those of
+# docs/view.md as well, which need build/singe
 web-pictures: web
 	cd web && ONLY="first minute|letter burns by itself|each scene|axe" node tests/check.mjs --pictures ../build/web-pictures
+	cd build/web-pictures && for name in letter settings; do ffmpeg -y -loglevel error -i $$name.png -q:v 3 web-$$name.jpg; done
+	[ -z "$(CACHE)" ] || node web/tests/pictures.mjs $(CACHE) build/web-pictures
 	cd build/web-pictures && ffmpeg -y -loglevel error -i minute-1-page.png -i minute-2-match.png -i minute-3-hole.png \
 	    -i minute-4-torn.png -i minute-5-link.png -filter_complex "[0]scale=640:400[a];[1]scale=640:400[b];[2]scale=640:400[c]; \
 	    [a][b][c]hstack=3[u];[3][4]hstack[v];[u][v]vstack" -quality 82 web-minute.webp
