@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Draws samples/NAME.webp again: what is left when a sample destroys its simulation, seen by singe.draw. Needs the static
-libraries and the Python package of the preset release, a C compiler and ffmpeg.
+"""Draws samples/NAME.webp again: what is left when a sample destroys its simulation, seen by singe.draw; if it has several
+that end differently, side by side. Needs the static libraries and the Python package of the preset release, a C compiler
+and ffmpeg.
 
 usage: draw_samples.py [NAME...]
 """
@@ -10,6 +11,8 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+
+import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 os.environ.setdefault("SINGE_LIBRARY", str(ROOT / "build/python/singe/libsinge.so"))
@@ -27,7 +30,10 @@ void __wrap_singe_sim_destroy(SingeSim *sim) {
     uint8_t *bytes;
     size_t size;
     if (singe_sim_save(sim, &bytes, &size) == SINGE_OK) {
-        FILE *file = fopen(getenv("SINGE_SNAPSHOT"), "wb");
+        static int count;
+        char name[600];
+        snprintf(name, sizeof name, "%s.%d", getenv("SINGE_SNAPSHOT"), count++);
+        FILE *file = fopen(name, "wb");
         if (!file || fwrite(bytes, 1, size, file) != size || fclose(file)) abort();
         singe_sim_free_bytes(sim, bytes, size);
     }
@@ -39,15 +45,20 @@ SIZE = (320, 240)
 
 def draw(source, work):
     """Builds, runs and draws a sample; False if it has no simulation."""
-    program, snapshot = work / source.stem, work / f"{source.stem}.singe"
+    program = work / source.stem
     libraries = [ROOT / "build/src/mesh/libsinge_input.a", ROOT / "build/src/libsinge.a"]
     subprocess.run([os.environ.get("CC", "cc"), "-O2", f"-I{ROOT / 'include'}", source, work / "hook.c", *libraries,
                     "-Wl,--wrap=singe_sim_destroy", "-lm", "-pthread", "-o", program], check=True)
-    subprocess.run([program], check=True, env={**os.environ, "SINGE_SNAPSHOT": str(snapshot)}, stdout=subprocess.DEVNULL)
-    if not snapshot.exists():
+    subprocess.run([program], check=True, env={**os.environ, "SINGE_SNAPSHOT": str(program)}, stdout=subprocess.DEVNULL)
+    ends = dict.fromkeys(path.read_bytes() for path in sorted(work.glob(f"{source.stem}.[0-9]*")))
+    if not ends:
         return False
-    with singe.Sim.load(snapshot.read_bytes()) as sim:
-        pixels = singe.draw(sim.surface(), 2 * SIZE[0], 2 * SIZE[1])
+    panels = []
+    for number, end in enumerate(ends):
+        width = SIZE[0] * (number + 1) // len(ends) - SIZE[0] * number // len(ends)
+        with singe.Sim.load(end) as sim:
+            panels.append(singe.draw(sim.surface(), 2 * width, 2 * SIZE[1]))
+    pixels = np.concatenate(panels, axis=1)
     small = (pixels[::2, ::2].astype(int) + pixels[1::2, ::2] + pixels[::2, 1::2] + pixels[1::2, 1::2] + 2) // 4
     (work / "picture.png").write_bytes(picture.png(small.astype("uint8")))
     subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", work / "picture.png", "-quality", "80",
