@@ -117,13 +117,34 @@ static void wish(void *context, int begin, int end) {
     }
 }
 
+/// The positions of particles i to i + 3; those from `last` on are that of i.
+static const float (*four_positions(const float (*x)[4], uint32_t i, uint32_t last, float room[4][4]))[4] {
+    if (i + 4 <= last) return x + i;
+    for (uint32_t k = 0; k < 4; k++) memcpy(room[k], x[i + k < last ? i + k : i], sizeof room[k]);
+    return (const float(*)[4])room;
+}
+
+/// What of the particles [first, last) would burn becomes what there is air for.
+static void share_air(BurnJob *job, BurnAirNear *near, uint32_t first, uint32_t last) {
+    const float(*x)[4] = (const float(*)[4])job->state->dynamics->position;
+    float *gone = job->burn->burn_rate, room[4][4];
+    for (uint32_t i = first; i < last; i += 4) {
+        uint32_t count = last - i < 4 ? last - i : 4, asks = 0;
+        for (uint32_t k = 0; k < count; k++)
+            if (gone[i + k] > 0 && field_at(job->shell->matter.air_supply, i + k) < INFINITY) asks |= 1u << k;
+        if (!asks) continue;
+        const Float4 share = burn_air_share(job->air, near, four_positions(x, i, last, room));
+        for (uint32_t k = 0; k < count; k++)
+            if (asks >> k & 1) gone[i + k] *= share[k];
+    }
+}
+
 /// Lets the particles of blocks react; the mass that they lose, kg, is the block's partial.
 static void lose_mass(void *context, int begin, int end) {
     BurnJob *job = context;
     const Matter *matter = &job->shell->matter;
     const float *temperature = job->state->heat->temperature;
     const uint8_t *flags = job->state->ablate->particle_flags;
-    const float(*x)[4] = (const float(*)[4])job->state->dynamics->position;
     BurnState *burn = job->burn;
 
     for (int block = begin; block < end; block++) {
@@ -138,16 +159,15 @@ static void lose_mass(void *context, int begin, int end) {
                 continue;
             }
 
+            if (job->shares) share_air(job, &near, first, run);
             for (uint32_t i = first; i < run; i++) {
-                float before = burn->mass[i], gone = burn->burn_rate[i];
+                float before = burn->mass[i];
                 if (temperature[i] <= field_at(matter->ignition_temperature, i) || !(flags[i] & SINGE_ALIVE)) {
                     burn->release[i] = 0;
                     continue;
                 }
 
-                if (job->shares && gone > 0 && field_at(matter->air_supply, i) < INFINITY)
-                    gone *= burn_air_share(job->air, &near, x[i]);
-                react(job, i, gone);
+                react(job, i, burn->burn_rate[i]);
                 float after = burn->mass[i];
                 if (after < field_at(matter->mass_loss, i) && burn->time_burnt[i] < 0) burn->time_burnt[i] = job->time;
                 lost += ((double)before - (double)after) * (double)matter->mass[i];
@@ -167,15 +187,25 @@ static bool ask_for_air(BurnJob *job, int blocks) {
     for (int block = 0; block < blocks; block++) {
         uint32_t first, last;
         burn_block(job, block, &first, &last);
-        for (; first < last && !(job->partial[block] == 0); first++) {
-            const float supply = field_at(matter->air_supply, first);
-            if (!(wish[first] > 0 && supply < INFINITY)) continue;
+        for (; first < last && !(job->partial[block] == 0); first += 4) {
+            float room[4][4], demand[4] = {0};
+            bool asks = false;
+            for (uint32_t i = first; i < last && i < first + 4; i++) {
+                const float supply = field_at(matter->air_supply, i);
+                if (!(wish[i] > 0 && supply < INFINITY)) continue;
+                const float burns = (1 - field_at(matter->char_yield, i)) * matter->mass[i] * wish[i];
+                demand[i - first] = burns / (job->dt * supply);
+                asks = true;
+            }
+
+            if (!asks) continue;
             if (!any) burn_air_clear(job->air);
             any = true;
-            const float burns = (1 - field_at(matter->char_yield, first)) * matter->mass[first] * wish[first];
-            burn_air_add(job->air, &near, x[first], burns / (job->dt * supply));
+            burn_air_add(job->air, &near, four_positions(x, first, last, room), demand);
         }
     }
+
+    burn_air_flush(job->air, &near);
     return any && burn_air_is_short(job->air);
 }
 

@@ -16,6 +16,7 @@
 // a plane that is a bell with a deviation of l/2^(1/2); across it, its sum of squares is divided out in the mean: .55.
 #include "burn/supply.h"
 
+#include "common/float4.h"
 #include "common/real.h"
 
 #include <math.h>
@@ -76,52 +77,85 @@ static uint64_t air_node(const int middle[3], int k) {
     return node;
 }
 
-/// The weights of the 27 nodes about a position; true where these are not those of `near`, whose middle it sets.
-static bool air_weigh(const BurnAir *air, const float position[3], BurnAirNear *near, float weight[27]) {
-    float w[3][3];
-    bool moved = !near->known;
+/// The nodes in the middle of those about four positions, and the weights of these along each axis.
+static void air_weigh(const BurnAir *air, const float position[4][4], Float4Mask middle[3], Float4 weight[3][3]) {
     for (int d = 0; d < 3; d++) {
-        const float x = float_min(float_max(position[d] / air->reach, -1e6f), 1e6f), middle = floorf(x + 0.5f);
-        const float f = x - middle, less = 0.5f - f, more = 0.5f + f;
-        w[d][0] = 0.5f * less * less;
-        w[d][1] = 0.75f - f * f;
-        w[d][2] = 0.5f * more * more;
-        moved |= near->middle[d] != (int)middle;
-        near->middle[d] = (int)middle;
+        const Float4 p = {position[0][d], position[1][d], position[2][d], position[3][d]};
+        const Float4 x = float4_min(float4_max(p / float4_all(air->reach), float4_all(-1e6f)), float4_all(1e6f));
+        const Float4 up = x + float4_all(0.5f);
+        const Float4Mask toward = __builtin_convertvector(up, Float4Mask);
+        middle[d] = toward + (__builtin_convertvector(toward, Float4) > up); // -1 where it was rounded up
+        const Float4 f = x - __builtin_convertvector(middle[d], Float4);
+        const Float4 less = float4_all(0.5f) - f, more = float4_all(0.5f) + f;
+        weight[d][0] = float4_all(0.5f) * less * less;
+        weight[d][1] = float4_all(0.75f) - f * f;
+        weight[d][2] = float4_all(0.5f) * more * more;
     }
+}
 
-    for (int k = 0; k < 9; k++) {
-        const float across = w[1][k % 3] * w[2][k / 3];
-        for (int x = 0; x < 3; x++) weight[3 * k + x] = w[0][x] * across;
-    }
+/// Whether lane k has its middle elsewhere than `near`.
+static bool air_is_elsewhere(const BurnAirNear *near, const Float4Mask middle[3], int k) {
+    return !near->known || middle[0][k] != near->middle[0] || middle[1][k] != near->middle[1] ||
+           middle[2][k] != near->middle[2];
+}
+
+/// Takes the nodes about the middle of lane k into `near`, with new ones where `adds`. What the table has no place for
+/// is not there: there is as much air as in a front.
+static void air_go(BurnAir *air, BurnAirNear *near, const Float4Mask middle[3], int k, bool adds) {
+    for (int d = 0; d < 3; d++) near->middle[d] = middle[d][k];
     near->known = true;
-    return moved;
+    memset(near->demand, 0, sizeof near->demand);
+    for (int n = 0; n < 27; n++) {
+        const uint64_t node = air_node(near->middle, n);
+        const uint32_t slot = air_slot(air, node);
+        if (adds && slot < air->count) air->node[slot] = node;
+        const bool found = slot < air->count && air->node[slot] == node;
+        near->slot[n] = found ? slot : air->count;
+        if (found) near->demand[n / 3][n % 3] = air->demand[slot];
+    }
 }
 
-void burn_air_add(BurnAir *air, BurnAirNear *near, const float position[3], float demand) {
-    float weight[27];
-    if (air_weigh(air, position, near, weight))
-        for (int k = 0; k < 27; k++) {
-            const uint64_t node = air_node(near->middle, k);
-            const uint32_t slot = near->slot[k] = air_slot(air, node);
-            if (slot < air->count) air->node[slot] = node;
-        }
-
-    for (int k = 0; k < 27; k++) // where the table is full, there is as much air as in a front
-        if (near->slot[k] < air->count) air->demand[near->slot[k]] += weight[k] * demand;
+void burn_air_flush(BurnAir *air, const BurnAirNear *near) {
+    for (int n = 0; n < 27 && near->known; n++)
+        if (near->slot[n] < air->count) air->demand[near->slot[n]] = near->demand[n / 3][n % 3];
 }
 
-float burn_air_share(const BurnAir *air, BurnAirNear *near, const float position[3]) {
-    float weight[27], demand = 0;
-    if (air_weigh(air, position, near, weight))
-        for (int k = 0; k < 27; k++) {
-            const uint64_t node = air_node(near->middle, k);
-            const uint32_t slot = air_slot(air, node);
-            near->slot[k] = slot < air->count && air->node[slot] == node ? slot : air->count;
+void burn_air_add(BurnAir *air, BurnAirNear *near, const float position[4][4], const float demand[4]) {
+    Float4 weight[3][3];
+    Float4Mask middle[3];
+    air_weigh(air, position, middle, weight);
+    for (int k = 0; k < 4; k++) {
+        if (!(demand[k] > 0)) continue;
+        if (air_is_elsewhere(near, middle, k)) {
+            burn_air_flush(air, near);
+            air_go(air, near, middle, k, true);
         }
 
-    for (int k = 0; k < 27; k++)
-        if (near->slot[k] < air->count) demand += weight[k] * air->demand[near->slot[k]];
-    const float supply = air_supply(air);
-    return demand > supply ? supply / demand : 1;
+        const Float4 along = {weight[0][0][k], weight[0][1][k], weight[0][2][k], 0};
+        for (int row = 0; row < 9; row++) {
+            const float across = weight[1][row % 3][k] * weight[2][row / 3][k];
+            near->demand[row] += along * float4_all(across) * float4_all(demand[k]);
+        }
+    }
+}
+
+Float4 burn_air_share(BurnAir *air, BurnAirNear *near, const float position[4][4]) {
+    const Float4 supply = float4_all(air_supply(air));
+    Float4 weight[3][3], share = float4_all(1);
+    Float4Mask middle[3];
+    air_weigh(air, position, middle, weight);
+    for (unsigned left = 15; left;) { // mostly all four lanes at once
+        const int k = __builtin_ctz(left);
+        if (air_is_elsewhere(near, middle, k)) air_go(air, near, middle, k, false);
+        const Float4Mask same =
+            (middle[0] == near->middle[0]) & (middle[1] == near->middle[1]) & (middle[2] == near->middle[2]);
+        Float4 demand = float4_all(0);
+        for (int row = 0; row < 9; row++) {
+            const Float4 across = weight[1][row % 3] * weight[2][row / 3];
+            for (int x = 0; x < 3; x++) demand += weight[0][x] * across * float4_all(near->demand[row][x]);
+        }
+        share = float4_select(same & (demand > supply), supply / demand, share);
+        left &= ~float4_bits(same);
+    }
+    return share;
 }

@@ -1,6 +1,7 @@
 // The air that what burns shares.
 #pragma once
 
+#include "common/float4.h"
 #include "common/memory.h"
 #include "shell/shell.h"
 
@@ -12,12 +13,12 @@ typedef struct BurnAir {
     float *demand;  ///< [count]
 } BurnAir;
 
-/// The nodes about the position that was asked for last: most of the next ones have the same. Starts as {0}, and holds
-/// while nothing else is done to the grid.
+/// The nodes about the position that was asked for last: most of the next ones have the same. Starts as {0}.
 typedef struct BurnAirNear {
     bool known;
     int middle[3];     ///< of the nodes
     uint32_t slot[27]; ///< count: none
+    Float4 demand[9];  ///< of the nodes, three a row
 } BurnAirNear;
 
 /// SINGE_ERROR_MEMORY; then burn_air_free is still to be called.
@@ -27,11 +28,13 @@ void burn_air_free(Memory *memory, BurnAir *air);
 /// Empties the grid.
 void burn_air_clear(BurnAir *air);
 
-/// Adds what burns at a position, kg/s over the kg/(m2 s) that either face gets air for.
-void burn_air_add(BurnAir *air, BurnAirNear *near, const float position[3], float demand);
+/// Adds what burns at four positions, each kg/s over the kg/(m2 s) that either face gets air for; what is not above 0 is
+/// left out. The grid has it after burn_air_flush.
+void burn_air_add(BurnAir *air, BurnAirNear *near, const float position[4][4], const float demand[4]);
+void burn_air_flush(BurnAir *air, const BurnAirNear *near);
 
 /// Whether a share may be below 1: none is above that of its nodes.
 bool burn_air_is_short(const BurnAir *air);
 
-/// The share of what would burn at a position for which there is air: 1 in a front.
-float burn_air_share(const BurnAir *air, BurnAirNear *near, const float position[3]);
+/// The share of what would burn at four positions for which there is air: 1 in a front.
+Float4 burn_air_share(BurnAir *air, BurnAirNear *near, const float position[4][4]);
