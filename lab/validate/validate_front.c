@@ -350,7 +350,7 @@ SingeResult validate_damp(Lab *lab, SingeError *error) {
     report_measure(lab->report, "limit", "cotton with 34 % of water burns through; 1: it does", speed[WET] > 0, 1, 1);
     report_bar(lab->report, "quenching",
                "least water that puts out a sheet that burns all over, over 12.9 g/(m2 s) on a burning face",
-               water / 12.9e-3, VALIDATE_LOW, VALIDATE_HIGH, fiercely / 12.9e-3, "with as much air as in a front");
+               water / 12.9e-3, 0.8, 1.2, fiercely / 12.9e-3, "with as much air as in a front");
     report_measure(lab->report, "fastest", "water with which the front is fastest, %; 2 was measured", fastest, 1, 3);
     return SINGE_OK;
 }
