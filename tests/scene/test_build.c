@@ -617,6 +617,23 @@ static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
     return max;
 }
 
+/// The usual forgotten unit: an object file in centimetres is read as metres.
+TEST(large_mesh_files_are_warned_of) {
+    char folder[] = FOLDER;
+    assert_non_null(mkdtemp(folder));
+    write_text(folder, "a.obj", "v 0 0 0\nv 30 0 0\nv 30 20 0\nv 0 20 0\nf 1 2 3 4\n");
+    static const char *const texts[] = {"", ", scale: 0.01", ", units: cm"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        char text[100], lines[4000] = "";
+        snprintf(text, sizeof text, "sheets: [{mesh: a.obj%s}]\n", texts[i]);
+        Loaded at = build(text, folder, (SingeLog){keep_line, lines});
+        unload(&at);
+        const char *said = "t.yaml:1:17: the mesh is 30 x 20 x 0 m large: are its numbers cm or mm? (units: cm)\n";
+        if (!strstr(lines, said) == (i == 0)) fail_msg("%s%s", text, lines);
+    }
+    remove_folder(folder);
+}
+
 // A file of triangles, in millimetres and y up. A pin takes the file's vertex numbers, also that of a welded vertex.
 TEST(mesh_files_are_scaled_and_welded) {
     char folder[] = FOLDER;
