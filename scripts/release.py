@@ -4,7 +4,7 @@
     release.py [--out FOLDER] [--commit COMMIT] [--twice] [--wheels] [--sign KEY]
 
     singe-VERSION.tar.gz                  the sources
-    singe-VERSION-linux-ARCH.tar.gz       the static command for any Linux, without preview, EXR, assimp and fit
+    singe-VERSION-linux-ARCH.tar.gz       the static command for any Linux, without EXR, assimp, fit and view
     singe_VERSION-1.dsc, .debian.tar.xz, .orig.tar.gz        Debian's source package
     singe_VERSION-1_ARCH.deb, libsinge-dev_VERSION-1_ARCH.deb    of it, for the Debian or Ubuntu on which this runs
     *.whl                                 with --wheels; bindings/python/build_wheels.py states its needs
