@@ -70,6 +70,7 @@ vtk_client() {
 }
 
 paraview_client() {
+    [ -f "$folder/work/vtk/out/burn.pvd" ] || vtk_client # which writes what ParaView reads
     echo "== paraview"
     # Debian's packages: only root installs them
     if [ "$(id -u)" -eq 0 ] && command -v apt-get > /dev/null && ! command -v pvpython > /dev/null; then
@@ -78,8 +79,10 @@ paraview_client() {
     fi
     if ! command -v pvpython > /dev/null || ! command -v xvfb-run > /dev/null; then
         lacking paraview "pvpython and xvfb-run (packages paraview, python3-paraview, xvfb)"
-    elif PYTHONDONTWRITEBYTECODE=1 xvfb-run -a pvpython "$here/paraview_client.py" "$singe" "$folder/work/paraview" \
-        > "$folder/paraview.log" 2>&1 && grep '^ParaView' "$folder/paraview.log"; then :
+    # ParaView asks the X server what it can and leaves it; a server that begins anew then refuses its window
+    elif PYTHONDONTWRITEBYTECODE=1 xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" \
+        pvpython "$here/paraview_client.py" "$singe" "$folder/work/paraview" > "$folder/paraview.log" 2>&1 &&
+        grep '^ParaView' "$folder/paraview.log"; then :
     else
         failed=1
         tail -30 "$folder/paraview.log"
