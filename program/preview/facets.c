@@ -41,6 +41,14 @@ static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *
         for (size_t k = 0; k < corners; k++) fan[first[triangles[k] + 1]++] = (uint32_t)(k / 3);
     }
 
+    double volume = 0, area = 0;
+    for (uint32_t t = 0; t < solid->triangle_count; t++) {
+        const Float3 cross = facets_cross(solid, t);
+        volume += (double)float3_dot(cross, facets_corner(solid, t, 0)) / 6;
+        area += (double)float3_length(cross) / 2;
+    }
+    facets->thick = area > 0 ? (float)(3 * fabs(volume) / area) : 0;
+
     Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t k = 0; ok && k < corners; k++) {
         Float3 own = float3_unit_or(facets_cross(solid, (uint32_t)(k / 3)), UP), sum = {0, 0, 0};
@@ -56,6 +64,8 @@ static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *
         high = float3(maxf(high.x, v.x), maxf(high.y, v.y), maxf(high.z, v.z));
     }
 
+    facets->bounds[0] = low;
+    facets->bounds[1] = high;
     facets->centre = float3_scale(float3_add(low, high), 0.5f);
     facets->extent = 0.5f * float3_length(float3_sub(high, low));
     allocator_resize(allocator, first, first ? vertices * sizeof *first : 0, 0);
@@ -127,6 +137,7 @@ float facets_intersect(const Facets *facets, Float3 o, Float3 d, float near, flo
     // whether the ray, of unit direction, comes near enough
     Float3 to = float3_sub(facets->centre, o), aside = float3_mad(to, d, -float3_dot(to, d));
     if (!(float3_dot(aside, aside) <= 1.0001f * facets->extent * facets->extent)) return -1;
+    if (!bounds_near(facets->bounds, o, d, far, 1e-4f * facets->extent)) return -1;
 
     Rays rays;
     Hits hits;

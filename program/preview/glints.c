@@ -18,7 +18,7 @@ static bool is_metal(const Preview *preview) {
 
 /// Whether a block of pixels sees a part of the shape that is nearly flat.
 bool glints_may_be(const PreviewShape *shape, float footprint) {
-    const float size = shape->facets ? shape->facets->extent : shape->radius;
+    const float size = shape->facets ? shape->facets->thick : shape->radius;
     return shape->surface == PREVIEW_SURFACE_METAL && shape->kind != SINGE_COLLIDER_CAPSULE &&
            !(shape->temperature > BLACKBODY_MIN) &&
            (shape->kind == SINGE_COLLIDER_BOX || size > GLINT_BLOCKS * BLOCK * footprint);

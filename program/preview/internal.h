@@ -79,9 +79,10 @@ typedef struct Glint {
 typedef struct Facets {
     const PreviewSolid *solid;
     Bvh bvh;
-    Float3 *normals; ///< [3 * triangle_count] of each triangle's corners
-    Float3 centre;   ///< of its bounds, in its own frame
-    float extent;    ///< m, from the centre
+    Float3 *normals;          ///< [3 * triangle_count] of each triangle's corners
+    Float3 bounds[2], centre; ///< in its own frame
+    float extent;             ///< m, from the centre
+    float thick;              ///< m, three times its volume over its area: a ball's radius
     uint32_t triangle_count;
     bool passing; ///< freed when no shape uses it any more
     struct Facets *next;
@@ -161,7 +162,10 @@ void tracer_free(Preview *preview);
 // tracer.c
 SingeResult tracer_build(Preview *preview, SingeError *error);
 
-/// Whether the ray comes nearer than `margin` to the surface's bounds before `far`.
+/// Whether the ray comes nearer than `margin` to a box, from its lower to its upper corner, before `far`.
+bool bounds_near(const Float3 bounds[2], Float3 origin, Float3 direction, float far, float margin);
+
+/// The same of the surface's bounds.
 bool tracer_near(const PreviewScene *scene, Float3 origin, Float3 direction, float far, float margin);
 
 /// Nearest hits of the lanes that are valid; moves their `far` there.
@@ -196,6 +200,10 @@ Float3 shape_centre(const PreviewShape *shape);
 
 /// Radius of a sphere around that centre that contains the shape while the shutter is open.
 float shape_extent(const PreviewShape *shape, float shutter);
+
+/// Whether a ray that comes nearer than `near` to the shape's centre comes as near to its box, if it is a solid, before
+/// `far`.
+bool shape_near(const PreviewShape *shape, Float3 origin, Float3 direction, float far, float near);
 
 // shade_shape.c
 void shape_shade(const Preview *preview, const PreviewShape *shape, float moment, Point *point);

@@ -151,7 +151,7 @@ static bool sky_may_be_hidden(const Preview *preview, Float3 p, float reach) {
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         float near = shape_extent(&preview->shapes[k], preview->def.shutter) + reach;
         Float3 to = float3_sub(shape_centre(&preview->shapes[k]), p);
-        if (float3_dot(to, to) < near * near) return true;
+        if (float3_dot(to, to) < near * near && shape_near(&preview->shapes[k], p, preview->sun, 0, near)) return true;
     }
 
     return false;
@@ -184,7 +184,9 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
         float along = float3_dot(to, sun), extent = shape_extent(&preview->shapes[k], preview->def.shutter);
         Float3 aside = float3_mad(to, sun, -along);
         float near = extent + spread + margin * maxf(along + extent, 0);
-        if (along > -extent - spread && float3_dot(aside, aside) < near * near) return true;
+        if (along > -extent - spread && float3_dot(aside, aside) < near * near &&
+            shape_near(&preview->shapes[k], p, sun, INFINITY, near))
+            return true;
     }
 
     return false;

@@ -1,6 +1,6 @@
 // Which blocks of the picture a sheet or a shape may touch: the rest needs no rays from the camera.
 //
-// A triangle marks the rectangle around its three corners in the picture, a shape the rectangle of the sphere around
+// A triangle marks the rectangle around its three corners in the picture, a ball, a box or a capsule that of the sphere around
 // it, widened by the reach of a pixel's samples. Anything that reaches behind the camera marks all blocks. What lens or
 // shutter blur marks blocks as blurred.
 
@@ -70,6 +70,33 @@ static void mark(Preview *preview, const Rectangle *r, float blur) {
         }
 }
 
+/// The triangles of a solid, which may be long and thin; of others the cube around the sphere around them.
+static void mark_shape(Preview *preview, const PreviewShape *shape) {
+    const float around = shape_extent(shape, 0), extent = shape_extent(shape, preview->def.shutter);
+    const float moves = extent > around ? INFINITY : 0, half = shape->facets ? extent - around : extent;
+    const PreviewSolid *solid = shape->facets ? shape->solid : NULL;
+    for (uint32_t t = 0; t < (solid ? solid->triangle_count : 1); t++) {
+        Rectangle r = nowhere;
+        float blur = moves;
+        for (int k = 0; k < (solid ? 3 : 1); k++) {
+            Float3 centre = shape_centre(shape);
+            if (solid) {
+                const float *vertex = solid->vertices + 3 * (size_t)solid->triangles[3 * (size_t)t + (size_t)k];
+                centre = float3_add(float3_load(shape->position), quat_rotate(shape->rotation, float3_load(vertex)));
+            }
+            for (int corner = 0; corner < 8; corner++) {
+                Rectangle point = nowhere;
+                include(preview,
+                        float3(centre.x + (corner & 1 ? half : -half), centre.y + (corner & 2 ? half : -half),
+                               centre.z + (corner & 4 ? half : -half)),
+                        &point);
+                blur = maxf(blur, join(&point, &r));
+            }
+        }
+        mark(preview, &r, blur);
+    }
+}
+
 void mask_fill(Preview *preview) {
     const PreviewScene *scene = &preview->scene;
     bool moves = preview->def.shutter > 0;
@@ -89,21 +116,7 @@ void mask_fill(Preview *preview) {
         mark(preview, &r, blur);
     }
 
-    for (uint32_t k = 0; k < preview->shape_count; k++) {
-        Float3 centre = shape_centre(&preview->shapes[k]);
-        float extent = shape_extent(&preview->shapes[k], preview->def.shutter);
-        Rectangle r = nowhere;
-        float blur = extent > shape_extent(&preview->shapes[k], 0) ? INFINITY : 0; // it moves
-        for (int corner = 0; corner < 8; corner++) {
-            Rectangle point = nowhere;
-            include(preview,
-                    float3(centre.x + (corner & 1 ? extent : -extent), centre.y + (corner & 2 ? extent : -extent),
-                           centre.z + (corner & 4 ? extent : -extent)),
-                    &point);
-            blur = maxf(blur, join(&point, &r));
-        }
-        mark(preview, &r, blur);
-    }
+    for (uint32_t k = 0; k < preview->shape_count; k++) mark_shape(preview, &preview->shapes[k]);
 }
 
 static int mask_at(const Preview *preview, int x, int y) {

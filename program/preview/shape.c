@@ -114,3 +114,10 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
 
     return t;
 }
+
+bool shape_near(const PreviewShape *shape, Float3 o, Float3 d, float far, float near) {
+    if (!shape->facets) return true;
+    const Float3 from = quat_unrotate(shape->rotation, float3_sub(o, float3_load(shape->position)));
+    return bounds_near(shape->facets->bounds, from, quat_unrotate(shape->rotation, d), far,
+                       near - shape->facets->extent);
+}

@@ -46,14 +46,19 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
 /// 1 / x, large but finite at 0 so that no 0 times infinity follows.
 static float inverse(float x) { return fabsf(x) > 1e-12f ? 1 / x : 1e12f; }
 
-bool tracer_near(const PreviewScene *scene, Float3 o, Float3 d, float far, float margin) {
+bool bounds_near(const Float3 bounds[2], Float3 o, Float3 d, float far, float margin) {
+    const Float3 low = bounds[0], high = bounds[1];
     float ix = inverse(d.x), iy = inverse(d.y), iz = inverse(d.z);
-    float x0 = (scene->low.x - margin - o.x) * ix, x1 = (scene->high.x + margin - o.x) * ix;
-    float y0 = (scene->low.y - margin - o.y) * iy, y1 = (scene->high.y + margin - o.y) * iy;
-    float z0 = (scene->low.z - margin - o.z) * iz, z1 = (scene->high.z + margin - o.z) * iz;
+    float x0 = (low.x - margin - o.x) * ix, x1 = (high.x + margin - o.x) * ix;
+    float y0 = (low.y - margin - o.y) * iy, y1 = (high.y + margin - o.y) * iy;
+    float z0 = (low.z - margin - o.z) * iz, z1 = (high.z + margin - o.z) * iz;
     float enter = maxf(maxf(minf(x0, x1), minf(y0, y1)), maxf(minf(z0, z1), 0));
     float leave = minf(minf(maxf(x0, x1), maxf(y0, y1)), minf(maxf(z0, z1), far));
     return !(enter > leave);
+}
+
+bool tracer_near(const PreviewScene *scene, Float3 o, Float3 d, float far, float margin) {
+    return bounds_near((const Float3[]){scene->low, scene->high}, o, d, far, margin);
 }
 
 void tracer_intersect(const Preview *preview, const int *valid, Rays *rays, Hits *hits) {
