@@ -153,7 +153,7 @@ typedef struct WholeScene {
 
 static SingeResult whole_open(WholeScene *whole, const Outputs *outputs, int frames, SingeError *error) {
     const Scene *scene = outputs->job->scene;
-    const uint32_t slots = scene->collider_count + scene->source_count;
+    const uint32_t slots = scene_slots(scene, &outputs->job->assets);
 
     whole->scene = outputs->scene;
     whole->poses = calloc((size_t)slots * (size_t)frames + 1, sizeof *whole->poses);

@@ -54,7 +54,7 @@ static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, Sing
         const float *q = shape->rotation, length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
         bool good = all_between(shape->position, 3, -1e4f, 1e4f) && all_between(shape->velocity, 3, -1e4f, 1e4f) &&
                     all_between(shape->colour, 3, 0, 1e4f) && shape->temperature >= 0 && shape->temperature < 1e5f &&
-                    shape->surface >= PREVIEW_SURFACE_MATT && shape->surface <= PREVIEW_SURFACE_CLOTH;
+                    shape->surface >= PREVIEW_SURFACE_MATT && shape->surface <= PREVIEW_SURFACE_CORD;
         switch (shape->kind) {
         case SINGE_COLLIDER_PLANE: break;
         case SINGE_COLLIDER_SPHERE: good = good && shape->radius > 0 && shape->radius <= 1e4f; break;

@@ -25,6 +25,7 @@ typedef enum PreviewSurface {
     PREVIEW_SURFACE_WOOD,
     PREVIEW_SURFACE_METAL,
     PREVIEW_SURFACE_CLOTH,
+    PREVIEW_SURFACE_CORD, ///< twisted along x; of holders
 } PreviewSurface;
 
 /// A rigid shape: one of the scene's colliders and hot balls at the frame's time.
@@ -38,6 +39,38 @@ typedef struct PreviewShape {
     const PreviewSolid *solid;   ///< of a heightfield or a mesh, in the shape's frame
     const struct Facets *facets; ///< the preview's own; NULL
 } PreviewShape;
+
+/// What holds a sheet at its edge, with its word in scenes.
+#define PREVIEW_HOLDERS(ROW) ROW(NONE, "none") ROW(PEG, "peg") ROW(CLIP, "clip") ROW(RING, "ring")
+#define ROW(NAME, word) PREVIEW_HOLDER_##NAME,
+typedef enum PreviewHolder { PREVIEW_HOLDERS(ROW) } PreviewHolder;
+#undef ROW
+
+/// A part of an edge that is held. Axes are unit.
+typedef struct PreviewHeld {
+    float at[3];                     ///< m, its middle
+    float along[3], over[3], out[3]; ///< along the edge, across the sheet's face, and away from the sheet
+    float width;                     ///< m, along the edge
+    float scale;                     ///< 1: real sizes
+    float reach;                     ///< m, how far cords and rods go on
+    float rod, drop;                 ///< m, of a ring: radius of its rod, and the distance of `at` from the rod's axis
+} PreviewHeld;
+
+/// A drawn part: a shape whose solid is this one, with arrays from malloc. Without triangles: none.
+typedef struct PreviewHolderPart {
+    PreviewShape shape;
+    PreviewSolid solid;
+} PreviewHolderPart;
+
+enum { PREVIEW_HOLDER_PARTS = 2 };
+
+/// What grips each of several parts of a sheet; it moves with them. Rings are around the origin of their shape, whose x
+/// points away from what hangs from it, and y along the rod: one of them. False without memory.
+bool preview_holder_grip(PreviewHolder holder, const PreviewHeld *held, uint32_t count,
+                         PreviewHolderPart parts[PREVIEW_HOLDER_PARTS]);
+
+/// The cord or the rod that they share; `held` are in order along it. False without memory.
+bool preview_holder_line(PreviewHolder holder, const PreviewHeld *held, uint32_t count, PreviewHolderPart *part);
 
 /// Ambient light with mean `sky_colour`.
 typedef enum PreviewSky {

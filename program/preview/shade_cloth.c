@@ -272,3 +272,19 @@ void shape_cloth(const Place *place, Point *point) {
     const float z = place->shape->kind == SINGE_COLLIDER_BOX ? 0.0f : relief[0];
     shape_lean(place, float3(place->normal.y * z, -place->normal.x * z, relief[1] + 0.2f * pucker), point);
 }
+
+/// Three strands that are twisted together along x.
+void shape_cord(const Place *place, Point *point) {
+    const Float3 p = place->p, n = place->normal;
+    const float radius = place->shape->radius, turn = atan2f(n.z, n.y) / (2 * PI_F), pitch = 9 * radius;
+    float within, shown = visible(0.25f * pitch, point->footprint);
+    const int strand = noise_floor(3 * (turn + p.x / pitch), &within);
+    const float x = 2 * within - 1, fibre = noise2(7 * x, p.x / (2.5f * radius), 451 + (uint32_t)strand);
+    const float worn = noise2(p.x / 0.031f, turn, 452);
+    const float tone = 0.10f * worn + shown * (0.14f - 0.55f * x * x * x * x + 0.12f * fibre);
+    point->albedo = float3_scale(point->albedo, maxf(1 + tone, 0.2f));
+    point->gloss = 0;
+    point->mirror = 0.2f; // fuzz
+    const Float3 around = float3_cross(float3(1, 0, 0), n);
+    shape_lean(place, float3_scale(float3_mad(around, float3(1, 0, 0), 0.7f), -shown * 0.8f * x), point);
+}

@@ -48,5 +48,6 @@ void shape_shade(const Preview *preview, const PreviewShape *shape, float moment
     if (glows) shape_glow(preview, &place, point);
     else if (shape->surface == PREVIEW_SURFACE_WOOD) shape_wood(preview, &place, point);
     else if (shape->surface == PREVIEW_SURFACE_METAL) shape_metal(&place, point);
+    else if (shape->surface == PREVIEW_SURFACE_CORD) shape_cord(&place, point);
     else shape_cloth(&place, point);
 }

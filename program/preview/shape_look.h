@@ -18,6 +18,7 @@ void shape_wood(const Preview *preview, const Place *place, Point *point);
 
 // shade_cloth.c
 void shape_cloth(const Place *place, Point *point);
+void shape_cord(const Place *place, Point *point);
 
 // shade_metal.c
 void shape_metal(const Place *place, Point *point);

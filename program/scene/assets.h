@@ -62,6 +62,18 @@ SINGE_NODISCARD SingeResult follow_material(const Scene *scene, const SceneAsset
 /// Whether a file's name has a place for the frame's number: one run of #, after the last slash.
 bool sequence_name_fits(const char *name);
 
+// ---- what holds sheets
+
+/// Fills assets->holders, by the sheets' meshes. False without memory.
+bool holders_make(const Scene *scene, SceneAssets *assets);
+
+/// The shape of a part at a time, but for its solid, its temperature and its velocity.
+void holder_pose(const Scene *scene, const SceneHolder *holder, double time, PreviewShape *shape);
+
+/// Position and rotation on a path at a time.
+void keys_pose(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape);
+void holders_free(SceneAssets *assets);
+
 // ---- probes
 
 /// Fills assets->probes, which is allocated. Reports probes by uv on a mesh without uv.

@@ -207,6 +207,13 @@ bool scene_looks_alike(SceneWhole scene, SceneWhole before) {
 
 // ---- taking over
 
+/// A pin's text without its look.
+static char *pin_text(const ScenePin *pin) {
+    ScenePin bare = *pin;
+    bare.holder = PREVIEW_HOLDER_NONE;
+    return dump_text(&schema_pin, &bare);
+}
+
 /// Whether an entry of a list (0: sources, 1: colliders, 2: pins) is the same in both scenes, with the contents of its
 /// files. An entry that only one has is not.
 static bool entries_equal(int list, SceneWhole a, SceneWhole b, uint32_t i, bool *no_memory) {
@@ -218,8 +225,7 @@ static bool entries_equal(int list, SceneWhole a, SceneWhole b, uint32_t i, bool
     if (list == 2)
         return i < a.scene->pin_count && i < b.scene->pin_count &&
                motions_equal(&a.assets->pin_motions[i], &b.assets->pin_motions[i]) &&
-               texts_equal(dump_text(&schema_pin, &a.scene->pins[i]), dump_text(&schema_pin, &b.scene->pins[i]),
-                           no_memory);
+               texts_equal(pin_text(&a.scene->pins[i]), pin_text(&b.scene->pins[i]), no_memory);
 
     if (i >= a.scene->collider_count || i >= b.scene->collider_count) return false;
     const SceneSolid *one = &a.assets->solids[i], *other = &b.assets->solids[i];

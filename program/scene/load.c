@@ -300,6 +300,10 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
         (void)load_image(&loader, &scene->preview.environment_picture, &assets->sky);
     if (!loader.no_memory) check_formats(&loader);
     if (message_total(messages) == before && !loader.no_memory) probes_find(scene, assets, messages);
+    if (message_total(messages) == before && !loader.no_memory && !holders_make(scene, assets)) {
+        loader.no_memory = true;
+        message_add(messages, scene->text, (SceneLocation){0}, "out of memory");
+    }
     if (message_total(messages) == before && !loader.no_memory) return SINGE_OK;
     if (!loader.no_memory) sheet_faults(scene, assets, FAULTS_OF_MESHES, messages);
     messages_sort(messages, first);
@@ -327,6 +331,7 @@ void scene_assets_free(SceneAssets *assets) {
     for (uint32_t i = 0; i < assets->collider_count && assets->collider_motions; i++)
         sequence_free(&assets->collider_motions[i]);
     for (uint32_t i = 0; i < assets->pin_count && assets->pin_motions; i++) sequence_free(&assets->pin_motions[i]);
+    holders_free(assets);
     image_free(&assets->sky);
     free(assets->collider_motions);
     free(assets->pin_motions);

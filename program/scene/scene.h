@@ -186,6 +186,7 @@ typedef struct ScenePin {
     uint32_t key_count;
     SceneKey *keys;
     SceneMotion motion; ///< in place of keys
+    int holder;         ///< PreviewHolder, what it looks like
 } ScenePin;
 
 /// How a probe's position is given.
@@ -341,8 +342,17 @@ typedef struct RenderFile {
     uint32_t *triangles;    ///< [3 * def.triangle_count]
 } RenderFile;
 
+/// A drawn part of what holds a sheet (holders.c).
+typedef struct SceneHolder {
+    PreviewHolderPart part; ///< at the start
+    int32_t pin;            ///< it moves with this one; -1: it stands still
+    int32_t rod;            ///< a ring: the collider that it hangs from; -1: none
+    bool swings;            ///< a ring: about its rod, which stands still if it is no collider
+    float at[3];            ///< m, of a ring: what hangs from it
+} SceneHolder;
+
 typedef struct SceneAssets {
-    uint32_t sheet_count, source_count, collider_count, pin_count;
+    uint32_t sheet_count, source_count, collider_count, pin_count, holder_count;
     Mesh *meshes;                            ///< [sheet_count]
     MeshReport *reports;                     ///< [sheet_count] repairs of meshes from files
     RenderFile *renders;                     ///< [sheet_count], zeroed if there is none
@@ -358,6 +368,7 @@ typedef struct SceneAssets {
     SceneSequence *pin_motions;              ///< [pin_count]
     Image sky;                               ///< zeroed if there is none
     SceneProbePoint *probes;                 ///< [Scene.probe_count]
+    SceneHolder *holders;                    ///< [holder_count]
 } SceneAssets;
 
 /// Reads every file that the scene names. On failure *assets is empty and *messages has the locations of the files'
@@ -438,7 +449,12 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
 /// Returns how many there are in total, which may be more. shapes may be NULL if max is 0. They point into the assets.
 uint32_t scene_shapes(const Scene *scene, const SceneAssets *assets, double time, PreviewShape *shapes, uint32_t max);
 
-/// The shape at a slot: slots are the scene's colliders, then its sources. False if nothing is drawn at that time.
+/// How many slots of shapes there are: the scene's colliders, then its sources, then what holds its sheets.
+static inline uint32_t scene_slots(const Scene *scene, const SceneAssets *assets) {
+    return scene->collider_count + scene->source_count + assets->holder_count;
+}
+
+/// The shape at a slot. False if nothing is drawn at that time.
 bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, double time, PreviewShape *shape);
 
 /// Seconds from one frame to the next, and the simulation's step.

@@ -10,6 +10,9 @@ static const char *const surface_names[] = {[PREVIEW_SURFACE_MATT] = "matt",
                                             [PREVIEW_SURFACE_METAL] = "metal",
                                             [PREVIEW_SURFACE_CLOTH] = "cloth",
                                             NULL};
+#define ROW(NAME, word) [PREVIEW_HOLDER_##NAME] = word,
+static const char *const holder_names[] = {PREVIEW_HOLDERS(ROW) NULL};
+#undef ROW
 static const char *const units_names[] = {[SCENE_UNITS_M] = "m",   [SCENE_UNITS_CM] = "cm", [SCENE_UNITS_MM] = "mm",
                                           [SCENE_UNITS_IN] = "in", [SCENE_UNITS_FT] = "ft", NULL};
 static const char *const up_names[] = {[SCENE_UP_Z] = "z", [SCENE_UP_Y] = "y", NULL};
@@ -258,6 +261,12 @@ static const SchemaRow pin_rows[] = {
     {"motion", ROW_MAP, DIM_NONE, AT(ScenePin, motion), EXTRA(ScenePin, motion.given), .sub = &schema_motion,
      .doc = "a moving mesh in world coordinates that the held part follows: each particle follows the triangle that is "
             "nearest to it at frame 1; instead of `path`"},
+    {"holder", ROW_ENUM, DIM_NONE, AT(ScenePin, holder), .names = holder_names,
+     .doc =
+         "what holds the sheet's edge in the preview, at each part of it that the pin holds; nothing else depends on "
+         "it. `none`; `peg`, clothes-pegs on a cord; `clip`, bulldog clips, each at the end of a rod; `ring`, curtain "
+         "rings on the nearest `capsule` within 6 cm, even an invisible one, or else on a rod of brass. Not with "
+         "`motion`"},
 };
 #undef OF
 const Schema schema_pin = {.title = "a pin",

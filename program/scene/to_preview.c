@@ -1,5 +1,6 @@
 // From a scene to its preview: the Def, the default camera, and the shapes of a time.
 #include "common/float3.h"
+#include "scene/assets.h"
 #include "scene/space.h"
 #include "scene/scene.h"
 
@@ -167,7 +168,7 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
 // ---- shapes
 
 /// Interpolates like the library: positions linearly, quaternions linearly and normalised, constant beyond the ends.
-static void shape_pose(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
+void keys_pose(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
     uint32_t next = 0;
     while (next < count && (double)keys[next].time <= time) next++;
     const SceneKey *a = &keys[next ? next - 1 : 0], *b = &keys[next < count ? next : count - 1];
@@ -188,17 +189,33 @@ static void shape_pose(const SceneKey *keys, uint32_t count, double time, Previe
         shape->position[i] = (float)((1 - s) * (double)a->position[i] + s * (double)b->position[i]);
 }
 
-/// The velocity of the shape, from its displacement over a thousandth of a second. Rotation causes no blur.
-static void shape_move(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
-    PreviewShape later = *shape;
-    const float span = 1e-3f;
-    shape_pose(keys, count, time, shape);
-    shape_pose(keys, count, time + (double)span, &later);
+#define MOMENT 1e-3f ///< s
+
+/// The velocity of the shape, from where it is a moment later. Rotation causes no blur.
+static void shape_blur(const PreviewShape *later, PreviewShape *shape) {
     for (int i = 0; i < 3; i++)
-        shape->velocity[i] = fmaxf(-1e4f, fminf((later.position[i] - shape->position[i]) / span, 1e4f));
+        shape->velocity[i] = fmaxf(-1e4f, fminf((later->position[i] - shape->position[i]) / MOMENT, 1e4f));
+}
+
+static void shape_move(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
+    PreviewShape later;
+    keys_pose(keys, count, time, shape);
+    keys_pose(keys, count, time + (double)MOMENT, &later);
+    shape_blur(&later, shape);
 }
 
 bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, double time, PreviewShape *shape) {
+    if (slot >= scene->collider_count + scene->source_count) {
+        const SceneHolder *holder = &assets->holders[slot - scene->collider_count - scene->source_count];
+        PreviewShape later;
+        holder_pose(scene, holder, time, shape);
+        holder_pose(scene, holder, time + (double)MOMENT, &later);
+        shape_blur(&later, shape);
+        shape->temperature = scene->sim.ambient_temperature;
+        shape->solid = &holder->part.solid;
+        return true;
+    }
+
     if (slot >= scene->collider_count) {
         const SceneSource *source = &scene->sources[slot - scene->collider_count];
         const SingeSourceDef *def = &source->def;
@@ -241,7 +258,7 @@ bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, d
 uint32_t scene_shapes(const Scene *scene, const SceneAssets *assets, double time, PreviewShape *shapes, uint32_t max) {
     uint32_t count = 0;
     PreviewShape shape;
-    for (uint32_t i = 0; i < scene->collider_count + scene->source_count; i++) {
+    for (uint32_t i = 0; i < scene_slots(scene, assets); i++) {
         if (!scene_shape(scene, assets, i, time, &shape)) continue;
         if (count < max) shapes[count] = shape;
         count++;

@@ -43,6 +43,19 @@ static inline Float3 quat_unrotate(const float q[4], Float3 v) {
     float c[4] = {-q[0], -q[1], -q[2], q[3]};
     return quat_rotate(c, v);
 }
+/// The unit quaternion that turns the axes x, y and z to these, which are unit, at right angles and right-handed.
+static inline void quat_of_axes(Float3 x, Float3 y, Float3 z, float q[4]) {
+    // four multiples of it, of which the longest is the most exact (Shepperd 1978)
+    const float all[4][4] = {{1 + x.x - y.y - z.z, x.y + y.x, z.x + x.z, y.z - z.y},
+                             {x.y + y.x, 1 - x.x + y.y - z.z, y.z + z.y, z.x - x.z},
+                             {z.x + x.z, y.z + z.y, 1 - x.x - y.y + z.z, x.y - y.x},
+                             {y.z - z.y, z.x - x.z, x.y - y.x, 1 + x.x + y.y + z.z}};
+    int longest = 0;
+    for (int k = 1; k < 4; k++)
+        if (all[k][k] > all[longest][longest]) longest = k;
+    const float length = 2 * sqrtf(all[longest][longest]);
+    for (int k = 0; k < 4; k++) q[k] = all[longest][k] / length;
+}
 
 // Geometry that must not round as floats do, over arrays of three doubles.
 
