@@ -90,6 +90,7 @@ function start(): void {
     controls.maxDistance = 1.1;
     controls.maxPolarAngle = 1.52;
     controls.enableDamping = !still;
+    controls.addEventListener("change", () => { stale = true; });
     place();
     resize();
     addEventListener("resize", resize);
@@ -232,7 +233,7 @@ function advance(seconds: number, most: number): void {
 function tick(now: number): void {
     requestAnimationFrame(tick);
     const passed = (now - last) / 1000;
-    const moved = controls.update();
+    controls.update();
     if (!busy && begun && !paused && !document.hidden) {
         last = now;
         const budget = Math.min(Math.max(1000 * passed, BUDGET.least), BUDGET.most);
@@ -241,7 +242,6 @@ function tick(now: number): void {
     } else if (paused) {
         last = now;
     }
-    stale ||= moved;
     if (stale && pixels.free) draw();
     else if (pixels.rests(now)) draw(true);
 }

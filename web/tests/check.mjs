@@ -258,12 +258,13 @@ const CASES = {
         assert.ok(here.burnt > 0.001 && Math.abs(column("burnt_fraction") - here.burnt) < 1e-6 * here.burnt && column("pieces") === here.pieces);
     },
     async "one finger drags the match, two turn the view and light nothing"() {
-        const before = page, context = await page.context().browser().newContext({ hasTouch: true, isMobile: true, viewport: { width: 390, height: 800 } });
+        const desk = page, context = await page.context().browser().newContext({ hasTouch: true, isMobile: true, viewport: { width: 390, height: 800 } });
         page = await context.newPage();
         page.setDefaultTimeout(120_000);
         try {
             await open(QUICK);
             const devtools = await context.newCDPSession(page), pause = () => page.waitForTimeout(200);
+            const drawn = () => page.evaluate(() => document.querySelector("#view").toDataURL()), before = await drawn();
             const touch = (type, ...points) => devtools.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
             const [x, y] = await place([0, 0, 0]), far = await place([0.1, 0.14, 0]);
             await touch("touchStart", [x, y], [x + 90, y]); // one after the other, at once
@@ -272,6 +273,7 @@ const CASES = {
             await pause();
             const turned = await place([0.1, 0.14, 0]);
             assert.ok(Math.hypot(turned[0] - far[0], turned[1] - far[1]) > 15, `a corner went from ${far} to ${turned}`);
+            for (const end = Date.now() + 20_000; (await drawn()) === before; ) assert.ok(Date.now() < end, "the turned view is drawn while time stands still");
             assert.equal((await step(0.3)).strokes.length, 0);
 
             const from = await place([0, 0, 0]), to = await place([0.03, 0.02, 0]);
@@ -289,7 +291,7 @@ const CASES = {
             assert.equal((await step(0.1)).pins.length, 1);
         } finally {
             await context.close();
-            page = before;
+            page = desk;
         }
     },
     async "a lost context comes back with the picture, and the fire goes on"() {
