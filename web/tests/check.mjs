@@ -118,6 +118,16 @@ const CASES = {
             }
             assert.ok(seen.slice(60).every((one) => one === share), `${whole} ms: ${[...new Set(seen)]}`);
         }
+        // ms without pixels, and for all; every so many drawings three are late, as where the card has other work as well
+        for (const [fixed, most, late, end] of [[6, 3, Infinity, 1], [3, 6, 20, null]]) {
+            const pixels = new Pixels({}), seen = [];
+            for (let i = 0; i < 1200; i++) {
+                seen.push(pixels.share);
+                pixels.took(fixed + most * pixels.share ** 2 + 3 * Math.abs(Math.sin(7 * i)) + (i % late > late - 4 ? 9 : 0));
+            }
+            const changes = seen.filter((share, i) => i > 0 && share !== seen[i - 1]).length;
+            assert.ok(changes < 10 && (end === null || seen.at(-1) === end), `${fixed} and ${most} ms: ${changes} changes, ${seen.at(-1)} at the end`);
+        }
         await flame(false);
         const wide = () => page.evaluate(() => document.querySelector("#view").width), played = await wide();
         await page.keyboard.press("Space");

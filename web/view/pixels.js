@@ -3,7 +3,8 @@
 
 const SHARES = [0.35, 0.5, 0.7, 0.85, 1];
 const IN_TIME = [Infinity, 32, 15, 15, 15]; // ms: 60 frames a second, or where pixels would be seen, 30
-const TRIES = { fewer: 3, more: 6 }; // drawings in a row
+const TRIES = { fewer: 3, more: 6, most: 600 }; // drawings in a row
+const SETTLES = 3; // drawings after a change, in which the card also makes its pictures anew
 const STILL = 250; // ms
 
 export class Pixels {
@@ -11,6 +12,8 @@ export class Pixels {
     #level = 0; // the first drawings also compile programs
     #fence = null;
     #streak = 0; // drawings in a row that were in time for more pixels, or negative, too slow
+    #settling = 0;
+    #patience = TRIES.more; // drawings until more pixels are tried, more after each try that failed
     #moved = 0;
     #whole = false;
     /** A share that tests ask for. @type {number | null} */
@@ -53,11 +56,14 @@ export class Pixels {
     /** A drawing took so many ms. */
     took(ms) {
         if (this.fixed !== null || this.held) return;
-        const level = this.#level, next = level + 1, more = (SHARES[next] / SHARES[level]) ** 2;
+        if (this.#settling > 0) return void this.#settling--;
+        const level = this.#level, next = level + 1, more = (1 + (SHARES[next] / SHARES[level]) ** 2) / 2; // half of the time is for pixels
         const slow = ms > IN_TIME[level], fast = next < SHARES.length && more * ms < IN_TIME[next];
         this.#streak = slow ? Math.min(this.#streak, 0) - 1 : fast ? Math.max(this.#streak, 0) + 1 : 0;
-        const by = this.#streak <= -TRIES.fewer ? -1 : this.#streak >= TRIES.more ? 1 : 0;
+        const by = this.#streak <= -TRIES.fewer ? -1 : this.#streak >= this.#patience ? 1 : 0;
         if (!by) return;
+        if (by < 0) this.#patience = Math.min(4 * this.#patience, TRIES.most);
+        this.#settling = SETTLES;
         this.#level += by;
         this.#streak = 0;
     }
