@@ -143,9 +143,10 @@ check-web: web
 	cd web && SINGE_PROGRAM=$(CURDIR)/build/singe SINGE_LIBRARY=$(CURDIR)/build/python/singe/libsinge.so \
 	    PYTHONPATH=$(CURDIR)/bindings/python node tests/jupyterlab.mjs ../build/notebook/bin/python ../build/notebook/run
 
-# the page's size, and its speed in Chromium
+# the page's size, and its speed in Chromium; with CACHE, a large one, that of `singe view` as well, which needs build/singe
 web-speed: web
 	cd web && ONLY=speed node tests/check.mjs
+	[ -z "$(CACHE)" ] || node web/tests/large.mjs $(CACHE)
 
 # pictures of the page for docs/web.md, its first minute among them, into build/web-pictures; with CACHE=out/letter those of
 # docs/view.md as well, which need build/singe

@@ -246,12 +246,11 @@ function tick(now: number): void {
     else if (pixels.rests(now)) draw(true);
 }
 
-let drawings = 0, made = 0;
+let made = 0; // steps
 /** Draws the newest frame. @param whole in all pixels */
 function draw(whole = false): void {
     pixels.begin(performance.now(), whole);
     stale = false;
-    drawings++;
     const wanted = pixels.fixed ?? Math.min(devicePixelRatio, 1.5) * pixels.share;
     if (wanted !== scale) {
         scale = wanted;
@@ -735,13 +734,13 @@ Object.assign(globalThis, { page: {
         const heard = (await context.startRendering()).getChannelData(0);
         return Math.sqrt(heard.reduce((sum, x) => sum + x * x, 0) / heard.length);
     },
-    /** Lets the clock run for some seconds of the wall; how often the page was drawn then, and how many steps were made. */
-    async run(seconds: number): Promise<{ drawings: number; steps: number }> {
-        const [drawnBefore, madeBefore] = [drawings, made];
+    /** Lets the clock run for some seconds of the wall; how many steps were made then. */
+    async run(seconds: number): Promise<number> {
+        const before = made;
         pause(false);
         await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
         pause(true);
-        return { drawings: drawings - drawnBefore, steps: made - madeBefore };
+        return made - before;
     },
     /** ms to show and draw a frame of the worker until the card has done it, the mean of so many. */
     drawn(times: number): number {

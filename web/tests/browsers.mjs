@@ -18,11 +18,11 @@ const KEYS = { Escape: "\uE00C", Home: "\uE011", End: "\uE010", ArrowLeft: "\uE0
 
 async function chromiumPage() {
     const browser = await chromium.launch({ executablePath: CHROMIUM, args: CHROMIUM_ARGS });
-    const page = await browser.newPage({ viewport: { width: 1100, height: 700 } }), errors = [];
+    const page = await browser.newPage({ viewport: { width: 1100, height: 700 } }), errors = [], { mouse } = page;
     page.setDefaultTimeout(2 * PATIENCE); // a busy machine starts slowly
     page.on("pageerror", (error) => errors.push(error.message));
     return {
-        errors,
+        errors, mouse,
         open: (address) => page.goto(address),
         evaluate: (call, argument) => page.evaluate(call, argument),
         size: (width, height) => page.setViewportSize({ width, height }),
@@ -172,3 +172,34 @@ export const speedOf = (page) => page.evaluate(() => {
     const once = timed(2), rate = 1000 / (once > 100 ? once : timed(Math.min(Math.ceil(500 / once), 200)));
     return `${frame.triangleCount} triangles, ${canvas.width} x ${canvas.height} pixels at ${rate.toFixed(2)} frames/s by ${gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER)}`;
 });
+
+/** Whether this is the name of a graphics card, not of a program in its place. */
+export const isCard = (name) => !/SwiftShader|llvmpipe/i.test(name);
+
+/**
+ * Turns the view of the page, or of `singe view`, for some seconds with a button of Chromium's mouse. Frames a second by the
+ * clock, and ms between two of them, which half and a twentieth exceed. As each drawing ends with a fence, fences are counted,
+ * and as the next one waits for the card, all of them were drawn.
+ */
+export async function turned(page, button, seconds) {
+    await page.mouse.move(300, 200);
+    await page.mouse.down({ button });
+    const times = await page.evaluate(([s, held]) => new Promise((resolve) => {
+        const { prototype } = WebGL2RenderingContext, { fenceSync } = prototype, canvas = document.querySelector("#view"), times = [], begun = performance.now();
+        prototype.fenceSync = function (...words) {
+            times.push(performance.now());
+            return fenceSync.apply(this, words);
+        };
+        const move = (now) => {
+            const turn = (now - begun) / 1000, at = { clientX: 300 + 100 * Math.sin(turn), clientY: 200 + 20 * Math.sin(2 * turn) };
+            canvas.dispatchEvent(new PointerEvent("pointermove", { ...at, pointerId: 1, pointerType: "mouse", buttons: held, bubbles: true }));
+            if (turn < s) return requestAnimationFrame(move);
+            prototype.fenceSync = fenceSync;
+            resolve(times);
+        };
+        requestAnimationFrame(move);
+    }), [seconds, button === "left" ? 1 : 2]);
+    await page.mouse.up({ button });
+    const gaps = times.slice(1).map((time, i) => time - times[i]).sort((a, b) => a - b), [half, late] = [0.5, 0.95].map((share) => gaps[Math.floor(share * gaps.length)] ?? Infinity);
+    return { rate: times.length / seconds, half, late };
+}
