@@ -11,6 +11,7 @@ enum {
     FIRE_BORDER = 2,  ///< empty cells around the gas, so that interpolation needs no bounds
     FIRE_BRICK = 2,   ///< cells along the side of a brick, the unit of empty space that is skipped
     FIRE_STEPS = 128, ///< max steps of a ray outside empty bricks
+    FIRE_RUNS = 8,    ///< max parts of a ray that are near flames
     FIRE_NOISE = 16,  ///< corners along the side of the lattice of noise, a power of two
     FIRE_COLOURS = 64,
 };
@@ -23,11 +24,18 @@ typedef struct FireCell {
     float glow;  ///< light of the flames that reaches the smoke, per unit of albedo
 } FireCell;
 
+/// The light of what is at a position, or the mean over a step, per metre.
+typedef struct Matter {
+    Float3 light;
+    float dense; ///< 1/m, extinction
+} Matter;
+
 /// The steps of a ray from `from` to `distance`: after a step, `light` has been added and `clear` is the transmittance.
 typedef struct FireView {
-    int count;
+    int count, run_count;
     float from[FIRE_STEPS], distance[FIRE_STEPS], clear[FIRE_STEPS];
     Float3 light[FIRE_STEPS];
+    float runs[FIRE_RUNS][2]; ///< m, where flames are near it
 } FireView;
 
 /// Flames have no edges as sharp as a sheet's: one ray for each second pixel across and down, through the corners that
@@ -35,8 +43,18 @@ typedef struct FireView {
 /// Where four rays at twice that distance see nearly the same, there are none between them.
 enum { FIRE_TILE = 32, FIRE_ACROSS = FIRE_TILE / 2 + 1, FIRE_COARSE = FIRE_TILE / 4 };
 
+/// Smoke is softer still: it is known at places of a few of the rays, `length` apart, and linear between them.
+enum { SMOKE_ACROSS = FIRE_TILE / 4 + 1, SMOKE_PLACES = 192 };
+
 typedef struct FireTile {
     FireView views[FIRE_ACROSS * FIRE_ACROSS];
+    Float3 rays[FIRE_ACROSS * FIRE_ACROSS]; ///< unit
+    float pixel;                            ///< m, its size where the gas ends
+    int apart;                              ///< rays from one with smoke to the next; 0: each looks for itself
+    int first;                              ///< number of the place nearest to the eye
+    float length;                           ///< m
+    Matter smoke[SMOKE_ACROSS * SMOKE_ACROSS][SMOKE_PLACES];
+    bool smoke_known[SMOKE_ACROSS * SMOKE_ACROSS][SMOKE_PLACES];
     bool fine[FIRE_COARSE * FIRE_COARSE]; ///< whether squares of 4 x 4 pixels have rays at all their corners of 2 x 2
     bool empty;                           ///< no ray meets anything
 } FireTile;
@@ -107,12 +125,6 @@ typedef struct FirePoint {
 } FirePoint;
 
 #define FIRE_OUTSIDE (-0.006f) ///< m, depth of what is far outside of flames
-
-/// The light of what is at a position, or the mean over a step, per metre.
-typedef struct Matter {
-    Float3 light;
-    float dense; ///< 1/m, extinction
-} Matter;
 
 // fire_shade.c
 void fire_fill_colours(Preview *preview);

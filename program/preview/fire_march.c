@@ -7,33 +7,101 @@
 
 #include <string.h>
 
-#define FIRE_SHORT 0.35f  ///< step near an edge, relative to the usual one: longer ones miss thin sheets
-#define FIRE_NEAR 4.0f    ///< short steps from an edge, in usual ones: with 2, arcs are seen inside of tongues
-#define SMOKE_STEP 0.010f ///< m, distance at most between the places of a ray where its smoke is looked up
-#define FIRE_SOFT 6.0f    ///< pixels, over which the edges of flames begin: rays are two apart, depths rough
-#define FIRE_EVEN 0.020f  ///< difference of light, as l / (1 + l), that may be interpolated
+#define FIRE_SHORT 0.35f   ///< step near an edge, relative to the usual one: longer ones miss thin sheets
+#define FIRE_NEAR 4.0f     ///< short steps from an edge, in usual ones: with 2, arcs are seen inside of tongues
+#define SMOKE_APART 0.005f ///< m, between rays that have smoke
+#define SMOKE_STEP 0.010f  ///< m, distance at most between the places of a ray where its smoke is looked up
+#define FIRE_SOFT 6.0f     ///< pixels, over which the edges of flames begin: rays are two apart, depths rough
+#define FIRE_EVEN 0.020f   ///< difference of light, as l / (1 + l), that may be interpolated
 
 /// Smoke has no detail as fine as a flame's steps: it is looked up at multiples of a length, and linear between them.
 typedef struct SmokeLine {
+    FireTile *tile; ///< where smoke is shared with other rays; NULL: nowhere
+    int ray;
     float length, first; ///< m; number of the place of the nearer of `ends`
     Matter ends[2];
 } SmokeLine;
 
-static Matter smoke_along(const Fire *fire, Float3 eye, Float3 d, float t, SmokeLine *line) {
-    const float first = floorf(t / line->length);
-    if (first != line->first) {
-        line->ends[0] =
-            first == line->first + 1 ? line->ends[1] : fire_smoke_at(fire, float3_mad(eye, d, first * line->length));
-        line->ends[1] = fire_smoke_at(fire, float3_mad(eye, d, (first + 1) * line->length));
-        line->first = first;
-    }
-
-    const Matter *a = &line->ends[0], *b = &line->ends[1];
-    const float part = t / line->length - first;
+static Matter matter_mix(const Matter *a, const Matter *b, float part) {
     return (Matter){float3_mix(a->light, b->light, part), mixf(a->dense, b->dense, part)};
 }
 
-static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view) {
+/// The smoke of a place of one of the rays that have it.
+static const Matter *smoke_shared(const Fire *fire, Float3 eye, FireTile *tile, int column, int row, int place) {
+    const int line = row * SMOKE_ACROSS + column;
+    Matter *smoke = &tile->smoke[line][place];
+    if (tile->smoke_known[line][place]) return smoke;
+    tile->smoke_known[line][place] = true;
+    const Float3 ray = tile->rays[tile->apart * (row * FIRE_ACROSS + column)];
+    *smoke = fire_smoke_at(fire, float3_mad(eye, ray, (float)(tile->first + place) * tile->length));
+    return smoke;
+}
+
+/// The smoke of a place of a ray, from the four around it.
+static Matter smoke_place(const Fire *fire, Float3 eye, Float3 d, float number, const SmokeLine *line) {
+    FireTile *tile = line->tile;
+    const float from = tile ? number - (float)tile->first : -1;
+    if (!(from >= 0 && from < SMOKE_PLACES)) return fire_smoke_at(fire, float3_mad(eye, d, number * line->length));
+    const int x = line->ray % FIRE_ACROSS, y = line->ray / FIRE_ACROSS, apart = tile->apart, place = (int)from;
+    const int column = x / apart, row = y / apart, right = column + (x % apart > 0), down = row + (y % apart > 0);
+    const float u = (float)(x % apart) / (float)apart, v = (float)(y % apart) / (float)apart;
+    const Matter upper = matter_mix(smoke_shared(fire, eye, tile, column, row, place),
+                                    smoke_shared(fire, eye, tile, right, row, place), u);
+    if (down == row) return upper;
+    const Matter lower = matter_mix(smoke_shared(fire, eye, tile, column, down, place),
+                                    smoke_shared(fire, eye, tile, right, down, place), u);
+    return matter_mix(&upper, &lower, v);
+}
+
+static Matter smoke_along(const Fire *fire, Float3 eye, Float3 d, float t, SmokeLine *line) {
+    const float first = floorf(t / line->length);
+    if (first != line->first) {
+        line->ends[0] = first == line->first + 1 ? line->ends[1] : smoke_place(fire, eye, d, first, line);
+        line->ends[1] = smoke_place(fire, eye, d, first + 1, line);
+        line->first = first;
+    }
+
+    return matter_mix(&line->ends[0], &line->ends[1], t / line->length - first);
+}
+
+// ---- where flames are
+
+/// The parts of a ray that are near flames, in order, as its neighbours have found.
+typedef struct Guide {
+    int count;
+    float runs[4 * FIRE_RUNS][2];
+} Guide;
+
+/// Makes a run the last of a view, or extends that.
+static void view_extend(FireView *view, float from, float to) {
+    float *last = view->run_count ? view->runs[view->run_count - 1] : NULL;
+    if (last && (from <= last[1] || view->run_count == FIRE_RUNS)) last[1] = to;
+    else memcpy(view->runs[view->run_count++], (const float[2]){from, to}, sizeof *view->runs);
+}
+
+static void guide_add(Guide *guide, const FireView *view) {
+    for (int k = 0; k < view->run_count; k++) {
+        int at = guide->count++;
+        for (; at && guide->runs[at - 1][0] > view->runs[k][0]; at--)
+            memcpy(guide->runs[at], guide->runs[at - 1], sizeof *guide->runs);
+        memcpy(guide->runs[at], view->runs[k], sizeof *guide->runs);
+    }
+}
+
+/// Whether flames may be near at t; sets *until to where that may change. `run` is the first that does not end before t.
+static bool guide_near(const Guide *guide, float t, int *run, float *until) {
+    *until = INFINITY;
+    if (!guide) return true;
+    while (*run < guide->count && guide->runs[*run][1] <= t) ++*run;
+    if (*run == guide->count) return false;
+    if (guide->runs[*run][0] <= t) return true;
+    *until = guide->runs[*run][0];
+    return false;
+}
+
+/// `tile` and `number`: of which it is one; NULL: of none. `guide` NULL: flames may be everywhere.
+static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile, int number, const Guide *guide,
+                    FireView *view) {
     const Fire *fire = &preview->fire;
     const float from[3] = {eye.x, eye.y, eye.z}, ray[3] = {d.x, d.y, d.z};
     const float low[3] = {fire->low.x, fire->low.y, fire->low.z}, high[3] = {fire->high.x, fire->high.y, fire->high.z};
@@ -47,7 +115,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
         far = minf(far, maxf(a, b));
     }
 
-    view->count = 0;
+    view->count = view->run_count = 0;
     if (!(t < far)) return;
 
     Float3 light = {0, 0, 0};
@@ -59,24 +127,34 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
     bool known = false; // whether `here` is the point at t
     FirePoint here;
     const float blur = FIRE_SOFT * preview->camera.pixel;
-    SmokeLine line = {.length = maxf(minf(fire->cell, SMOKE_STEP), min), .first = -2};
+    SmokeLine line = {.length = maxf(minf(fire->cell, SMOKE_STEP), min), .first = -2, .ray = number};
+    if (tile && tile->apart && line.length == tile->length) line.tile = tile;
+    float leave = -1;
+    int in_brick = 0, near = 0;
 
     while (t < far && clear > 0.02f) {
-        // what is in the brick here, and the length of the ray in it from here
-        float side = FIRE_BRICK * fire->cell, run = INFINITY;
-        Float3 g = float3_scale(float3_sub(float3_mad(eye, d, t + 1e-5f), fire->origin), 1 / side);
-        const float at[3] = {g.x, g.y, g.z};
-        size_t brick[3];
-        for (int c = 0; c < 3; c++) {
-            float f;
-            int i = noise_floor(at[c], &f);
-            brick[c] = (size_t)(i < 0 ? 0 : i < fire->bricks[c] ? i : fire->bricks[c] - 1);
-            if (fabsf(ray[c]) > 1e-9f) run = minf(run, ((ray[c] > 0 ? 1 : 0) - f) * side / ray[c]);
+        // what is in the brick here, and where the ray leaves it
+        if (t >= leave) {
+            const float side = FIRE_BRICK * fire->cell;
+            const Float3 g = float3_scale(float3_sub(float3_mad(eye, d, t + 1e-5f), fire->origin), 1 / side);
+            const float at[3] = {g.x, g.y, g.z};
+            size_t brick = 0, over = 1;
+            leave = INFINITY;
+            for (int c = 0; c < 3; c++) {
+                float f;
+                int i = noise_floor(at[c], &f);
+                brick += over * (size_t)(i < 0 ? 0 : i < fire->bricks[c] ? i : fire->bricks[c] - 1);
+                over *= (size_t)fire->bricks[c];
+                if (fabsf(ray[c]) > 1e-9f) leave = minf(leave, t + ((ray[c] > 0 ? 1 : 0) - f) * side / ray[c]);
+            }
+            in_brick = fire->seen[brick];
         }
 
-        int what = fire->seen[brick[0] + (size_t)fire->bricks[0] * (brick[1] + (size_t)fire->bricks[1] * brick[2])];
+        int what = in_brick;
+        float until = INFINITY;
+        if (what & FIRE_FLAME && !guide_near(guide, t, &near, &until)) what &= ~FIRE_FLAME;
         if (!what) {
-            t += maxf(minf(run, far - t), 0) + 2e-5f + 1e-6f * t;
+            t = minf(maxf(minf(leave, far), t) + 2e-5f + 1e-6f * t, until);
             known = false;
             continue;
         }
@@ -90,11 +168,12 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
         const float away = here.depth > FIRE_OUTSIDE ? 2 * fine : 3 * fine;
         float length = dark ? away : fabsf(here.depth) < FIRE_NEAR * fine ? FIRE_SHORT * fine : fine;
         float step = maxf(flame ? length : fire->cell, min);
-        float next = maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step);
+        float next = minf(maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step), until);
         step = next - t;
         const FirePoint there = flame ? fire_at_point(fire, float3_mad(eye, d, next), blur * next) : outside;
         dark = there.depth < -2 * fine;
         if (seek && !dark) continue; // the same distance again in short steps
+        if (maxf(here.depth, there.depth) > FIRE_OUTSIDE) view_extend(view, t, next);
         Matter m = {{0, 0, 0}, 0};
         if (what & FIRE_SMOKE) m = smoke_along(fire, eye, d, t + 0.5f * step, &line);
         fire_between(&here, &there, step, &m);
@@ -113,17 +192,56 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireView *view
         view->light[k] = light;
         view->clear[k] = clear;
     }
+    if (t < far) view_extend(view, t, far); // hidden: others may look past what hides it
 }
 
-/// Traces the ray of a tile's corner `k`.
-static void see_corner(const Preview *preview, int x, int y, int k, FireTile *tile) {
+static Float3 corner_ray(const Preview *preview, int x, int y, int k, Float3 *eye) {
     const float disc[2] = {0, 0};
     float u = 2 * (float)(x + 2 * (k % FIRE_ACROSS)) / (float)preview->def.width - 1;
     float v = 1 - 2 * (float)(y + 2 * (k / FIRE_ACROSS)) / (float)preview->def.height;
-    Float3 origin, direction;
-    camera_ray(&preview->camera, u, v, disc, &origin, &direction);
-    see_ray(preview, origin, direction, &tile->views[k]);
+    Float3 direction;
+    camera_ray(&preview->camera, u, v, disc, eye, &direction);
+    return direction;
+}
+
+/// Traces the ray of a tile's corner `k`. Those around it that are 2 * `apart` from each other have been, and guide it
+/// if they are near enough; 0: none have.
+static void see_corner(const Preview *preview, int x, int y, int k, int apart, FireTile *tile) {
+    const int column = k % FIRE_ACROSS, row = k / FIRE_ACROSS, step = 2 * apart;
+    Float3 eye;
+    tile->rays[k] = corner_ray(preview, x, y, k, &eye);
+    Guide guide = {.count = 0};
+    const bool guided = apart && 1.5f * 2 * (float)apart * tile->pixel < -0.5f * FIRE_OUTSIDE;
+    for (int m = 0; guided && m < 4; m++) {
+        const bool right = m % 2, down = m / 2;
+        if ((right && column % step == 0) || (down && row % step == 0)) continue;
+        guide_add(&guide, &tile->views[(row / step + down) * step * FIRE_ACROSS + (column / step + right) * step]);
+    }
+    see_ray(preview, eye, tile->rays[k], tile, k, guided ? &guide : NULL, &tile->views[k]);
     tile->empty = tile->empty && !tile->views[k].count;
+}
+
+/// Prepares a tile for rays from the eye.
+static void tile_begin(const Preview *preview, int x, int y, FireTile *tile) {
+    const Fire *fire = &preview->fire;
+    const Float3 middle = float3_scale(float3_add(fire->low, fire->high), 0.5f);
+    const float radius = 0.5f * float3_length(float3_sub(fire->high, fire->low));
+    const float distance = float3_length(float3_sub(middle, preview->camera.eye));
+    tile->empty = true;
+    memset(tile->fine, 0, sizeof tile->fine);
+    tile->pixel = preview->camera.pixel * (distance + radius);
+    tile->length = minf(fire->cell, SMOKE_STEP);
+    tile->first = (int)minf(maxf(distance - radius, 0) / tile->length, 1e9f);
+    tile->apart = 0;
+    for (int apart = 4; apart > 1 && !tile->apart; apart /= 2)
+        if (2 * (float)apart * tile->pixel < SMOKE_APART * fire->scale) tile->apart = apart;
+    if (!tile->apart) return;
+
+    memset(tile->smoke_known, 0, sizeof tile->smoke_known);
+    Float3 eye;
+    for (int i = 0; i < FIRE_ACROSS; i += tile->apart)
+        for (int j = 0; j < FIRE_ACROSS; j += tile->apart)
+            tile->rays[i * FIRE_ACROSS + j] = corner_ray(preview, x, y, i * FIRE_ACROSS + j, &eye);
 }
 
 /// Whether the rays that are known in a square of 4 x 4 pixels, the first of which is `k`, see nearly the same.
@@ -146,13 +264,14 @@ static bool is_even(const FireTile *tile, const bool *known, int k) {
 
 void fire_see(const Preview *preview, int x, int y, FireTile *tile) {
     bool known[FIRE_ACROSS * FIRE_ACROSS] = {false};
-    tile->empty = true;
-    memset(tile->fine, 0, sizeof tile->fine);
-    for (int i = 0; i < FIRE_ACROSS; i += 2)
-        for (int j = 0; j < FIRE_ACROSS; j += 2) {
-            see_corner(preview, x, y, i * FIRE_ACROSS + j, tile);
-            known[i * FIRE_ACROSS + j] = true;
-        }
+    tile_begin(preview, x, y, tile);
+    for (int apart = 4; apart > 1; apart /= 2)
+        for (int i = 0; i < FIRE_ACROSS; i += apart)
+            for (int j = 0; j < FIRE_ACROSS; j += apart) {
+                const int k = i * FIRE_ACROSS + j;
+                if (!known[k]) see_corner(preview, x, y, k, apart == 4 ? 0 : apart, tile);
+                known[k] = true;
+            }
 
     // a ray between two corners may meet what both miss: then the square beyond it is looked at, too, and so on along a
     // tongue that is thinner than the corners are apart
@@ -164,7 +283,7 @@ void fire_see(const Preview *preview, int x, int y, FireTile *tile) {
             again = tile->fine[square] = true;
             for (int m = 0; m < 9; m++) {
                 const int k = first + m / 3 * FIRE_ACROSS + m % 3;
-                if (!known[k]) see_corner(preview, x, y, k, tile);
+                if (!known[k]) see_corner(preview, x, y, k, 1, tile);
                 known[k] = true;
             }
         }
@@ -197,7 +316,7 @@ static void add_view(const FireView *view, float distance, float weight, Float3 
 
 void fire_along(const Preview *preview, Float3 origin, Float3 direction, float distance, Float3 *light, float *clear) {
     FireView view;
-    see_ray(preview, origin, direction, &view);
+    see_ray(preview, origin, direction, NULL, 0, NULL, &view);
     *light = float3(0, 0, 0);
     *clear = 0;
     add_view(&view, distance, 1, light, clear);
