@@ -18,13 +18,15 @@ void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]
     memset(sites, 0, SITE_LIMIT * sizeof *sites);
     for (uint32_t t = 0; t < scene->triangle_count; t++) {
         const PaperVertex *v[3];
+        for (int k = 0; k < 3; k++) v[k] = &scene->vertices[scene->triangles[t][k]];
+        float hottest = maxf(v[0]->temperature, maxf(v[1]->temperature, v[2]->temperature));
+        float high = maxf(v[0]->burn, maxf(v[1]->burn, v[2]->burn));
+        if (hottest < 600 || high < 0.15f) continue; // most are neither
+
         Float3 position = {0, 0, 0}, rest = {0, 0, 0};
-        float hottest = 0, low = 1, high = 0, burn = 0, rate = 0, flaming = 0, starved = 0, gradient = 0;
+        float low = 1, burn = 0, rate = 0, flaming = 0, starved = 0, gradient = 0;
         for (int k = 0; k < 3; k++) {
-            v[k] = &scene->vertices[scene->triangles[t][k]];
-            hottest = maxf(hottest, v[k]->temperature);
             low = minf(low, v[k]->burn);
-            high = maxf(high, v[k]->burn);
             rate += v[k]->burn_rate / 3;
             flaming += v[k]->flaming / 3;
             starved += v[k]->starved / 3;
@@ -33,7 +35,6 @@ void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]
             rest = float3_mad(rest, float3_load(v[k]->rest), 1.0f / 3);
             position = float3_mad(position, float3_load(scene->positions[scene->triangles[t][k]]), 1.0f / 3);
         }
-        if (hottest < 600 || high < 0.15f) continue;
 
         // the glowing line runs where burn is EMBER_BURN; leaves of char glow as a whole, with threads
         const float *p[3];

@@ -95,7 +95,8 @@ struct Preview {
     Float3 sun, sun_right, sun_up; ///< unit, towards the light, and a frame across it
     Float3 sun_light;              ///< its reflection by white paper
     Sky sky;
-    float sun_spread; ///< tangent of the light's apparent radius
+    Float3 wall_along; ///< horizontal and unit, to the right of who faces the wall
+    float sun_spread;  ///< tangent of the light's apparent radius
     PreviewShape *shapes;
     uint32_t shape_count;
     Facets *facets;    ///< of the solids drawn so far

@@ -71,14 +71,9 @@ static void brick(float u, float v, uint32_t seed, float footprint, Table *table
     table->albedo = float3_mix(float3_scale(float3(1, 0.96f, 0.88f), mortar * shadow), clay, face);
 }
 
-/// Horizontal and unit, along the wall to the right of who faces it.
-static Float3 wall_along(const Preview *preview) {
-    return float3(cosf(preview->def.wall_turn), sinf(preview->def.wall_turn), 0);
-}
-
 float wall_hit(const Preview *preview, Float3 origin, Float3 direction) {
     if (!isfinite(preview->def.wall_distance)) return INFINITY;
-    const Float3 along = wall_along(preview);
+    const Float3 along = preview->wall_along;
     const float before = preview->def.wall_distance - (along.x * origin.y - along.y * origin.x);
     const float towards = along.x * direction.y - along.y * direction.x;
     if (before <= 0 || towards < 1e-5f) return INFINITY;
@@ -86,7 +81,7 @@ float wall_hit(const Preview *preview, Float3 origin, Float3 direction) {
 }
 
 void wall_look(const Preview *preview, Float3 position, float footprint, Table *table) {
-    const float u = float3_dot(position, wall_along(preview)), v = position.z;
+    const float u = float3_dot(position, preview->wall_along), v = position.z;
     const uint32_t seed = preview->def.seed + 377;
     *table = (Table){.albedo = {1, 1, 1}};
     if (preview->def.wall == PREVIEW_WALL_PLASTER) plaster(u, v, seed, footprint, table);
@@ -99,7 +94,7 @@ void wall_look(const Preview *preview, Float3 position, float footprint, Table *
 }
 
 void wall_shade(const Preview *preview, const Table *table, Point *point) {
-    const Float3 along = wall_along(preview);
+    const Float3 along = preview->wall_along;
     point->geometric = float3(along.y, -along.x, 0);
     const Float3 tilted = float3_mad(point->geometric, along, table->tilt[0]);
     point->normal = float3_unit_or(float3_mad(tilted, float3(0, 0, 1), table->tilt[1]), point->geometric);
