@@ -135,8 +135,10 @@ void facets_free(Preview *preview) {
 
 float facets_intersect(const Facets *facets, Float3 o, Float3 d, float near, float far, Float3 *normal) {
     // whether the ray, of unit direction, comes near enough
-    Float3 to = float3_sub(facets->centre, o), aside = float3_mad(to, d, -float3_dot(to, d));
-    if (!(float3_dot(aside, aside) <= 1.0001f * facets->extent * facets->extent)) return -1;
+    const Float3 to = float3_sub(facets->centre, o);
+    const float along = float3_dot(to, d), extent = 1.0001f * facets->extent;
+    const Float3 aside = float3_mad(to, d, -along);
+    if (!(float3_dot(aside, aside) <= extent * extent) || along < near - extent || along > far + extent) return -1;
     if (!bounds_near(facets->bounds, o, d, far, 1e-4f * facets->extent)) return -1;
 
     Rays rays;

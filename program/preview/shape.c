@@ -99,10 +99,10 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
         return t;
     }
 
-    // outside the sphere around it, and away from it or past it
+    // outside the sphere around it, and away from it, past it or not as far
     if (!shape->facets) {
         float r = shape_extent(shape, 0), b = float3_dot(offset, direction), c = float3_dot(offset, offset) - r * r;
-        if (c > 0 && (b > 0 || b * b < c)) return -1;
+        if (c > 0 && (b > 0 || b * b < c || -b - r > far)) return -1;
     }
 
     Float3 o = quat_unrotate(shape->rotation, offset), d = quat_unrotate(shape->rotation, direction), n = {0, 0, 1};
