@@ -222,18 +222,23 @@ typedef struct PreviewLayers {
 SINGE_NODISCARD SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, double time,
                                                 uint8_t *rgb, const PreviewLayers *layers, SingeError *error);
 
-/// Median width in m of the glowing line on the sheets (glow_width.c), from a frame's glow, depth and sheet, drawn with
+/// Median width in m of the glowing line on the sheets (fire_measure.c), from a frame's glow, depth and sheet, drawn with
 /// a sharp lens; NaN if nothing glows.
 SINGE_NODISCARD SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layers, double *width,
                                                SingeError *error);
 
-/// Of the pixels in which a flame is brighter than what else is seen there: how many are pale, nearly white, and how many
-/// one clipped yellow. NaN if they are fewer than 100.
+/// Of a pixel's bytes: whether it may be a flame's, and then whether that is pale, nearly white, or one clipped yellow.
+static inline bool pixel_flames(const uint8_t *p) { return p[0] >= 200 && p[1] >= 110; }
+static inline bool pixel_is_pale(const uint8_t *p) { return p[1] > 225 && p[2] > 150; }
+static inline bool pixel_is_lemon(const uint8_t *p) { return p[0] > 247 && p[1] > 225 && p[2] < 110; }
+
+/// Of the pixels in which a flame is brighter than what else is seen there: how many are pale, and how many lemon. NaN if
+/// they are fewer than 100.
 typedef struct FlameShares {
     double pale, lemon; ///< 0 to 1
 } FlameShares;
 
-/// From a frame's fire, beauty and pixels (glow_width.c).
+/// From a frame's fire, beauty and pixels (fire_measure.c).
 void preview_flame_shares(const PreviewDef *def, const PreviewLayers *layers, const uint8_t *rgb, FlameShares *shares);
 
 /// A frame for a renderer elsewhere (pack.c has the layout): the sheets' fields as they are shaded here, the gas that is

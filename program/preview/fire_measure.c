@@ -103,10 +103,10 @@ void preview_flame_shares(const PreviewDef *def, const PreviewLayers *layers, co
     for (size_t i = 0; i < count; i++) {
         const uint8_t *p = rgb + 3 * i;
         const float fire = float3_luminance(float3_load(layers->fire[i]));
-        if (p[0] < 200 || p[1] < 110 || fire < 0.5f * float3_luminance(float3_load(layers->beauty[i]))) continue;
+        if (!pixel_flames(p) || fire < 0.5f * float3_luminance(float3_load(layers->beauty[i]))) continue;
         flame++;
-        pale += p[1] > 225 && p[2] > 150;
-        lemon += p[0] > 247 && p[1] > 225 && p[2] < 110;
+        pale += pixel_is_pale(p);
+        lemon += pixel_is_lemon(p);
     }
 
     const bool enough = flame >= FEWEST;

@@ -1,0 +1,144 @@
+// What flies from the fire: sparks, flakes and wisps of smoke.
+
+#include "burning.h"
+
+/// An ember line throws sparks and loses flakes; what is hot and has no flame sends up a wisp of smoke. A cold sheet does
+/// none of these, nor does one of which they are taken away, which is how embers were drawn before.
+TEST(embers_throw_sparks_and_smoke) {
+    enum { FRAMES = 6, EMBERS, FLAKES, SMOULDERING, COLD, TAKEN_AWAY, CASES };
+    static float fire[W * H][4];
+    static Burning paper;
+
+    for (int kind = EMBERS; kind < CASES; kind++) {
+        burning_make(&paper);
+        for (int v = 0; v < 4 * WIDE; v++) {
+            paper.burn[v] = paper.position[v][1] > 0.004f ? 0.9f : 0.3f;
+            paper.temperature[v] = kind == COLD ? 293 : 1050;
+            paper.rate[v] = kind == SMOULDERING ? 0 : 1;
+        }
+        PreviewDef def = aside(0);
+        def.camera = (PreviewCamera){
+            .eye = {0, -1, H / 2000.0f}, .target = {0, 0, H / 2000.0f}, .up = {0, 0, 1}, .fov = 2 * atanf(H / 2000.0f)};
+        if (kind == TAKEN_AWAY || kind == FLAKES) def.sparks = def.wisps = 0;
+        def.flakes = kind == COLD || kind == FLAKES;
+        Preview *preview = NULL;
+        SingeError error;
+        PreviewLayers layers = {.fire = fire};
+        assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+        int sparks = 0, hidden = 0;
+        float smoke = 0, low = 0, high = 0;
+        for (int k = 0; k < FRAMES; k++) {
+            assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, &error), SINGE_OK);
+            for (int i = 0; i < W * (H - 10); i++) {
+                sparks += fire[i][0] > 0.05f && fire[i][0] > 2 * fire[i][2];
+                smoke = fmaxf(smoke, fire[i][3]);
+                hidden += kind != SMOULDERING && fire[i][3] > 0.1f;
+                const int height = H - 1 - i / W; // mm
+                if (height < 14) low += fire[i][3];
+                if (height >= 40 && height < 44) high += fire[i][3];
+            }
+        }
+        preview_destroy(preview);
+        print_message("case %d: %d pixels of sparks, %d hidden by flakes, smoke hides %.3f\n", kind, sparks, hidden,
+                      (double)smoke);
+        assert_true((hidden > 10) == (kind == FLAKES));
+        assert_true((sparks > 10 * FRAMES) == (kind == EMBERS) || kind == FLAKES); // flakes glow, too
+        assert_true((smoke > 0.02f) == (kind == SMOULDERING || kind == FLAKES));
+        assert_true(kind < COLD || (sparks == 0 && smoke == 0));
+
+        // a wisp begins faint, and is densest some centimetres above; it began with a blunt end
+        if (kind == SMOULDERING) print_message("1 cm up it hides %.2f of what it does 4 cm up\n", (double)(low / high));
+        if (kind == SMOULDERING) assert_true(low < 0.5f * high);
+    }
+}
+
+/// A spark in a picture.
+typedef struct Streak {
+    float light;
+    int pixels, low[2], high[2];
+} Streak;
+
+/// Adds what touches pixel `at` to a spark, and takes it away.
+static void take_spark(float (*fire)[4], int at, Streak *streak) {
+    if (at < 0 || at >= W * (H - 10) || fire[at][0] < 0.02f) return;
+    const int place[2] = {at % W, at / W};
+    for (int c = 0; c < 2; c++) {
+        if (!streak->pixels || place[c] < streak->low[c]) streak->low[c] = place[c];
+        if (!streak->pixels || place[c] > streak->high[c]) streak->high[c] = place[c];
+    }
+    streak->light += fire[at][0], streak->pixels++;
+    fire[at][0] = 0;
+    for (int k = 0; k < 9; k++) take_spark(fire, at + W * (k / 3 - 1) + k % 3 - 1, streak);
+}
+
+/// Paper that embers cross, before a camera that sees what rises from it.
+static PreviewDef embers_make(Burning *paper) {
+    burning_make(paper);
+    for (int v = 0; v < 4 * WIDE; v++) {
+        paper->burn[v] = paper->position[v][1] > 0.004f ? 0.9f : 0.3f;
+        paper->temperature[v] = 1050, paper->rate[v] = 1;
+    }
+    PreviewDef def = aside(0);
+    def.camera = (PreviewCamera){.eye = {0, -1, 0.1f}, .target = {0, 0, 0.1f}, .up = {0, 0, 1}, .fov = 0.2f};
+    def.flakes = def.wisps = 0;
+    return def;
+}
+
+/// Before a wide lens sparks are thin: they looked like capsules. Their width, pixels over the longer side, the mean over
+/// their light.
+TEST(sparks_are_thin) {
+    enum { FRAMES = 24 };
+    static float fire[W * H][4];
+    static Burning paper;
+    PreviewDef def = embers_make(&paper);
+    def.camera.eye[1] = -0.18f, def.camera.fov = 0.4f, def.camera.aperture = 0.01f, def.camera.focus = 0.3f;
+    Preview *preview = NULL;
+    SingeError error;
+    PreviewLayers layers = {.fire = fire};
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    float width = 0, light = 0, sparks = 0;
+    for (int k = 0; k < FRAMES; k++) {
+        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, &error), SINGE_OK);
+        for (int i = 0; i < W * (H - 10); i++) {
+            Streak streak = {.pixels = 0};
+            take_spark(fire, i, &streak);
+            const int across = streak.high[0] - streak.low[0], down = streak.high[1] - streak.low[1];
+            if (streak.pixels < 4) continue;
+            width += streak.light * (float)streak.pixels / (float)(1 + (across > down ? across : down));
+            light += streak.light, sparks++;
+        }
+    }
+    preview_destroy(preview);
+    width /= light;
+    print_message("%.0f sparks are %.2f pixels wide\n", (double)sparks, (double)width);
+    assert_true(sparks > FRAMES);
+    assert_true(width < 2.5f);
+}
+
+/// Of many sparks most are faint, and few give most of the light. Sparks that were alike looked like dashes.
+TEST(sparks_differ) {
+    enum { FRAMES = 24 };
+    static float fire[W * H][4];
+    static Burning paper;
+    PreviewDef def = embers_make(&paper);
+    Preview *preview = NULL;
+    SingeError error;
+    PreviewLayers layers = {.fire = fire};
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    int sparks = 0;
+    float sum = 0, squares = 0;
+    for (int k = 0; k < FRAMES; k++) {
+        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, &error), SINGE_OK);
+        for (int i = 0; i < W * (H - 10); i++) {
+            Streak streak = {.pixels = 0};
+            take_spark(fire, i, &streak);
+            const float light = streak.light;
+            sparks += light > 0, sum += light, squares += light * light;
+        }
+    }
+    preview_destroy(preview);
+    const float mean = sum / (float)sparks, varies = sqrtf(squares / (float)sparks - mean * mean) / mean;
+    print_message("the light of %d sparks varies by %.2f of the mean\n", sparks, (double)varies);
+    assert_true(sparks > 3 * FRAMES);
+    assert_true(varies > 2.2f); // 1.48, 2.00
+}
