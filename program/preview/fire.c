@@ -159,9 +159,9 @@ static void sway_cells(Fire *fire) {
                 fire_sway(fire, p, sway[2], sway);
                 FireCell *cell = &fire->cells[fire_at(fire, x, y, z)];
                 if (!(cell->flame > 0)) continue;
-                const float lick = 1 + fire_lick(fire, p, sway[2]);
-                cell->flame *= lick;
-                cell->rise *= lick;
+                const float fed = fire_feed(fire, p, sway[2], cell->flame);
+                cell->rise *= fed / cell->flame;
+                cell->flame = fed;
             }
 }
 

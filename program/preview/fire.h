@@ -139,8 +139,8 @@ float fire_flicker(const Fire *fire, Float3 p);
 /// sway[0] and [1]: how far the widest eddies move a flame along x and y, m, at a height above the paper.
 void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]);
 
-/// How much more than elsewhere a flame burns at p, as a share.
-float fire_lick(const Fire *fire, Float3 p, float height);
+/// A flame at p, at a height above the paper, as it is fed there: more than elsewhere or less.
+float fire_feed(const Fire *fire, Float3 p, float height, float flame);
 
 /// blur: m, over which the picture resolves no edge.
 FirePoint fire_at_point(const Fire *fire, Float3 p, float blur);

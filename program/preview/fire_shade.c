@@ -5,7 +5,9 @@
 // grows longer as the gas accelerates, so flames have tongues and streaks and flicker.
 //
 // The widest eddies bend whole tongues and the streaks in them: they move the position first, by an amount that grows from
-// nothing at the paper and is known in each cell (fire.c). Others, half as wide, feed some tongues and starve others there.
+// nothing at the paper and is known in each cell (fire.c). Others, half as wide, feed some tongues and starve others there:
+// where they have creases, tongues join into larger flames as they rise, and between them there are gaps; and some end
+// much lower than others.
 //
 // A flame over paper is a thin shell of glowing soot around clear, hot vapour. With f the flame (fire.c), r the height
 // above the paper and N, n noises of the width of a tongue and of a streak, its edge lies where
@@ -19,12 +21,14 @@
 //
 //     P(d) = 0 outside, d/w in the first w, then fill + (1 - fill) exp(-(d - w)/SHELL)
 //
-// and a step of a ray takes its mean between the depths of its ends, by the integral of P: the shell is thinner than a
-// step. w is SHELL_RISE, or more where rays are further apart, as edges would have steps; the light of a flame stays. It
-// begins at the paper, is faint, clear and blue in the first millimetres, where there is little soot, then orange, pale in
-// its core, and orange at its tips. Soot glows as a black body between FLAME_COOL and FLAME_HOT, and hides as much as it
-// glows. It is the hotter the more heat is released around it (core) and the further it is from the edge (strong): so a
-// flame of one or two sheets has a pale core, too.
+// and a step of a ray takes its mean between the depths of its ends, by the integral of P: the shell is thinner than
+// a step. w is SHELL_RISE, or more where rays are further apart, as edges would have steps; the light of a flame
+// stays. It begins at the paper, is faint, clear and blue in the first millimetres, where there is little soot, then
+// pale in its core, and orange at its tips. In its foot, some three centimetres tall, soot glows in hot streaks,
+// where the tongues above stand, and between these what burns is seen: soot that is even and cool there is a veil.
+// Soot glows as a black body between FLAME_COOL and FLAME_HOT, and hides as much as it glows. It is the hotter the
+// more heat is released around it (core) and the further it is from the edge (strong): so a flame of one or two
+// sheets has a pale core, too.
 //
 // Soot is clear and hot in threads, the creases of a noise, and denser and cooler in the folds between them. So a sheet in
 // front hides much of what burns behind it, and a body of many sheets does not add up to one flat yellow. Soot thins out
@@ -34,12 +38,13 @@
 
 // Gas leaves the paper slowly and accelerates: v^2 = BASE_SPEED^2 + 2 BUOYANCY h at the height h. An eddy that was formed
 // at the base grows longer as it rises, and moves by the same share of its length in every frame.
-#define BASE_SPEED 0.14f ///< m/s
+#define BASE_SPEED 0.25f ///< m/s
 #define BUOYANCY 3.0f    ///< m/s2
 #define RISE_MOST 0.7f   ///< m/s, which it reaches
 #define EDDY_RATE 8.0f   ///< 1/s, eddies that pass a height
 #define EDDY_WIDE 0.014f ///< m across
 #define EDDY_FINE 0.006f
+#define FINE_OFTEN 1.6f
 #define EDDY_THREAD 0.0085f ///< of the soot's threads
 #define THREAD_BLUR 0.0016f ///< m, blur from which on they are wider
 #define THREAD_WARP 0.01f   ///< m, by which wide eddies bend them
@@ -48,6 +53,11 @@
 #define LICK_WIDE 0.045f    ///< m, of the eddies that feed and starve whole tongues
 #define LICK_FULL 0.05f     ///< m above the paper, where they do so fully
 #define LICK 0.6f
+#define UNLIKE 1.2f       ///< octaves, by which the heights of tongues differ
+#define JOIN 0.5f         ///< of a full flame: what they join into where the creases of those eddies are
+#define JOIN_BEGINS 0.02f ///< m above the paper
+#define JOIN_FULL 0.08f
+#define FED_WHOLLY 0.3f ///< what burns less gains and loses less
 #define SMOKE_EDDY 0.028f
 #define SMOKE_SPEED 0.5f ///< m/s, at which they rise
 
@@ -59,8 +69,8 @@
 #define FLAME_THROWN 384.0f     ///< 1/m, its luminance
 #define FLAME_BAKED 3.0f        ///< radiance of what is 1 where gas is baked
 #define SOOT_DENSE 195.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
-#define BLUE_DENSE 4.2f         ///< 1/m: radiance of the root per metre
-#define BLUE_ENDS 0.008f        ///< m
+#define BLUE_DENSE 3.8f         ///< 1/m: radiance of the root per metre
+#define BLUE_ENDS 0.005f        ///< m above the paper
 #define SHELL_RISE 0.0005f      ///< m, w
 #define SHELL_RISE_MOST 0.0016f ///< more would dim thin tongues
 #define SHELL 0.0018f           ///< m
@@ -68,8 +78,14 @@
 #define TAPER 0.55f             ///< what is added to it above a flame's height
 #define STAND_OFF 0.0006f       ///< m above the paper, below which nothing is visible
 #define SOOT_FULL 0.0075f       ///< m
-#define FOOT_COOL 0.22f         ///< of the range of temperatures: soot begins orange
-#define CORE_BEGINS 0.0030f     ///< m
+#define FOOT_COOL 0.03f         ///< of the range of temperatures: soot begins orange
+#define FOOT_HOT 0.55f          ///< of that range: streaks in the foot are hot
+#define JOINED_HOT 0.15f
+#define FOOT_CLEAR 0.004f   ///< m above the paper, from where on soot fills the gaps between streaks
+#define FOOT_FULL 0.03f     ///< m, where it has
+#define FOOT_HAZE 0.19f     ///< of the soot, in those gaps
+#define STREAK 0.08f        ///< of the noise whose creases they are
+#define CORE_BEGINS 0.0030f ///< m
 #define CORE_FULL 0.0270f
 #define LAMP_BEGINS 0.0050f ///< m, from which on flames cast light
 #define LAMP_FULL 0.0120f
@@ -167,10 +183,14 @@ void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]) {
     sway[1] = most * n.b;
 }
 
-float fire_lick(const Fire *fire, Float3 p, float height) {
+float fire_feed(const Fire *fire, Float3 p, float height, float flame) {
     const float scale = fire->scale, passed = EDDY_RATE * (fire->moment / sqrtf(scale) - p.z / (scale * RISE_MOST));
-    const Noise n = eddies(fire, p, passed, scale * LICK_WIDE, 1.2f);
-    return LICK * n.c * stepf(0, LICK_FULL * scale, height);
+    const Noise n = eddies(fire, p, passed, scale * LICK_WIDE, 0.9f);
+    const float more = LICK * n.c * stepf(0, LICK_FULL * scale, height), crease = maxf(0.7f - 2.4f * fabsf(n.a), -0.7f);
+    const float tall = maxf(height, 0) / (scale * FLAME_HEIGHT);
+    float joined = JOIN * crease * stepf(JOIN_BEGINS * scale, JOIN_FULL * scale, height);
+    joined += TAPER * (expf(-tall * exp2f(-UNLIKE * n.d)) - expf(-tall)); // it ends lower or higher than others
+    return maxf(flame * (1 + more) + joined * minf(flame / FED_WHOLLY, 1), 0);
 }
 
 /// The flame at a position p that large eddies have moved, from its cell, the gradient of its share in 1/m, and the noises.
@@ -197,6 +217,11 @@ static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float 
     const float foot = rise + 0.0012f * fine.d + 0.0016f * wide.d;
     float soot = stepf(0, SOOT_FULL, foot);
 
+    // in the foot it glows in streaks; between them what burns is seen
+    const float above = stepf(FOOT_CLEAR, FOOT_FULL, rise);
+    const float streak = 1 - stepf(STREAK, 4 * STREAK, fabsf(wide.c) + 0.5f * fabsf(fine.c));
+    const float dense = mixf(FOOT_HAZE, 1, maxf(streak, above));
+
     // threads are clear and hot, what is between them is denser and cooler
     const Float3 bent =
         float3_mad(p, float3(wide.b + 0.2f * fine.b, wide.a + 0.2f * fine.a, 0), fire->scale * THREAD_WARP);
@@ -208,13 +233,14 @@ static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float 
 
     float core = stepf(0.35f, 0.7f, cell->flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
-    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.16f;
-    hot -= FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));
+    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.21f;
+    hot += JOINED_HOT * stepf(0.95f, 1.35f, cell->flame); // where tongues have joined
+    hot += FOOT_HOT * streak * (1 - above) - FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));
 
-    soot *= soot * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);
+    soot *= dense * soot * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);
     float root =
-        clampf((rise + STAND_OFF) / (8 * STAND_OFF), 0, 1) * (1 - soot) * (1 - stepf(BLUE_ENDS / 3, BLUE_ENDS, foot));
-    soot *= 0.2f + 3 * (1 - clear) * (1 - clear) + 1.2f * clear * clear;
+        clampf((rise + STAND_OFF) / (8 * STAND_OFF), 0, 1) * (1 - soot) * (1 - stepf(BLUE_ENDS / 2, BLUE_ENDS, rise));
+    soot *= 0.2f + 3.7f * (1 - clear) * (1 - clear) + 1.2f * clear * clear;
     soot *= (0.6f + 0.9f * torn * maxf(thread.b, -0.5f)) * (1 - 0.5f * tip);
     point->opaque = SOOT_DENSE * soot;
     point->soot = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * soot);
@@ -308,7 +334,7 @@ FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
     if (!fire->burns[x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z)]) return point;
 
     float slope;
-    Noise fine = eddies(fire, shifted, passed, sqrtf(scale) * EDDY_FINE, 1.6f * sqrtf(scale));
+    Noise fine = eddies(fire, shifted, passed, sqrtf(scale) * EDDY_FINE, FINE_OFTEN * sqrtf(scale));
     const FireCell cell =
         cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), sqrtf(scale) * 0.7f * FIRE_WARP_FINE), &slope);
     if (cell.flame > 0.02f) shade_flame(fire, &cell, shifted, sway[2], passed, slope, wide, fine, blur, &point);

@@ -203,6 +203,66 @@ TEST(thin_tongues_are_not_cut) {
                 0.008f * lit); // .064 where they were cut, .010 with edges that are sharper than rays are apart
 }
 
+/// In the foot of a flame, 5 to 12 mm above what burns, streaks are bright and what is between them hides little. A veil of
+/// one orange lay there.
+TEST(a_foot_is_clear_between_streaks) {
+    enum { FRAMES = 4, LOW = 5, HIGH = 12 };
+    static float fire[W * H][4], mean[H][4];
+    static Line line;
+    static Burning paper;
+    const float each = 1.0f / (FRAMES * (HIGH - LOW) * W);
+    float clear = 0, hidden = 0, sum = 0, squares = 0;
+
+    line_make(&line, 0.003f), burning_make(&paper);
+    for (int k = 0; k < FRAMES; k++) {
+        see_line(&paper.surface, &line.gas, 0.3 + k / 6.0, fire, mean, H);
+        for (int i = LOW * W; i < HIGH * W; i++) {
+            const float *at = fire[(H - 1 - i / W) * W + i % W], light = luminance(at);
+            clear += at[3] < 0.15f ? each : 0, hidden += at[3] * each;
+            sum += light * each, squares += light * light * each;
+        }
+    }
+
+    const float varies = sqrtf(squares - sum * sum) / sum;
+    print_message("foot: %.2f of it is clear, %.2f hidden, its light varies by %.2f of the mean\n", (double)clear,
+                  (double)hidden, (double)varies);
+    assert_true(clear > 0.15f && hidden < 0.35f && varies > 0.75f); // .04, .50, .47
+}
+
+static int ascending(const void *a, const void *b) {
+    const float *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+/// Tongues join as they rise: 4 to 5 cm up flames are wider than single tongues. And some are much taller than others: of
+/// squares of 16 mm, over moments.
+TEST(tongues_join_and_differ_in_height) {
+    enum { FRAMES = 12, SIDE = 16, SQUARES = W / SIDE, COUNT = FRAMES * SQUARES, LOW = 40, HIGH = 50 };
+    static float fire[W * H][4], mean[H][4];
+    static Line line;
+    static Burning paper;
+    float heights[COUNT] = {0}, lit = 0, flames = 0;
+
+    line_make(&line, 0.003f), burning_make(&paper);
+    for (int k = 0; k < FRAMES; k++) {
+        see_line(&paper.surface, &line.gas, 0.3 + k / 6.0, fire, mean, H);
+        for (int row = 0; row < H; row++)
+            for (int x = 0; x < W; x++) {
+                const float(*at)[4] = &fire[(H - 1 - row) * W + x], light = luminance(at[0]);
+                if (light > 0.1f) heights[k * SQUARES + x / SIDE] = (float)row;
+                if (row < LOW || row >= HIGH || !x || !(light > 0.2f)) continue;
+                lit++, flames += !(luminance(at[-1]) > 0.2f);
+            }
+    }
+
+    qsort(heights, COUNT, sizeof *heights, ascending);
+    const float low = heights[COUNT / 10], high = heights[COUNT * 9 / 10];
+    print_message("of ten tongues one ends at %.0f mm, one at %.0f mm; flames are %.1f mm wide\n", (double)low,
+                  (double)high, (double)(lit / flames));
+    assert_true(high > 2.2f * low);   // 2.0
+    assert_true(lit > 9.4f * flames); // 8.7
+}
+
 /// The burning rim is visible through the first 4 mm of its flames. The bar, a tenth of white paper's light and a twentieth
 /// hidden, is passed where the paper is where it burns, and broken where its flames begin two centimetres below it.
 TEST(the_rim_is_seen_through_the_flames) {

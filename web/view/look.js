@@ -284,25 +284,23 @@ const float FIRE_WARP_WIDE = 0.0055;
 const float FIRE_WARP_FINE = 0.0018;
 const float SMOKE_WARP = 0.018;
 const float FIRE_OUTSIDE = -0.006;
-const float BASE_SPEED = 0.14;
+const float BASE_SPEED = 0.25;
 const float BUOYANCY = 3.0;
 const float RISE_MOST = 0.7;
 const float EDDY_RATE = 8.0;
 const float EDDY_WIDE = 0.014;
 const float EDDY_FINE = 0.006;
+const float FINE_OFTEN = 1.6;
 const float EDDY_THREAD = 0.0085;
 const float THREAD_BLUR = 0.0016;
 const float THREAD_WARP = 0.01;
 const float SWAY_WIDE = 0.1;
 const float SWAY_SLOPE = 0.35;
-const float LICK_WIDE = 0.045;
-const float LICK_FULL = 0.05;
-const float LICK = 0.6;
 const float SMOKE_EDDY = 0.028;
 const float SMOKE_SPEED = 0.5;
 const float SOOT_DENSE = 195.0;
-const float BLUE_DENSE = 4.2;
-const float BLUE_ENDS = 0.008;
+const float BLUE_DENSE = 3.8;
+const float BLUE_ENDS = 0.005;
 const float SHELL_RISE = 0.0005;
 const float SHELL_RISE_MOST = 0.0016;
 const float SHELL = 0.0018;
@@ -310,7 +308,13 @@ const float EDGE = 0.42;
 const float TAPER = 0.55;
 const float STAND_OFF = 0.0006;
 const float SOOT_FULL = 0.0075;
-const float FOOT_COOL = 0.22;
+const float FOOT_COOL = 0.03;
+const float FOOT_HOT = 0.55;
+const float JOINED_HOT = 0.15;
+const float FOOT_CLEAR = 0.004;
+const float FOOT_FULL = 0.03;
+const float FOOT_HAZE = 0.19;
+const float STREAK = 0.08;
 const float CORE_BEGINS = 0.003;
 const float CORE_FULL = 0.027;
 const float SMOKE_STEP = 0.01;
@@ -340,11 +344,6 @@ void fire_sway(vec3 p, float height, inout float sway[2]) {
     sway[0] = most * n.a;
     sway[1] = most * n.b;
 }
-float fire_lick(vec3 p, float height) {
-    float scale = fireScale, passed = EDDY_RATE * (fireMoment / sqrt(scale) - p.z / (scale * RISE_MOST));
-    Noise n = eddies(p, passed, scale * LICK_WIDE, 1.2);
-    return LICK * n.c * stepf(0.0, LICK_FULL * scale, height);
-}
 void shade_flame(FireCell cell, vec3 p, float rise, float passed, float slope,
                         Noise wide, Noise fine, float blur, inout FirePoint point) {
     float torn = stepf(0.0, 0.02, rise);
@@ -364,6 +363,9 @@ void shade_flame(FireCell cell, vec3 p, float rise, float passed, float slope,
     point.shell = same * (0.5 * outer * outer / first + fill * inner + SHELL * (1.0 - fill - fading));
     float foot = rise + 0.0012 * fine.d + 0.0016 * wide.d;
     float soot = stepf(0.0, SOOT_FULL, foot);
+    float above = stepf(FOOT_CLEAR, FOOT_FULL, rise);
+    float streak = 1.0 - stepf(STREAK, 4.0 * STREAK, abs(wide.c) + 0.5 * abs(fine.c));
+    float dense = mix(FOOT_HAZE, 1.0, max(streak, above));
     vec3 bent =
         float3_mad(p, vec3(wide.b + 0.2 * fine.b, wide.a + 0.2 * fine.a, 0.0), fireScale * THREAD_WARP);
     Noise thread = Noise(0.0, 0.0, 0.0, 0.0);
@@ -373,12 +375,13 @@ void shade_flame(FireCell cell, vec3 p, float rise, float passed, float slope,
         stepf(-0.5, 0.6, 0.15 * (wide.d + fine.d) + torn * (0.57 - 0.17 * (3.0 - sharp) - sharp * abs(thread.a)));
     float core = stepf(0.35, 0.7, cell.flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0.0, 0.7, edge), low = 1.0 - stepf(0.1, 0.9, tall);
-    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.16;
-    hot -= FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
-    soot *= soot * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
+    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.21;
+    hot += JOINED_HOT * stepf(0.95, 1.35, cell.flame);
+    hot += FOOT_HOT * streak * (1.0 - above) - FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
+    soot *= dense * soot * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
     float root =
-        clamp((rise + STAND_OFF) / (8.0 * STAND_OFF), 0.0, 1.0) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 3.0, BLUE_ENDS, foot));
-    soot *= 0.2 + 3.0 * (1.0 - clear) * (1.0 - clear) + 1.2 * clear * clear;
+        clamp((rise + STAND_OFF) / (8.0 * STAND_OFF), 0.0, 1.0) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 2.0, BLUE_ENDS, rise));
+    soot *= 0.2 + 3.7 * (1.0 - clear) * (1.0 - clear) + 1.2 * clear * clear;
     soot *= (0.6 + 0.9 * torn * max(thread.b, -0.5)) * (1.0 - 0.5 * tip);
     point.opaque = SOOT_DENSE * soot;
     point.soot = float3_scale(flame_colour(clamp(hot, 0.0, 1.0)), SOOT_DENSE * soot);
