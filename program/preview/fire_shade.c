@@ -57,7 +57,8 @@
 #define JOIN 0.5f         ///< of a full flame: what they join into where the creases of those eddies are
 #define JOIN_BEGINS 0.02f ///< m above the paper
 #define JOIN_FULL 0.08f
-#define FED_WHOLLY 0.3f ///< what burns less gains and loses less
+#define FED_WHOLLY 0.3f    ///< what burns less gains and loses less
+#define SMOKE_SEEN_AS 5.0f ///< times its extinction: creases thin it to a fifth, and what lies between them is clear
 #define SMOKE_EDDY 0.028f
 #define SMOKE_SPEED 0.5f ///< m/s, at which they rise
 
@@ -351,10 +352,10 @@ Matter fire_smoke_at(const Fire *fire, Float3 p) {
     moved = float3_mad(moved, float3(small.a, small.b, small.c), 0.5f * warp);
     const FireCell cell = cell_at(fire, moved, NULL);
     const float fold = maxf(1.15f - 2.1f * fabsf(wide.d + 0.5f * small.d) + 0.3f * small.a, 0);
-    const float dense = cell.smoke * 2.2f * fold * fold * fold;
+    const float dense = cell.smoke * SMOKE_SEEN_AS * fold * fold * fold;
 
     // soot and tar scatter about a third, in all directions
-    Float3 lit = float3_mad(float3_scale(fire->daylight, 0.35f), float3(1, 0.5f, 0.16f), 0.35f * cell.glow);
+    Float3 lit = float3_mad(float3_scale(fire->daylight, 0.35f), float3(1, 0.58f, 0.26f), 0.45f * cell.glow);
     return (Matter){float3_scale(lit, dense), dense};
 }
 

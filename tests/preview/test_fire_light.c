@@ -250,6 +250,27 @@ TEST(smoke_dims_what_is_bright) {
     }
 }
 
+/// The thin smoke over a flame, a tenth of a gramme in a cubic metre, is seen before a dark wall, and is no fog.
+TEST(thin_smoke_is_seen) {
+    static uint8_t rgb[BYTES], plain[BYTES];
+    static Ball ball;
+    SingeSurface nothing = {0};
+    PreviewDef def = aside(0.0f);
+    ball_make(&ball, 0, 0, 0.2f, 0.045f, 0, 1e-4f);
+
+    draw(&def, &nothing, 0.3, plain);
+    draw_gas(&def, &nothing, &ball.gas, 0.3, rgb);
+    int most = 0;
+    float mean = 0;
+    for (int y = H / 2 - 16; y < H / 2 + 16; y++)
+        for (int x = W / 2 - 16; x < W / 2 + 16; x++) {
+            const int more = pixel(rgb, x, y)[1] - pixel(plain, x, y)[1];
+            most = more > most ? more : most, mean += (float)more / 1024;
+        }
+    print_message("thin smoke: %.1f brighter in the mean, %d at most\n", (double)mean, most);
+    assert_true(mean > 6 && mean < 20 && most > 28); // 3.9, 21
+}
+
 /// Smoke rises in streaks: inside of an even cloud the picture changes more from side to side than from below to above.
 TEST(smoke_has_streaks) {
     static uint8_t rgb[BYTES];

@@ -296,6 +296,7 @@ const float THREAD_BLUR = 0.0016;
 const float THREAD_WARP = 0.01;
 const float SWAY_WIDE = 0.1;
 const float SWAY_SLOPE = 0.35;
+const float SMOKE_SEEN_AS = 5.0;
 const float SMOKE_EDDY = 0.028;
 const float SMOKE_SPEED = 0.5;
 const float SOOT_DENSE = 195.0;
@@ -406,8 +407,8 @@ Matter fire_smoke_at(vec3 p) {
     moved = float3_mad(moved, vec3(small.a, small.b, small.c), 0.5 * warp);
     FireCell cell = cell_at(moved);
     float fold = max(1.15 - 2.1 * abs(wide.d + 0.5 * small.d) + 0.3 * small.a, 0.0);
-    float dense = cell.smoke * 2.2 * fold * fold * fold;
-    vec3 lit = float3_mad(float3_scale(fireDaylight, 0.35), vec3(1.0, 0.5, 0.16), 0.35 * cell.glow);
+    float dense = cell.smoke * SMOKE_SEEN_AS * fold * fold * fold;
+    vec3 lit = float3_mad(float3_scale(fireDaylight, 0.35), vec3(1.0, 0.58, 0.26), 0.45 * cell.glow);
     return Matter(float3_scale(lit, dense), dense);
 }
 `;
