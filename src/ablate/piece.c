@@ -132,7 +132,7 @@ void piece_update(Removal *removal, EventList *events) {
 
 // ---- what was read back
 
-static bool springs_fit(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
+bool ablate_fits(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
     // flags, and a count of the springs at their ends
     memset(plan->size, 0, shell->particle_count * sizeof *plan->size);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
@@ -152,12 +152,8 @@ static bool springs_fit(AblatePlan *plan, const Shell *shell, const AblateState 
         if (plan->size[i] != ablate->degree[i]) return false;
     }
 
-    return true;
-}
-
-/// A piece that falls apart takes a new id for each part but one, so it may need as many ids as it has particles, less
-/// one. Spare vertices may become parts, too.
-static bool pieces_fit(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
+    // pieces. One that falls apart takes a new id for each part but one, so it may need as many ids as it has particles,
+    // less one. Spare vertices may become parts, too
     uint64_t pieces = 0, particles = 0;
     find_sets(plan, shell, ablate);
     memset(plan->heir, 0xff, shell->particle_count * sizeof *plan->heir);
@@ -178,8 +174,4 @@ static bool pieces_fit(AblatePlan *plan, const Shell *shell, const AblateState *
     }
 
     return pieces == ablate->piece_count && ablate->next_piece + particles <= shell->particle_count + pieces;
-}
-
-bool ablate_fits(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
-    return springs_fit(plan, shell, ablate) && pieces_fit(plan, shell, ablate);
 }

@@ -178,13 +178,16 @@ static void lose_mass(void *context, int begin, int end) {
     }
 }
 
-/// Puts what would burn into the grid of air, particle after particle. False: there is enough for all.
-static bool ask_for_air(BurnJob *job, int blocks) {
+double burn_lose_mass(BurnJob *job, Pool *pool) {
     const Matter *matter = &job->shell->matter;
-    const float(*x)[4] = (const float(*)[4])job->state->dynamics->position, *wish = job->burn->burn_rate;
+    const float(*x)[4] = (const float(*)[4])job->state->dynamics->position, *wishes = job->burn->burn_rate;
+    int blocks = pool_blocks((int)job->shell->particle_count);
+    pool_for(pool, blocks, 1, wish, job);
+
+    // what would burn goes into the grid of air, particle after particle
     BurnAirNear near = {0};
     bool any = false;
-    for (int block = 0; block < blocks; block++) {
+    for (int block = 0; block < blocks && job->air; block++) {
         uint32_t first, last;
         burn_block(job, block, &first, &last);
         for (; first < last && !(job->partial[block] == 0); first += 4) {
@@ -192,8 +195,8 @@ static bool ask_for_air(BurnJob *job, int blocks) {
             bool asks = false;
             for (uint32_t i = first; i < last && i < first + 4; i++) {
                 const float supply = field_at(matter->air_supply, i);
-                if (!(wish[i] > 0 && supply < INFINITY)) continue;
-                const float burns = (1 - field_at(matter->char_yield, i)) * matter->mass[i] * wish[i];
+                if (!(wishes[i] > 0 && supply < INFINITY)) continue;
+                const float burns = (1 - field_at(matter->char_yield, i)) * matter->mass[i] * wishes[i];
                 demand[i - first] = burns / (job->dt * supply);
                 asks = true;
             }
@@ -205,15 +208,10 @@ static bool ask_for_air(BurnJob *job, int blocks) {
         }
     }
 
-    burn_air_flush(job->air, &near);
-    return any && burn_air_is_short(job->air);
-}
+    if (any) burn_air_flush(job->air, &near);
+    job->shares = any && burn_air_is_short(job->air);
 
-double burn_lose_mass(BurnJob *job, Pool *pool) {
-    int blocks = pool_blocks((int)job->shell->particle_count);
     double lost = 0;
-    pool_for(pool, blocks, 1, wish, job);
-    job->shares = job->air && ask_for_air(job, blocks);
     pool_for(pool, blocks, 1, lose_mass, job);
     for (int block = 0; block < blocks; block++) lost += job->partial[block];
     return lost;

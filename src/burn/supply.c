@@ -69,14 +69,6 @@ static uint32_t air_slot(const BurnAir *air, uint64_t node) {
     return air->count;
 }
 
-/// Node k of the 27 about the node in the middle of them.
-static uint64_t air_node(const int middle[3], int k) {
-    uint64_t node = 0;
-    const int offset[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
-    for (int d = 0; d < 3; d++) node |= (uint64_t)((uint32_t)(middle[d] + offset[d] + (1 << 20)) & 0x1fffff) << 21 * d;
-    return node;
-}
-
 /// The nodes in the middle of those about four positions, and the weights of these along each axis.
 static void air_weigh(const BurnAir *air, const float position[4][4], Float4Mask middle[3], Float4 weight[3][3]) {
     for (int d = 0; d < 3; d++) {
@@ -106,7 +98,10 @@ static void air_go(BurnAir *air, BurnAirNear *near, const Float4Mask middle[3], 
     near->known = true;
     memset(near->demand, 0, sizeof near->demand);
     for (int n = 0; n < 27; n++) {
-        const uint64_t node = air_node(near->middle, n);
+        uint64_t node = 0;
+        const int offset[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+        for (int d = 0; d < 3; d++)
+            node |= (uint64_t)((uint32_t)(near->middle[d] + offset[d] + (1 << 20)) & 0x1fffff) << 21 * d;
         const uint32_t slot = air_slot(air, node);
         if (adds && slot < air->count) air->node[slot] = node;
         const bool found = slot < air->count && air->node[slot] == node;

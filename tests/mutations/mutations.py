@@ -42,7 +42,7 @@ MUTATIONS = [
     ("burn/lose_mass.c", "pyrolysis(job, i, excess > ceiling ? ceiling : excess);",
      "pyrolysis(job, i, excess);",
      "burn", "rate_stops_growing_at_its_ceiling"),
-    ("burn/supply.c", "return demand > supply ? supply / demand : 1;", "return 1;",
+    ("burn/supply.c", "return share;", "return float4_all(1);",
      "burn", "a_large_area_burns_what_it_has_air_for"),
     ("burn/supply.c", "AIR_REACH = 0.015f;", "AIR_REACH = 0.005f;",
      "heat_front", "a_wide_front_is_not_short_of_air"),
