@@ -10,7 +10,7 @@ import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { readdir, stat } from "node:fs/promises";
 import { createInterface } from "node:readline";
-import { BROWSERS, isCard, speedOf, turned, until } from "./browsers.mjs";
+import { BROWSERS, CHROMIUM_ARGS, isCard, speedOf, turned, until } from "./browsers.mjs";
 
 const [cache, folder] = process.argv.slice(2), TURNED = 5, RATE = 30, SINGE = process.env.SINGE ?? new URL("../../build/singe", import.meta.url).pathname;
 const MB = (bytes) => `${(bytes / 1e6).toFixed(1)} MB`;
@@ -21,7 +21,7 @@ const address = await new Promise((resolve) => createInterface(server.stdout).on
 const bytesRead = () => Number(readFileSync(`/proc/${server.pid}/io`, "utf8").match(/rchar: (\d+)/)[1]);
 
 const page = await BROWSERS.Chromium();
-await page.size(1920, 1080);
+if (isCard(CHROMIUM_ARGS.join(" "))) await page.size(1920, 1080);
 try {
     let begun = performance.now(), before = 0;
     const told = (what) => {
