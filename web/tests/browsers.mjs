@@ -11,8 +11,8 @@ import { chromium } from "playwright-core";
 
 export const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const FIREFOX = process.env.FIREFOX ?? "/usr/bin/firefox-esr";
-// flags for a machine with a card are in docs/web.md
-export const CHROMIUM_ARGS = ["--no-sandbox", ...(process.env.CHROMIUM_FLAGS ?? "--use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader").split(" ")];
+// flags for a machine with a card are in docs/web.md; without one, plain canvases are quicker by the processor itself
+export const CHROMIUM_ARGS = ["--no-sandbox", ...(process.env.CHROMIUM_FLAGS ?? "--use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --disable-accelerated-2d-canvas").split(" ")];
 const PATIENCE = 60_000;
 const KEYS = { Escape: "\uE00C", Home: "\uE011", End: "\uE010", ArrowLeft: "\uE012", ArrowRight: "\uE014" };
 
