@@ -31,9 +31,11 @@ import tarfile
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-# Debian's packages whose code the static command contains, and the SPDX names of their licences
+# Ubuntu's name, or Debian's
+JPEG = "libjpeg-turbo8-dev" if pathlib.Path("/usr/share/doc/libjpeg-turbo8-dev").exists() else "libjpeg62-turbo-dev"
+# the packages whose code the static command contains, and the SPDX names of their licences
 LINKED = {"libc6-dev": "LGPL-2.1-or-later", "libfyaml-dev": "MIT", "libpng-dev": "Libpng", "zlib1g-dev": "Zlib",
-          "libjpeg62-turbo-dev": "IJG AND BSD-3-Clause AND Zlib"}
+          JPEG: "IJG AND BSD-3-Clause AND Zlib"}
 
 # nobody's address: whoever publishes the packages names a maintainer here and in packaging/debian/control
 MAINTAINER = "The Singe authors <singe@localhost>"
