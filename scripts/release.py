@@ -224,6 +224,8 @@ def main():
     parser.add_argument("--sign", metavar="KEY")
     options = parser.parse_args()
     options.commit = ask("git", "-C", ROOT, "rev-parse", options.commit)  # HEAD may move meanwhile
+    if options.wheels:
+        run(sys.executable, ROOT / "bindings" / "python" / "build_wheels.py", "--tools")
     sums = release(options.commit, options.out.resolve(), options.wheels)
     print(sums, end="")
     if options.twice:
@@ -239,4 +241,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except subprocess.CalledProcessError as error:  # which has printed what is wrong
+        sys.exit(f"release.py: {' '.join(map(str, error.cmd))[:200]} failed")

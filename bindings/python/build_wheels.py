@@ -275,12 +275,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build-wheel/dist")
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build-wheel")
+    parser.add_argument("--tools", action="store_true", help="only checks that what a build needs is there")
     parser.add_argument("systems", nargs="*", metavar="SYSTEM")
     options = parser.parse_args()
     for system in options.systems or SYSTEMS:
         if system not in SYSTEMS:
             parser.error(f"there is no {system}: {', '.join(SYSTEMS)}")
     check_tools()
+    if options.tools:
+        return
     work = options.work.resolve()
     work.mkdir(parents=True, exist_ok=True)
     for system in options.systems or SYSTEMS:
