@@ -10,7 +10,6 @@
 #include "cli/console.h"
 #include "common/printable.h"
 #include "scene/scene.h"
-#include "singe/singe.h"
 
 /// The commands, group by group: of the help, the manual, completion and every message that lists them.
 static const Command commands[] = {

@@ -1,6 +1,5 @@
 #include "bench/hung_sheet.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "bench/geometry.h"

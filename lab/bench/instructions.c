@@ -4,7 +4,6 @@
 #include "singe/singe.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 enum { CELLS = 32, ROW = CELLS + 1, WARM_UP = 60, MEASURED = 20 };
 

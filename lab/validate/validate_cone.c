@@ -6,7 +6,6 @@
 // as much heat again: a half-space, touched all over. Which board it was is not said; the measures are taken on one for
 // insulation, whose data are complete (MASEA, calcium silicate), and the table has a building board and no board as well.
 #include <math.h>
-#include <string.h>
 
 #include "validate/validate.h"
 

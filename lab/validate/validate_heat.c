@@ -1,7 +1,5 @@
 // The heat equation compared with its solutions, and the effect of the umbrella of eq 3.
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "page/lab.h"
 #include "validate/validate.h"

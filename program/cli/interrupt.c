@@ -6,8 +6,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "cli/cli.h"
-
 // The only statics of the program: a signal handler cannot exchange data in another way.
 static volatile sig_atomic_t interrupt_flag, interrupt_second, interrupt_left;
 enum { DRAFTS_MAX = 8 };

@@ -8,8 +8,6 @@
 #include "cli/console.h"
 #include "cli/folder.h"
 #include "cli/text.h"
-#include "common/printable.h"
-#include "singe/singe.h"
 
 typedef struct ManualOptions {
     const char *command, *folder; ///< NULL: none

@@ -23,7 +23,6 @@
 #include "cli/pictures.h"
 #include "common/float3.h"
 #include "common/store.h"
-#include "formats/formats.h"
 
 enum { DRAWN_FRAMES = 4, EMBER_SCALE = 3, EMBER_WIDE = 4096, RUN = 64 };
 

@@ -11,7 +11,6 @@
 #include "cli/text.h"
 #include "common/printable.h"
 #include "scene/builtin.h"
-#include "scene/scene.h"
 
 /// The files of templates/, embedded.
 extern const SceneBuiltin new_templates[];

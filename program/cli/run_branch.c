@@ -17,7 +17,6 @@
 #include "cli/text.h"
 #include "common/printable.h"
 #include "common/store.h"
-#include "scene/messages.h"
 #include "scene/values.h"
 #include "scene/warnings.h"
 

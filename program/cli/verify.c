@@ -14,7 +14,6 @@
 #include "cli/interrupt.h"
 #include "cli/job.h"
 #include "cli/text.h"
-#include "common/printable.h"
 #include "common/store.h"
 
 typedef struct Row {

@@ -2,8 +2,6 @@
 // its streams). The buffer that the accessors name is empty, as the extension has it: a reader fills it.
 #include "formats/glb.h"
 
-#include "common/store.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

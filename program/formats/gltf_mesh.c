@@ -1,6 +1,5 @@
 // Polygons of a glTF's scene: a walk over its nodes. The vertices of their meshes' primitives follow in this order.
 #include "formats/gltf.h"
-#include "formats/mesh_reader.h"
 #include "common/store.h"
 
 #include <math.h>

@@ -3,7 +3,6 @@
 #include "formats/ply.h"
 
 #include "common/store.h"
-#include "formats/mesh_reader.h"
 #include "formats/number.h"
 
 #include <math.h>

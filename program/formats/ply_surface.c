@@ -1,5 +1,4 @@
 // The cache: a surface as a binary little-endian PLY file, one table for the writer and the reader.
-#include "formats/mesh_reader.h"
 #include "formats/number.h"
 #include "formats/ply.h"
 #include "common/store.h"

@@ -12,10 +12,8 @@
 // Vertices of the cache and the mesh are matched by rest position, sheet and, if present, number in the file. A vertex
 // that is gone follows its remaining neighbours, so that faces at the rim keep their shape.
 #include "formats/glb.h"
-#include "formats/number.h"
 #include "common/store.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

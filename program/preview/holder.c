@@ -5,8 +5,6 @@
 
 #include "preview/internal.h"
 
-#include <stdlib.h>
-
 /// Where a section stands, and half its size. `over` zero: across the line and the side.
 typedef struct Station {
     Float3 at, side, over;

@@ -5,7 +5,6 @@
 #include "scene/scene.h"
 #include "scene/schema_rows.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { DEFINITIONS_MAX = 40 };

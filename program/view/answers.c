@@ -13,8 +13,6 @@
 // No path of the file system is made of what is asked: names are those of this list.
 #include "view/view.h"
 
-#include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +20,6 @@
 
 #include "cli/pictures.h"
 #include "cli/text.h"
-#include "formats/json.h"
 #include "scene/builtin.h"
 
 enum { TABLE_BYTES = 64 << 20, LOG_BYTES = 4000 };

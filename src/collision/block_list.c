@@ -1,7 +1,5 @@
 #include "collision/block_list.h"
 
-#include <string.h>
-
 bool block_list_create(Memory *memory, BlockList *list, BlockItems *items, size_t size, uint32_t capacity,
                        uint32_t block_count) {
     *list = (BlockList){.items = items, .size = size};

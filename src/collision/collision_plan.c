@@ -6,7 +6,6 @@
 // where lists begin small again, has the same bytes.
 #include "common/error.h"
 #include "common/real.h"
-#include "collision/feature_distance.h"
 #include "collision/collision_plan.h"
 
 #include <string.h>

@@ -1,6 +1,5 @@
 #include "common/real.h"
 #include "collision/feature_distance.h"
-#include "collision/collision_plan.h"
 
 // In float, the nearest point of a triangle 200 times as long as it is high is off by a two-thousandth of its length:
 // then a node that passes through it seems to pass by. So weights are computed in double.

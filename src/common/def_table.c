@@ -2,7 +2,6 @@
 
 #include "common/error.h"
 
-#include <math.h>
 #include <string.h>
 
 // ---- words

@@ -10,7 +10,6 @@
 #include "dynamics/brace.h"
 
 #include "dynamics/dynamics_plan.h"
-#include "dynamics/stiffness.h"
 #include "shell/rest_lengths.h"
 #include "shell/strand.h"
 #include "shell/target_length.h"

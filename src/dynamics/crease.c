@@ -53,7 +53,6 @@
 // Char breaks instead of folding: with the burn progress B of the two cells a crease fades, k_p (1 - B) of it counts,
 // and no more than that share of a bend is kept.
 #include "common/real.h"
-#include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
 /// s, how long a bend must last.

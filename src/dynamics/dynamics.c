@@ -3,7 +3,6 @@
 // One projection of every colour a substep instead of several a step: the same cost and a smaller
 // error (Macklin et al., Small steps in physics simulation, 2019).
 #include "common/assertion.h"
-#include "common/clock.h"
 #include "common/float4.h"
 #include "dynamics/stiffness.h"
 #include "dynamics/dynamics_plan.h"

@@ -16,8 +16,6 @@
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
-#include <math.h>
-
 /// The two layers' strands.
 static const SingeColour SMOOTH_LAYERS[] = {SINGE_BLUE, SINGE_GREEN};
 

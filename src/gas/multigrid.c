@@ -6,8 +6,6 @@
 // not see each other.
 #include "gas/gas_plan.h"
 
-#include <string.h>
-
 enum { SWEEPS = 2, SWEEPS_COARSEST = 10 };
 
 /// Residual of a cell's equation.

@@ -22,7 +22,6 @@
 
 #include "common/real.h"
 
-#include <math.h>
 #include <string.h>
 
 /// The Field of a parameter, or of the quantity computed from it (matter_value); NULL for those from which masses and

@@ -4,9 +4,7 @@
 
 #include "common/format.h"
 #include "sim/calls.h"
-#include "sim/objects.h"
 
-#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 

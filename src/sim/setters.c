@@ -7,7 +7,6 @@
 
 #include "common/def_table.h"
 #include "common/real.h"
-#include "shell/sheet.h"
 
 #include <string.h>
 

@@ -1,5 +1,4 @@
 // A simulation's life: create, add sheets, commit, destroy.
-#include "common/assertion.h"
 #include "common/def_table.h"
 #include "common/real.h"
 #include "common/store.h"

@@ -2,7 +2,6 @@
 #include "sim/snapshot_def.h"
 
 #include "common/def_table.h"
-#include "shell/sheet.h"
 
 #include <string.h>
 

@@ -2,7 +2,6 @@
 // names, so that tables may change: what an older recording lacks has its default.
 #include "sim/tape.h"
 
-#include "shell/sheet.h"
 #include "sim/sim_internal.h"
 
 #include <string.h>

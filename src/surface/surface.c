@@ -22,7 +22,6 @@
 #include "common/real.h"
 #include "surface/surface_parts.h"
 
-#include <math.h>
 #include <string.h>
 
 /// Corners, virtual centres, cuts of blue springs and cuts of red springs, numbered in this order: every vertex that a

@@ -14,8 +14,6 @@
 #include "world/mesh_solid.h"
 #include "world/triangle.h"
 
-#include <string.h>
-
 /// Cells of the grid per triangle; min and max number of cells.
 static const double GRID_SHARE = 32, GRID_MIN = 4096, GRID_MAX = 1 << 20;
 

@@ -5,8 +5,6 @@
 #include "common/real.h"
 #include "world/mesh_solid.h"
 
-#include <string.h>
-
 /// Three pending children at each level of a path, for the levels of a tree of 2^31 triangles.
 enum { TREE_STACK = 3 * 17 + 4 };
 

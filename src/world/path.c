@@ -1,7 +1,6 @@
 #include "world/path.h"
 
 #include <math.h>
-#include <string.h>
 
 /// Positions (m) up to this size leave room for their differences and squares in float.
 static const float path_position_max = 1e9f;

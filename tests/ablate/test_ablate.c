@@ -2,7 +2,6 @@
 #include "burning_sheet.h"
 
 #include "ablate/ablate.h"
-#include "burn/burn.h"
 #include "sim/sim_internal.h"
 #include "support/support.h"
 

@@ -1,8 +1,6 @@
 // The second reaction, char to ash, against its closed form; where it lives; its heat; the switch to the paper's eq 4.
 #include "ablate/burning_sheet.h"
 
-#include "burn/burn.h"
-
 #include <math.h>
 #include <string.h>
 

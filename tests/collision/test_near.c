@@ -1,7 +1,6 @@
 // Distances against dense sampling, and sweeps against small steps.
 #include "support/test.h"
 
-#include "common/random.h"
 #include "collision/feature_distance.h"
 #include "shell/cross.h"
 

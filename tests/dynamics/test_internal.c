@@ -2,7 +2,6 @@
 #include "sample_sheets.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "support/test.h"
 

@@ -1,8 +1,6 @@
 // STL: what is read, and what is refused with its line or byte.
 #include "format_test.h"
 
-#include <math.h>
-
 static void expect_mesh(const char *name, const char *text, const float *positions, uint32_t vertices,
                         const uint32_t *corners, uint32_t corner_count, uint32_t faces) {
     Polygons mesh;

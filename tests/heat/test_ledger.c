@@ -3,7 +3,6 @@
 #include "rig.h"
 
 #include <math.h>
-#include <string.h>
 
 static const SingePoseKey MIDDLE = {.position = {0.03f, 0.03f, 0}, .rotation = {0, 0, 0, 1}};
 

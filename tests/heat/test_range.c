@@ -5,8 +5,6 @@
 #include "heat/heat_plan.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { COLUMNS = 18, ROWS = 14 };
 

@@ -1,8 +1,6 @@
 // Random polygons become a sheet that the library accepts, or are refused with a reason.
 #include "sample_meshes.h"
 
-#include "singe/singe.h"
-
 static uint32_t random_state;
 
 static uint32_t below(uint32_t count) {

@@ -1,6 +1,5 @@
 // Rays against triangles, compared with a search through all of them.
 #include "common/allocator.h"
-#include "common/cpu.h"
 #include "preview/bvh_packets.h"
 #include "support/test.h"
 

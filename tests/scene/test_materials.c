@@ -2,7 +2,6 @@
 #include "parsing.h"
 
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "scene/schema.h"
 

@@ -2,7 +2,6 @@
 #include "parsing.h"
 
 #include "scene/schema.h"
-#include "shell/sheet.h"
 
 #include <math.h>
 

@@ -5,7 +5,6 @@
 #include "collision/collision_plan.h"
 #include "dynamics/dynamics_plan.h"
 #include "gas/gas_plan.h"
-#include "shell/sheet.h"
 #include "sim/snapshot_def.h"
 
 #include <math.h>

@@ -1,6 +1,5 @@
 // Which way tears run: across the pull, whatever the direction of the cells.
 #include "ablate/burning_sheet.h"
-#include "shell/split.h"
 #include "tear/tear.h"
 
 enum { BLOCKS = 14, BLOCK = 6, CELLS = BLOCKS * BLOCK };

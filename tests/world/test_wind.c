@@ -5,8 +5,6 @@
 #include "world/air.h"
 #include "world/wind.h"
 
-#include <string.h>
-
 static Float3 at(const SingeWindDef *def, int i) {
     return wind_velocity(def, float3((float)(i % 13) * 0.11f, (float)(i % 7) * 0.23f, (float)(i % 5) * 0.31f),
                          i * 0.037);
