@@ -5,16 +5,6 @@
 
 #include <math.h>
 
-static inline void draw_gas(const PreviewDef *def, const SingeSurface *surface, const SingeGas *gas, double time,
-                            uint8_t *rgb) {
-    Preview *preview = NULL;
-    SingeError error = {0};
-    assert_int_equal(preview_create(def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
-    if (preview_set_gas(preview, gas, &error)) fail_msg("%s", error.message);
-    assert_int_equal(preview_draw(preview, surface, time, rgb, &error), SINGE_OK);
-    preview_destroy(preview);
-}
-
 /// A camera at the height of the flames, looking along y at nothing but the background.
 static inline PreviewDef aside(float background) {
     PreviewDef def = small();
@@ -102,13 +92,8 @@ static inline void see_line(const SingeSurface *surface, const SingeGas *gas, do
     // a mm is a pixel
     def.camera = (PreviewCamera){
         .eye = {0, -1, H / 2000.0f}, .target = {0, 0, H / 2000.0f}, .up = {0, 0, 1}, .fov = 2 * atanf(H / 2000.0f)};
-    Preview *preview = NULL;
-    SingeError error;
     PreviewLayers layers = {.fire = fire};
-    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
-    assert_int_equal(preview_set_gas(preview, gas, &error), SINGE_OK);
-    assert_int_equal(preview_draw_layers(preview, surface, time, NULL, &layers, &error), SINGE_OK);
-    preview_destroy(preview);
+    draw_layers(&def, surface, gas, time, &layers);
     for (int row = 0; row < rows; row++)
         for (int c = 0; c < 4; c++) {
             mean[row][c] = 0;

@@ -9,6 +9,8 @@
 
 enum { W = 96, H = 64, BYTES = W * H * 3 };
 
+static const SingeSurface nothing = {0}; ///< for pictures without sheets
+
 /// The light of these tests: a low sun, a bright sky and a table, so that everything in a picture shows.
 static inline PreviewDef by_day(void) {
     PreviewDef def = preview_default();
@@ -43,11 +45,32 @@ static inline PreviewDef above(void) {
     return def;
 }
 
-static inline void draw(const PreviewDef *def, const SingeSurface *surface, double time, uint8_t *rgb) {
+static inline Preview *preview_open(const PreviewDef *def) {
     Preview *preview = NULL;
+    assert_int_equal(preview_create(def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+    return preview;
+}
+
+/// A picture with gas, which may be NULL.
+static inline void draw_gas(const PreviewDef *def, const SingeSurface *surface, const SingeGas *gas, double time,
+                            uint8_t *rgb) {
+    Preview *preview = preview_open(def);
     SingeError error = {0};
-    assert_int_equal(preview_create(def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
-    assert_int_equal(preview_draw(preview, surface, time, rgb, &error), SINGE_OK);
+    if (preview_set_gas(preview, gas, &error)) fail_msg("%s", error.message);
+    assert_int_equal(preview_draw(preview, surface, time, rgb, NULL), SINGE_OK);
+    preview_destroy(preview);
+}
+
+static inline void draw(const PreviewDef *def, const SingeSurface *surface, double time, uint8_t *rgb) {
+    draw_gas(def, surface, NULL, time, rgb);
+}
+
+/// Layers of a picture with gas, which may be NULL.
+static inline void draw_layers(const PreviewDef *def, const SingeSurface *surface, const SingeGas *gas, double time,
+                               const PreviewLayers *layers) {
+    Preview *preview = preview_open(def);
+    assert_int_equal(preview_set_gas(preview, gas, NULL), SINGE_OK);
+    assert_int_equal(preview_draw_layers(preview, surface, time, NULL, layers, NULL), SINGE_OK);
     preview_destroy(preview);
 }
 

@@ -21,14 +21,12 @@ TEST(embers_throw_sparks_and_smoke) {
             .eye = {0, -1, H / 2000.0f}, .target = {0, 0, H / 2000.0f}, .up = {0, 0, 1}, .fov = 2 * atanf(H / 2000.0f)};
         if (kind == TAKEN_AWAY || kind == FLAKES) def.sparks = def.wisps = 0;
         def.flakes = kind == COLD || kind == FLAKES;
-        Preview *preview = NULL;
-        SingeError error;
         PreviewLayers layers = {.fire = fire};
-        assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+        Preview *preview = preview_open(&def);
         int sparks = 0, hidden = 0;
         float smoke = 0, low = 0, high = 0;
         for (int k = 0; k < FRAMES; k++) {
-            assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, &error), SINGE_OK);
+            assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
             for (int i = 0; i < W * (H - 10); i++) {
                 sparks += fire[i][0] > 0.05f && fire[i][0] > 2 * fire[i][2];
                 smoke = fmaxf(smoke, fire[i][3]);
@@ -92,13 +90,11 @@ TEST(sparks_are_thin) {
     static Burning paper;
     PreviewDef def = embers_make(&paper);
     def.camera.eye[1] = -0.18f, def.camera.fov = 0.4f, def.camera.aperture = 0.01f, def.camera.focus = 0.3f;
-    Preview *preview = NULL;
-    SingeError error;
     PreviewLayers layers = {.fire = fire};
-    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    Preview *preview = preview_open(&def);
     float width = 0, light = 0, sparks = 0;
     for (int k = 0; k < FRAMES; k++) {
-        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, &error), SINGE_OK);
+        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
         for (int i = 0; i < W * (H - 10); i++) {
             Streak streak = {.pixels = 0};
             take_spark(fire, i, &streak);
@@ -121,14 +117,12 @@ TEST(sparks_differ) {
     static float fire[W * H][4];
     static Burning paper;
     PreviewDef def = embers_make(&paper);
-    Preview *preview = NULL;
-    SingeError error;
     PreviewLayers layers = {.fire = fire};
-    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    Preview *preview = preview_open(&def);
     int sparks = 0;
     float sum = 0, squares = 0;
     for (int k = 0; k < FRAMES; k++) {
-        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, &error), SINGE_OK);
+        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
         for (int i = 0; i < W * (H - 10); i++) {
             Streak streak = {.pixels = 0};
             take_spark(fire, i, &streak);

@@ -159,7 +159,6 @@ TEST(a_moving_edge_is_smooth) {
 
 TEST(a_moving_ball_is_blurred) {
     static uint8_t rgb[BYTES];
-    SingeSurface nothing = {0};
     PreviewDef def = above();
     def.samples = 32, def.ground_height = -INFINITY, def.shutter = 0.1f;
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .radius = 0.02f, .temperature = 1300, .velocity = {1, 0, 0}};

@@ -120,12 +120,8 @@ static Remains burn_sheet(float weave) {
     def.camera.fov = 0.22f;
     def.ground_height = -INFINITY;
     def.looks = &look, def.starts = &start, def.sheet_count = 1;
-    Preview *preview = NULL;
-    SingeError error = {0};
     const PreviewLayers layers = {.coverage = coverage};
-    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
-    assert_int_equal(preview_draw_layers(preview, &sheet, 30, NULL, &layers, &error), SINGE_OK);
-    preview_destroy(preview);
+    draw_layers(&def, &sheet, NULL, 30, &layers);
     synthetic_free(&sheet);
 
     Remains remains = {0, 0};

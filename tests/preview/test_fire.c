@@ -182,13 +182,8 @@ TEST(thin_tongues_are_not_cut) {
         PreviewDef def = aside(0.02f);
         def.camera = (PreviewCamera){
             .eye = {x, -far, z}, .target = {x, 0, z}, .up = {0, 0, 1}, .fov = 2 * atanf(0.5f * H * 1e-3f)};
-        Preview *preview = NULL;
-        SingeError error;
         PreviewLayers layers = {.fire = fire[k]};
-        assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
-        assert_int_equal(preview_set_gas(preview, &line.gas, &error), SINGE_OK);
-        assert_int_equal(preview_draw_layers(preview, &paper.surface, 0.3, NULL, &layers, &error), SINGE_OK);
-        preview_destroy(preview);
+        draw_layers(&def, &paper.surface, &line.gas, 0.3, &layers);
     }
 
     float differ = 0, lit = 0;
@@ -290,7 +285,6 @@ TEST(the_rim_is_seen_through_the_flames) {
 TEST(flicker_continues_over_time) {
     static uint8_t a[BYTES], b[BYTES];
     static Ball ball;
-    SingeSurface nothing = {0};
     PreviewDef def = aside(0.02f);
 
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 0);
@@ -313,8 +307,7 @@ TEST(pictures_do_not_depend_on_threads_or_order) {
     for (int threads = 1; threads <= 3; threads++) {
         PreviewDef def = small();
         def.width = BIG_W, def.height = BIG_H, def.thread_count = threads;
-        Preview *preview = NULL;
-        assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+        Preview *preview = preview_open(&def);
         if (threads == 3) {
             assert_int_equal(preview_set_gas(preview, &other.gas, NULL), SINGE_OK);
             assert_int_equal(preview_draw(preview, &surface, 2, again, NULL), SINGE_OK);

@@ -19,7 +19,6 @@ static float corner(const uint8_t *rgb, int channel) { return area(rgb, 0, 0, 8,
 TEST(a_flame_glows_orange) {
     static uint8_t rgb[BYTES], plain[BYTES];
     static Ball ball;
-    SingeSurface nothing = {0};
 
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 0);
     for (int k = 0; k < 2; k++) {
@@ -50,7 +49,6 @@ TEST(a_flame_glows_orange) {
 TEST(a_bright_flame_is_pale_in_its_centre) {
     static uint8_t rgb[BYTES];
     static Ball ball;
-    SingeSurface nothing = {0};
     for (int small = 0; small < 2; small++) {
         PreviewDef def = aside(0.02f);
         def.exposure = small ? 1.8f : 1.6f;
@@ -77,7 +75,6 @@ TEST(a_body_of_flame_has_folds) {
     enum { APART = 6 };
     static uint8_t rgb[BYTES];
     static Ball ball;
-    SingeSurface nothing = {0};
     PreviewDef def = aside(0.02f);
     def.exposure = 1.6f;
     ball_make(&ball, 0, 0, 0.2f, 0.05f, 1e7f, 0);
@@ -180,13 +177,8 @@ TEST(firelight_has_no_hot_spot) {
     for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
     def.camera.eye[0] = 0.4f; // a little aside: there flames hide less of it
 
-    Preview *preview = NULL;
-    SingeError error;
     PreviewLayers layers = {.beauty = beauty, .fire = fire};
-    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
-    assert_int_equal(preview_set_gas(preview, &ball.gas, &error), SINGE_OK);
-    assert_int_equal(preview_draw_layers(preview, &q.surface, 0.3, NULL, &layers, &error), SINGE_OK);
-    preview_destroy(preview);
+    draw_layers(&def, &q.surface, &ball.gas, 0.3, &layers);
     float most = 0;
     for (int i = 0; i < W * H; i++)
         if (fire[i][3] < 0.01f) most = fmaxf(most, beauty[i][0]);
@@ -206,14 +198,12 @@ static float firelight_deviation(float day) {
     for (int c = 0; c < 3; c++) def.sun_colour[c] *= day, def.sky_colour[c] *= day;
     ball_make(&ball, -0.09f, 0, 0.10f, 0.03f, 4e6f, 0);
 
-    Preview *preview = NULL;
-    SingeError error;
     PreviewLayers layers = {.beauty = beauty};
-    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
-    assert_int_equal(preview_set_gas(preview, &ball.gas, &error), SINGE_OK);
+    Preview *preview = preview_open(&def);
+    assert_int_equal(preview_set_gas(preview, &ball.gas, NULL), SINGE_OK);
     float sum = 0, squares = 0;
     for (int k = 0; k < FRAMES; k++) {
-        assert_int_equal(preview_draw_layers(preview, &q.surface, k / 24.0, NULL, &layers, &error), SINGE_OK);
+        assert_int_equal(preview_draw_layers(preview, &q.surface, k / 24.0, NULL, &layers, NULL), SINGE_OK);
         float light = 0;
         for (int y = H / 2 - 3; y < H / 2 + 3; y++)
             for (int x = W / 2 - 3; x < W / 2 + 3; x++) light += beauty[y * W + x][0] / 36;
@@ -237,7 +227,6 @@ TEST(firelight_flickers) {
 TEST(smoke_dims_what_is_bright) {
     static uint8_t rgb[BYTES], plain[BYTES];
     static Ball ball;
-    SingeSurface nothing = {0};
 
     ball_make(&ball, 0, 0, 0.2f, 0.035f, 0, 2e-3f);
     for (int k = 0; k < 2; k++) {
@@ -254,7 +243,6 @@ TEST(smoke_dims_what_is_bright) {
 TEST(thin_smoke_is_seen) {
     static uint8_t rgb[BYTES], plain[BYTES];
     static Ball ball;
-    SingeSurface nothing = {0};
     PreviewDef def = aside(0.0f);
     ball_make(&ball, 0, 0, 0.2f, 0.045f, 0, 1e-4f);
 
@@ -275,7 +263,6 @@ TEST(thin_smoke_is_seen) {
 TEST(smoke_has_streaks) {
     static uint8_t rgb[BYTES];
     static Ball ball;
-    SingeSurface nothing = {0};
     PreviewDef def = aside(0.75f);
     float across = 0, up = 0;
 
@@ -297,19 +284,16 @@ TEST(smoke_has_streaks) {
 TEST(the_fire_layer_is_what_fire_adds) {
     static float with[W * H][3], without[W * H][3], fire[W * H][4];
     static Ball ball;
-    SingeSurface nothing = {0};
     PreviewDef def = aside(0.3f);
-    Preview *preview = NULL;
-    SingeError error;
 
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 5e-4f);
-    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    Preview *preview = preview_open(&def);
     PreviewLayers layers = {.beauty = without, .fire = fire};
-    assert_int_equal(preview_draw_layers(preview, &nothing, 0.3, NULL, &layers, &error), SINGE_OK);
+    assert_int_equal(preview_draw_layers(preview, &nothing, 0.3, NULL, &layers, NULL), SINGE_OK);
     for (int i = 0; i < W * H; i++) assert_true(fire[i][0] == 0 && fire[i][3] == 0);
-    assert_int_equal(preview_set_gas(preview, &ball.gas, &error), SINGE_OK);
+    assert_int_equal(preview_set_gas(preview, &ball.gas, NULL), SINGE_OK);
     layers.beauty = with;
-    assert_int_equal(preview_draw_layers(preview, &nothing, 0.3, NULL, &layers, &error), SINGE_OK);
+    assert_int_equal(preview_draw_layers(preview, &nothing, 0.3, NULL, &layers, NULL), SINGE_OK);
     for (int i = 0; i < W * H; i++)
         for (int c = 0; c < 3; c++)
             assert_true(fabsf(with[i][c] - fire[i][c] - (1 - fire[i][3]) * without[i][c]) < 1e-3f * (1 + with[i][c]));
@@ -327,7 +311,6 @@ TEST(the_fire_layer_is_what_fire_adds) {
 TEST(rays_end_far_away_and_inside_the_flame) {
     static uint8_t rgb[BYTES];
     static Ball ball;
-    SingeSurface nothing = {0};
 
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 1e-3f);
     static const float eyes[4][3] = {{0, -0.01f, 0.2f}, {0, -90, 0.2f}, {0, -9000, 0.2f}, {7000, 6000, 8000}};

@@ -11,14 +11,12 @@ typedef struct Kept {
     int32_t sheet[H * W], piece[H * W];
 } Kept;
 
-static void draw_layers(const PreviewDef *def, const SingeSurface *surface, uint8_t *rgb, Kept *kept) {
-    Preview *preview = NULL;
-    SingeError error = {0};
+static void draw_kept(const PreviewDef *def, const SingeSurface *surface, uint8_t *rgb, Kept *kept) {
     const PreviewLayers layers = {kept->beauty, kept->glow,  kept->coverage, kept->normal, kept->temperature,
                                   kept->burn,   kept->depth, kept->sheet,    kept->piece,  NULL,
                                   NULL};
-    assert_int_equal(preview_create(def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
-    assert_int_equal(preview_draw_layers(preview, surface, 1, rgb, &layers, &error), SINGE_OK);
+    Preview *preview = preview_open(def);
+    assert_int_equal(preview_draw_layers(preview, surface, 1, rgb, &layers, NULL), SINGE_OK);
     preview_destroy(preview);
 }
 
@@ -33,7 +31,7 @@ TEST(layers_have_the_surfaces_values) {
     for (int i = 0; i < 4; i++) q.temperature[i] = 500, q.burn[i] = 0.25f, q.sheet[i] = 2;
     q.surface.piece = piece;
     PreviewDef def = above();
-    draw_layers(&def, &q.surface, NULL, &kept);
+    draw_kept(&def, &q.surface, NULL, &kept);
     assert_float_equal(kept.depth[ON], 0.4f, 1e-4);
     assert_float_equal(kept.depth[ON + 10], 0.4f, 1e-4); // along the view, not along the ray
     assert_float_equal(kept.normal[ON][0], 0, 0.5);      // char's wrinkles
@@ -51,7 +49,7 @@ TEST(layers_have_the_surfaces_values) {
     assert_int_equal(kept.sheet[OFF], -1);
     assert_int_equal(kept.piece[OFF], -1);
     def.ground_height = -INFINITY;
-    draw_layers(&def, &q.surface, NULL, &kept);
+    draw_kept(&def, &q.surface, NULL, &kept);
     assert_true(isinf(kept.depth[OFF]));
 }
 
@@ -65,7 +63,7 @@ TEST(normals_face_the_eye) {
         q.normal[i][0] = 0.5f / sqrtf(1.25f), q.normal[i][1] = 0, q.normal[i][2] = -1 / sqrtf(1.25f); // from below
     }
     PreviewDef def = above();
-    draw_layers(&def, &q.surface, NULL, &kept);
+    draw_kept(&def, &q.surface, NULL, &kept);
     assert_float_equal(kept.normal[ON][0], -0.5f / sqrtf(1.25f), 1e-4);
     assert_float_equal(kept.normal[ON][1], 0, 1e-4);
     assert_float_equal(kept.normal[ON][2], 1 / sqrtf(1.25f), 1e-4);
@@ -77,7 +75,7 @@ TEST(glow_has_its_own_layer) {
     quad_make(&q, 0.08f, 0.1f);
     for (int i = 0; i < 4; i++) q.burn[i] = i == 1 || i == 2 ? 0.9f : 0.6f, q.temperature[i] = 1100, q.rate[i] = 1;
     PreviewDef def = above();
-    draw_layers(&def, &q.surface, NULL, &kept);
+    draw_kept(&def, &q.surface, NULL, &kept);
     float max = 0;
     for (int i = 0; i < W * H; i++) {
         max = fmaxf(max, kept.glow[i][0]);
@@ -97,8 +95,7 @@ TEST(the_ember_line_is_thin_and_broken) {
     def.width = def.height = SIDE;
     def.camera =
         (PreviewCamera){.eye = {0.012f, 0.02f, 0.5f}, .target = {0.012f, 0.02f, 0}, .up = {0, 1, 0}, .fov = 0.24f};
-    Preview *preview = NULL;
-    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+    Preview *preview = preview_open(&def);
     for (int k = 0; k < 2; k++) {
         const PreviewLayers layers = {.glow = glow[k]};
         assert_int_equal(preview_draw_layers(preview, &surface, 1 + 0.5 * k, NULL, &layers, NULL), SINGE_OK);
@@ -138,10 +135,10 @@ TEST(layers_change_no_picture) {
     assert_true(synthetic_make(SYNTHETIC_FLAT, 30, 0.05f, &surface));
     PreviewDef def = small();
     draw(&def, &surface, 1, alone);
-    draw_layers(&def, &surface, beside, &one);
+    draw_kept(&def, &surface, beside, &one);
     assert_memory_equal(alone, beside, BYTES);
     def.thread_count = 3;
-    draw_layers(&def, &surface, NULL, &two);
+    draw_kept(&def, &surface, NULL, &two);
     assert_memory_equal(&one, &two, sizeof one);
     synthetic_free(&surface);
 }

@@ -16,13 +16,8 @@ static void wall_make(Float4 *q) {
 
 /// The picture's linear light; `gas` may be NULL.
 static void see(const PreviewDef *def, const SingeSurface *surface, const SingeGas *gas, float (*beauty)[3]) {
-    Preview *preview = NULL;
-    SingeError error;
     PreviewLayers layers = {.beauty = beauty};
-    assert_int_equal(preview_create(def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
-    assert_int_equal(preview_set_gas(preview, gas, &error), SINGE_OK);
-    assert_int_equal(preview_draw_layers(preview, surface, 0.3, NULL, &layers, &error), SINGE_OK);
-    preview_destroy(preview);
+    draw_layers(def, surface, gas, 0.3, &layers);
 }
 
 /// Mean of the green over a box of 9 x 9 pixels.
@@ -53,7 +48,6 @@ static PreviewDef at_night(void) {
 TEST(firelight_is_warm) {
     static float dark[W * H][3], lit[W * H][3];
     static Ball ball;
-    const SingeSurface nothing = {0};
     const PreviewDef def = at_night();
     float sum[3] = {0, 0, 0};
     ball_make(&ball, -0.07f, 0, 0.1f, 0.03f, 4e6f, 0);
@@ -69,7 +63,6 @@ TEST(firelight_is_warm) {
 /// of it is the bar for an opaque sheet, and a sheet that lets half through breaks it.
 TEST(a_sheet_shadows_the_light_of_a_flame) {
     Float4 q;
-    SingeSurface nothing = {0};
     PreviewDef def = at_night();
     float share = 0, light[3], open;
     def.transmittances = &share, def.sheet_count = 1;
@@ -110,7 +103,6 @@ TEST(a_sheet_before_a_flame_shines_through) {
 TEST(a_lamp_lights_what_is_near) {
     static float beauty[W * H][3];
     Float4 q;
-    SingeSurface nothing = {0};
     PreviewDef def = at_night();
     float share = 0, seen[4];
     const float height[4] = {0, 0.15f, 0.3f, 0.15f};
@@ -148,13 +140,12 @@ TEST(char_throws_the_light_that_is_seen) {
             left[i] = mass[k], charred[i] = k == ALONE ? mass[k] : 0.2f;
         }
         q.surface.mass = left, q.surface.char_fraction = charred, q.surface.ash_fraction = ash;
-        Preview *preview = NULL;
         const PreviewLayers layers = {.glow = glow};
         uint8_t *frame;
         size_t size;
         float seen = 0, thrown = 0, strength[3];
         uint32_t lights;
-        assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+        Preview *preview = preview_open(&def);
         for (int time = 0; time < TIMES; time++) {
             assert_int_equal(preview_draw_layers(preview, &q.surface, 3 * time, NULL, &layers, NULL), SINGE_OK);
             assert_int_equal(preview_pack(preview, &q.surface, 3 * time, &frame, &size, NULL), SINGE_OK);
@@ -188,11 +179,10 @@ TEST(flames_outshine_embers) {
     float red[2] = {0, 0};
 
     for (int k = 0; k < 2; k++) {
-        Preview *preview = NULL;
         uint8_t *frame;
         size_t size;
         uint32_t lights;
-        assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+        Preview *preview = preview_open(&def);
         assert_int_equal(preview_set_gas(preview, k ? &ball.gas : NULL, NULL), SINGE_OK);
         assert_int_equal(preview_pack(preview, &q.surface, 0, &frame, &size, NULL), SINGE_OK);
         memcpy(&lights, frame + 16, sizeof lights);
@@ -214,7 +204,6 @@ TEST(a_glossy_ground_mirrors_embers) {
     PreviewDef def = at_night();
     PreviewShape ball = {
         .kind = SINGE_COLLIDER_SPHERE, .position = {0, 0, 0.08f}, .radius = 0.025f, .temperature = 1450};
-    SingeSurface nothing = {0};
     float seen[3];
     def.shapes = &ball, def.shape_count = 1;
     def.camera = (PreviewCamera){.eye = {0, -0.5f, 0.1f}, .target = {0, 0, -0.08f}, .up = {0, 0, 1}, .fov = 0.6f};
@@ -233,7 +222,6 @@ TEST(a_glossy_ground_mirrors_embers) {
 /// nothing but a floor is seen, breaks both bars: .66 and .92.
 TEST(a_wall_meets_the_floor_without_steps) {
     static float picture[W * H][3];
-    SingeSurface nothing = {0};
     PreviewDef def = at_night();
     def.camera = (PreviewCamera){.eye = {0, 0, 0.1f}, .target = {0, 0.3f, 0}, .up = {0.3f, 0, 1}, .fov = 0.3f};
     for (int c = 0; c < 3; c++) def.sun_colour[c] = 1, def.wall_colour[c] = def.ground_colour[c] = 0.3f;
@@ -264,7 +252,6 @@ TEST(a_wall_catches_light_and_shadows) {
     static Ball ball;
     Float4 q;
     float share = 0;
-    SingeSurface nothing = {0};
     PreviewDef def = at_night();
     ball_make(&ball, 0, -0.1f, 0.1f, 0.03f, 4e6f, 0);
     quad_make(&q, 0.12f, 0);

@@ -193,7 +193,6 @@ TEST(light_on_upward_faces_is_the_same_for_any_sky) {
 /// Each ground has its own look and about the brightness of its colour.
 TEST(each_ground_has_its_look) {
     static uint8_t rgb[3][BYTES];
-    SingeSurface nothing = {0};
     PreviewDef def = above();
 
     for (int kind = 0; kind < 3; kind++) {
@@ -214,7 +213,6 @@ TEST(each_ground_has_its_look) {
 /// So have walls; a brick has a hue of its own.
 TEST(each_wall_has_its_look) {
     static uint8_t rgb[3][BYTES];
-    SingeSurface nothing = {0};
     PreviewDef def = small();
     def.wall_distance = 0.3f, def.sun_direction[1] = -0.45f;
     def.camera = (PreviewCamera){.eye = {0, -0.4f, 0.5f}, .target = {0, 0.3f, 0.5f}, .up = {0, 0, 1}, .fov = 0.6f};
@@ -237,7 +235,6 @@ TEST(burning_sheets_stain_the_ground) {
     static uint8_t rgb[BYTES];
     static const uint32_t cells[4] = {0, 1, 2, 3};
     Float4 q;
-    SingeSurface nothing = {0};
     PreviewStart start = {4, 1, &q.position[0][0], cells, NULL, NULL};
     PreviewDef def = above();
     quad_make(&q, 0.09f, 0.001f);
@@ -277,7 +274,6 @@ TEST(crumbs_of_ash_have_a_shadow) {
     static uint8_t rgb[BYTES], sorted[W * H];
     static const uint32_t cells[4] = {0, 1, 2, 3};
     Float4 q;
-    SingeSurface nothing = {0};
     PreviewStart start = {4, 1, &q.position[0][0], cells, NULL, NULL};
     quad_make(&q, 0.09f, 0.001f);
     PreviewDef def = above();
@@ -316,7 +312,6 @@ TEST(ash_lies_in_drifts) {
     static uint8_t clean[BYTES], rgb[BYTES];
     static const uint32_t cells[4] = {0, 1, 2, 3};
     Float4 q;
-    SingeSurface nothing = {0};
     PreviewStart start = {4, 1, &q.position[0][0], cells, NULL, NULL};
     quad_make(&q, 0.3f, 0.001f);
     PreviewDef def = above();
@@ -417,7 +412,6 @@ TEST(a_leaf_glows_in_threads) {
 /// Change from pixel to pixel of the bare table over its mean, along the planks and across them, seen from `height` m.
 static void table_grain(float height, float change[2]) {
     static uint8_t rgb[BYTES];
-    SingeSurface nothing = {0};
     PreviewDef def = above();
     def.camera.eye[0] = def.camera.target[0] = 0.3f, def.camera.eye[1] = def.camera.target[1] = 0.06f;
     def.camera.eye[2] = height, def.camera.fov = 0.3f;

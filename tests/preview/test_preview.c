@@ -43,8 +43,7 @@ TEST(frames_between_leave_no_trace) {
     assert_true(synthetic_make(SYNTHETIC_COLD, 30, 0.07f, &cold));
     static uint8_t first[BYTES], between[BYTES], again[BYTES], later[BYTES];
     PreviewDef def = small();
-    Preview *preview = NULL;
-    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+    Preview *preview = preview_open(&def);
     assert_int_equal(preview_draw(preview, &burning, 2, first, NULL), SINGE_OK);
     assert_int_equal(preview_draw(preview, &cold, 2, between, NULL), SINGE_OK);
     assert_int_equal(preview_draw(preview, &burning, 2, again, NULL), SINGE_OK);
@@ -58,16 +57,15 @@ TEST(frames_between_leave_no_trace) {
 
 /// State that a preview keeps between frames (the table, the mask, the shapes) does not affect the next frame.
 TEST(kept_state_does_not_affect_the_picture) {
-    SingeSurface burning, hanging, nothing = {0};
+    SingeSurface burning, hanging;
     assert_true(synthetic_make(SYNTHETIC_FLAT, 20, 0.05f, &burning));
     assert_true(synthetic_make(SYNTHETIC_HANGING, 20, 0.05f, &hanging));
     static uint8_t alone[BYTES], after[BYTES];
     PreviewDef def = small();
     draw(&def, &burning, 2, alone);
-    Preview *preview = NULL;
     PreviewShape ball = {
         .kind = SINGE_COLLIDER_SPHERE, .position = {0.05f, 0, 0.03f}, .radius = 0.03f, .temperature = 1200};
-    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+    Preview *preview = preview_open(&def);
     assert_int_equal(preview_set_shapes(preview, &ball, 1, NULL), SINGE_OK);
     assert_int_equal(preview_draw(preview, &hanging, 1, after, NULL), SINGE_OK);
     assert_memory_not_equal(alone, after, BYTES);
@@ -81,7 +79,6 @@ TEST(kept_state_does_not_affect_the_picture) {
 
 TEST(an_empty_surface_is_drawn) {
     static uint8_t rgb[BYTES];
-    SingeSurface nothing = {0};
     PreviewDef def = above();
 
     draw(&def, &nothing, 0, rgb);
@@ -123,7 +120,6 @@ TEST(uv_and_rows_are_the_right_way_round) {
 
 TEST(shapes_are_drawn) {
     static uint8_t rgb[BYTES];
-    SingeSurface nothing = {0};
     PreviewDef def = above();
     PreviewShape shape = {.position = {0.1f, 0, 0.05f},
                           .rotation = {0, 0, 0, 1},
@@ -155,7 +151,6 @@ TEST(shapes_are_drawn) {
 /// A mesh of a box is drawn as the box, turned, hot or blurred; one that is built again as before.
 TEST(a_box_of_a_mesh_is_drawn_as_the_box) {
     static uint8_t box[BYTES], mesh[BYTES], again[BYTES];
-    SingeSurface nothing = {0};
     PreviewDef def = above();
     float vertices[24];
     uint32_t triangles[] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
@@ -198,7 +193,6 @@ TEST(a_box_of_a_mesh_is_drawn_as_the_box) {
 
 TEST(a_hot_ball_glows) {
     static uint8_t hot[BYTES], cold[BYTES];
-    SingeSurface nothing = {0};
     PreviewDef def = above();
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
                          .position = {0, 0, 0.03f},
@@ -229,7 +223,6 @@ TEST(a_hot_ball_glows) {
 /// down is darker than what faces up.
 TEST(a_hot_ball_is_graded) {
     static uint8_t rgb[BYTES];
-    SingeSurface nothing = {0};
     PreviewDef def = small();
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .radius = 0.1f, .temperature = 1300};
     def.shapes = &ball, def.shape_count = 1;
@@ -254,7 +247,6 @@ TEST(a_hot_ball_is_graded) {
 /// A sheet over the table darkens it, softly.
 TEST(a_sheet_darkens_the_table) {
     static uint8_t with[BYTES], without[BYTES];
-    SingeSurface nothing = {0};
     Float4 q;
     PreviewDef def = above();
     def.sun_direction[0] = -1, def.sun_direction[1] = 0, def.sun_direction[2] = 1; // the shadow falls to +x
@@ -446,7 +438,6 @@ TEST(every_allocation_fails_once) {
 
 TEST(shapes_can_be_set_anew) {
     static uint8_t rgb[BYTES];
-    SingeSurface nothing = {0};
     PreviewDef def = above();
     Preview *preview = NULL;
     SingeError error = {0};

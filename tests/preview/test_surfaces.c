@@ -47,7 +47,6 @@ static Front front_of(const uint8_t *rgb) {
 /// Each surface has a pattern, which moves with its shape. The largest change is in thousandths of a metre's rounding.
 TEST(patterns_stay_on_their_shape) {
     static uint8_t here[BYTES], there[BYTES];
-    SingeSurface nothing = {0};
     PreviewShape box;
     for (int k = 0; k < 4; k++) {
         PreviewDef def = box_make(SURFACES[k], 0, &box);
@@ -67,20 +66,14 @@ TEST(patterns_stay_on_their_shape) {
 TEST(metal_mirrors_a_flame) {
     static float beauty[W * H][3];
     static Ball ball;
-    SingeSurface nothing = {0};
     PreviewShape box;
     float share[2];
     for (int k = 0; k < 2; k++) {
         PreviewDef def = box_make(k ? PREVIEW_SURFACE_METAL : PREVIEW_SURFACE_MATT, 0, &box);
         for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
         ball_make(&ball, 0, -0.12f, -0.05f, 0.02f, 4e6f, 0); // below what the camera sees
-        Preview *preview = NULL;
-        SingeError error;
         PreviewLayers layers = {.beauty = beauty};
-        assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
-        assert_int_equal(preview_set_gas(preview, &ball.gas, &error), SINGE_OK);
-        assert_int_equal(preview_draw_layers(preview, &nothing, 0.3, NULL, &layers, &error), SINGE_OK);
-        preview_destroy(preview);
+        draw_layers(&def, &nothing, &ball.gas, 0.3, &layers);
 
         float sum = 0, most = 0, count = 0;
         for (int y = H / 2 - 4; y < H / 2 + 20; y++)
@@ -98,7 +91,6 @@ TEST(metal_mirrors_a_flame) {
 TEST(heated_metal_wears_temper_colours) {
     static const float kelvin[3] = {293, 505, 576};
     static uint8_t rgb[BYTES];
-    SingeSurface nothing = {0};
     PreviewShape box;
     float blue[3];
     for (int k = 0; k < 3; k++) {
