@@ -258,10 +258,9 @@ TEST(without_memory_there_is_no_file) {
 /// A fully burnt sheet still yields a valid file in every format.
 TEST(every_format_has_empty_frames) {
     const SingeSurface none = {0};
-    SingeError error;
     for (int format = 0; format < OUTPUT_COUNT; format++) {
         if (format == OUTPUT_textures && !exr_available()) continue;
-        assert_int_equal(write_as(format, &none, 2, "a.png", &error), SINGE_OK);
+        assert_int_equal(write_as(format, &none, 2, "a.png", NULL), SINGE_OK);
         assert_int_equal(access(path, F_OK), 0);
         unlink(path);
     }
@@ -289,7 +288,6 @@ static double yardstick(void) {
 /// At 25,000 vertices a frame takes at most 5 ms of the program's time and 75 % of the bytes of the PLY.
 TEST(is_fast_and_small) {
     SingeSurface s;
-    SingeError error;
     Bytes ply;
     make_sheet(&s, 158, 1);
     enum { FRAMES = 20, TIMES = 20 };
@@ -297,16 +295,16 @@ TEST(is_fast_and_small) {
     double system[2], ply_system[2], mean = 1, yard = 1;
     for (int times = 0; times < TIMES && mean > 4e-3; times++) { // the least of some: others use the machine, too
         const double own = time_used(&system[0]);
-        for (int i = 0; i < FRAMES; i++) assert_int_equal(write_sheet(&s, 1, NULL, &error), SINGE_OK);
+        for (int i = 0; i < FRAMES; i++) assert_int_equal(write_sheet(&s, 1, NULL, NULL), SINGE_OK);
         mean = fmin(mean, (time_used(&system[1]) - own) / FRAMES);
         yard = fmin(yard, yardstick());
     }
     for (int times = 0; times < TIMES && yard > usual; times++) yard = fmin(yard, yardstick());
     const double begun = time_used(&ply_system[0]);
-    for (int i = 0; i < FRAMES; i++) assert_int_equal(ply_write_surface(path, &s, 1.5, &error), SINGE_OK);
+    for (int i = 0; i < FRAMES; i++) assert_int_equal(ply_write_surface(path, &s, 1.5, NULL), SINGE_OK);
     const double ply_mean = (time_used(&ply_system[1]) - begun) / FRAMES;
     Bytes usd = written(&s, 1, NULL);
-    assert_int_equal(ply_write_surface(path, &s, 1.5, &error), SINGE_OK);
+    assert_int_equal(ply_write_surface(path, &s, 1.5, NULL), SINGE_OK);
     ply = take_file(path);
     const double share = (double)usd.size / (double)ply.size;
     const double bar = 5e-3 * fmax(1, yard / usual);

@@ -143,7 +143,6 @@ static float covered(const Hung *hung, double time, int threads, uint8_t *rgb, f
     static float coverage[W * H];
     PreviewDef def;
     Float4 q;
-    SingeError error;
     Preview *preview = NULL;
     PreviewShape shapes[16];
     scene_preview(hung->scene, &hung->assets, &def);
@@ -155,9 +154,9 @@ static float covered(const Hung *hung, double time, int threads, uint8_t *rgb, f
     def.shapes = shapes;
     def.shape_count = scene_shapes(hung->scene, &hung->assets, time, shapes, 16);
     quad_make(&q, 0.01f, -0.5f); // below the picture
-    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
     const PreviewLayers layers = {.coverage = coverage};
-    assert_int_equal(preview_draw_layers(preview, &q.surface, time, rgb, &layers, &error), SINGE_OK);
+    assert_int_equal(preview_draw_layers(preview, &q.surface, time, rgb, &layers, NULL), SINGE_OK);
     preview_destroy(preview);
     float sum = 0, across = 0;
     for (int i = 0; i < W * H; i++) {

@@ -209,9 +209,8 @@ TEST(sheets_are_numbered_as_one_shell) {
     defs[0].name = "first", defs[1].name = "second";
     SheetSource sources[2];
     Shell shell;
-    SingeError error;
-    for (int i = 0; i < 2; i++) assert_int_equal(sheet_source_create(&memory, &defs[i], &sources[i], &error), SINGE_OK);
-    assert_int_equal(shell_create(&memory, sources, 2, &shell, &error), SINGE_OK);
+    for (int i = 0; i < 2; i++) assert_int_equal(sheet_source_create(&memory, &defs[i], &sources[i], NULL), SINGE_OK);
+    assert_int_equal(shell_create(&memory, sources, 2, &shell, NULL), SINGE_OK);
     check_shell(&shell);
     assert_int_equal(shell.vertex_count, 20 + 18);
     assert_int_equal(shell.cell_count, 12 + 10);

@@ -9,8 +9,7 @@
 static SingeSim *create(void) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
-    SingeError error;
-    assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_OK);
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
     return sim;
 }
 
