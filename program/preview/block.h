@@ -129,6 +129,13 @@ void seen_finish(Preview *preview, Block *block);
 /// Smooths the noise that is left where lens and shutter blur. Called per block once the light has been added.
 void soften(Preview *preview, Block *block);
 
+// mirror.c
+/// Of one of the 4 x 4 blocks of pixels that are traced at once, of which `block` is the first.
+Mirrored *mirror_block(const Preview *preview, Mirrored *map, const Block *block, int lane);
+
+/// Sets its time, its random numbers and the ray through its middle. False outside the picture.
+bool mirror_aim(const Preview *preview, Block *block, int lane, Float3 *origin, Float3 *direction);
+
 // glints.c
 /// Traces what metal mirrors in the 4 x 4 blocks of which this is the first.
 void glints_draw(Preview *preview, Block *block);

@@ -28,15 +28,9 @@ static void draw_mirrored(Preview *preview, Block *block) {
     block->mirrored = true;
 
     for (int i = 0; i < LANES; i++) {
-        int x = block->x[0] + BLOCK * (i % BLOCK), y = block->y[0] + BLOCK * (i / BLOCK);
         active[i] = 0;
-        block->time[i] = 0.5f;
-        sample_pixel(x / BLOCK, y / BLOCK, preview->def.seed, block->turn[i]);
-        if (x >= preview->def.width || y >= preview->def.height) continue;
-        *mirror_block(preview, x, y) = (Mirrored){.hides = 0};
-        camera_ray(&preview->camera, 2 * ((float)x + 0.5f * BLOCK) / (float)preview->def.width - 1,
-                   1 - 2 * ((float)y + 0.5f * BLOCK) / (float)preview->def.height, (const float[2]){0, 0}, &origin[i],
-                   &towards[i]);
+        if (!mirror_aim(preview, block, i, &origin[i], &towards[i])) continue;
+        *mirror_block(preview, preview->mirrored[0], block, i) = (Mirrored){.share = 0};
         float distance = ground_hit(preview, origin[i], towards[i]);
         if (!isfinite(distance) || wall_hit(preview, origin[i], towards[i]) < distance) continue;
         origin[i] = float3_mad(origin[i], towards[i], distance);
@@ -68,9 +62,8 @@ static void draw_mirrored(Preview *preview, Block *block) {
         block_add_light(preview, block, hit, SAMPLE_CENTRE, unasked);
         for (int i = 0; i < LANES; i++) {
             if (!hit[i]) continue;
-            Mirrored *mirrored =
-                mirror_block(preview, block->x[0] + BLOCK * (i % BLOCK), block->y[0] + BLOCK * (i / BLOCK));
-            mirrored->hides += share;
+            Mirrored *mirrored = mirror_block(preview, preview->mirrored[0], block, i);
+            mirrored->share += share;
             for (int k = 0; k < LIT_KINDS; k++) block->sum[i] = float3_add(block->sum[i], block->lit[k][i]);
             mirrored->light = float3_mad(mirrored->light, block->sum[i], share);
         }
@@ -84,12 +77,11 @@ static void draw_mirrored(Preview *preview, Block *block) {
         const int i = k / 4 % 2 * 2 + k % 2 + BLOCK * (k / 8 * 2 + k % 4 / 2);
         known = known && k % 4;
         if (!active[i]) continue;
-        Mirrored *mirrored =
-            mirror_block(preview, block->x[0] + BLOCK * (i % BLOCK), block->y[0] + BLOCK * (i / BLOCK));
+        Mirrored *mirrored = mirror_block(preview, preview->mirrored[0], block, i);
         if (!known) fire_along(preview, origin[i], towards[i], reached[i], &light, &clear);
         known = true;
         mirrored->light = float3_mad(light, mirrored->light, clear);
-        mirrored->hides = 1 - clear * (1 - mirrored->hides);
+        mirrored->share = 1 - clear * (1 - mirrored->share);
     }
 }
 
@@ -199,9 +191,10 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     preview->table_known = !(preview->def.stop && preview->def.stop());
     stain_fill(preview);
     draw_all(preview, draw_mirrored);
-    mirror_smooth(preview);
+    // twice as far down: what is rough draws lights out towards the eye
+    for (int pass = 0; pass < 2 && preview->mirrored[0]; pass++) mirror_smooth(preview, preview->mirrored, 2);
     draw_all(preview, glints_draw);
-    glints_smooth(preview);
+    if (glints_any(preview)) mirror_smooth(preview, preview->glints, 1);
     draw_all(preview, block_draw);
     draw_all(preview, seen_smooth);
     draw_all(preview, seen_finish);

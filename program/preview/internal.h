@@ -63,17 +63,11 @@ typedef struct Stain {
     float *grids[3]; ///< [size[1] * size[0]] where sheets lay; what is whole of them, and the stain; NULL: none
 } Stain;
 
-/// What the ground mirrors of sheets, shapes and fire.
+/// What the ground mirrors of sheets, shapes and fire, or what metal mirrors, in a block of pixels.
 typedef struct Mirrored {
     Float3 light;
-    float hides; ///< share of the sky behind
+    float share; ///< of the sky behind, which it hides; of the block, which is metal
 } Mirrored;
-
-/// What metal mirrors in a block of pixels, and the share of the block that is metal.
-typedef struct Glint {
-    Float3 light;
-    float share;
-} Glint;
 
 /// The data of a PreviewSolid for rays.
 typedef struct Facets {
@@ -116,7 +110,7 @@ struct Preview {
     Fire fire;
     Stain stain;
     Mirrored *mirrored[2]; ///< [mask_size] for each block, and the same while it is smoothed; NULL: the ground is dull
-    Glint *glints[2];      ///< [mask_size] for each block, and the same while it is smoothed
+    Mirrored *glints[2];   ///< the same of metal
     PreviewLayers layers;  ///< being drawn
     double time;
 };
@@ -233,27 +227,22 @@ bool stain_may_be(const Preview *preview, float x, float y);
 float stain_at(const Preview *preview, float x, float y);
 
 // mirror.c
+/// Maps of the blocks of a picture, for the ground or for metal.
 SingeResult mirror_create(Preview *preview, SingeError *error);
 void mirror_free(Preview *preview);
 
-/// The block of a pixel, or NULL where the ground is dull.
-Mirrored *mirror_block(const Preview *preview, int x, int y);
+/// Smooths a map across, and so many times down. The second map is scratch.
+void mirror_smooth(const Preview *preview, Mirrored *const maps[2], int times);
 
-/// Smooths what was traced for the frame.
-void mirror_smooth(Preview *preview);
-
-/// What a pixel of the ground mirrors.
-Mirrored mirror_see(const Preview *preview, int x, int y);
+/// What a pixel mirrors.
+Mirrored mirror_see(const Preview *preview, const Mirrored *map, int x, int y);
 
 // glints.c
-SingeResult glints_create(Preview *preview, SingeError *error);
-void glints_free(Preview *preview);
+/// Whether there is metal.
+bool glints_any(const Preview *preview);
 
 /// Whether a shape's mirror image is traced where a pixel is that large (m).
 bool glints_may_be(const PreviewShape *shape, float footprint);
-
-/// Smooths what was traced for the frame.
-void glints_smooth(Preview *preview);
 
 // shade_wood.c
 /// (x, y): where its wear and its fibres are counted from.

@@ -236,7 +236,7 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
         if (point->mirror > 0) {
             float cosine = maxf(float3_dot(point->normal, point->view), 0);
             Float3 out = float3_mad(float3_scale(point->view, -1), point->normal, 2 * cosine);
-            float clear = light_mirrored(point) * (1 - point->mirrored.hides);
+            float clear = light_mirrored(point) * (1 - point->mirrored.share);
             light = float3_add(light, float3_scale(sky_mirrored(&preview->sky, out), clear));
         }
 

@@ -70,7 +70,8 @@ void block_see_backdrop(const Preview *preview, Block *block, int lane) {
         return;
     }
     ground_shade(preview, distance, table, point);
-    point->mirrored = mirror_see(preview, block->x[lane], block->y[lane]);
+    if (preview->mirrored[0])
+        point->mirrored = mirror_see(preview, preview->mirrored[0], block->x[lane], block->y[lane]);
     point->glow = float3_scale(point->mirrored.light, light_mirrored(point));
 }
 

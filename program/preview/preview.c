@@ -190,7 +190,6 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
     result = preview_allocate(preview, error);
     if (!result) result = stain_create(preview, error);
     if (!result) result = mirror_create(preview, error);
-    if (!result) result = glints_create(preview, error);
     if (!result) result = preview_set_shapes(preview, def->shapes, def->shape_count, error);
     if (result) preview_destroy(preview);
     else *out = preview;
@@ -247,7 +246,6 @@ void preview_destroy(Preview *preview) {
     fire_free(preview);
     stain_free(preview);
     mirror_free(preview);
-    glints_free(preview);
     facets_free(preview);
 
     for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);
