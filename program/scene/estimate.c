@@ -29,26 +29,14 @@ static uint64_t sheet_cells(const Scene *scene, const SceneAssets *assets, uint3
     return sheet->grid.given ? (uint64_t)sheet->grid.cells[0] * (uint64_t)sheet->grid.cells[1] : 0;
 }
 
-/// A box around the sheets, as far as they are known.
-typedef struct Box {
-    double low[3], high[3];
-} Box;
-
-static void box_add(Box *box, const double low[3], const double high[3]) {
-    for (int i = 0; i < 3; i++) {
-        box->low[i] = fmin(box->low[i], low[i]);
-        box->high[i] = fmax(box->high[i], high[i]);
-    }
-}
-
 static double gas_cells(const Scene *scene, const SceneAssets *assets) {
     const double cell = (double)scene->sim.gas.cell_size;
     if (!(cell > 0)) return gas_cells_usual;
 
-    Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    // around the sheets, as far as they are known
+    Box box = BOX_EMPTY;
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         const SceneSheet *sheet = &scene->sheets[i];
-        const Mesh *mesh = assets && !sheet->grid.given ? &assets->meshes[i] : NULL;
         double turned[9], low[3], high[3];
         rotation_matrix(sheet->rotate, turned);
         for (int c = 0; c < 3 && sheet->grid.given; c++) {
@@ -60,11 +48,7 @@ static double gas_cells(const Scene *scene, const SceneAssets *assets) {
         }
 
         if (sheet->grid.given) box_add(&box, low, high);
-        for (uint32_t v = 0; mesh && v < mesh->vertex_count; v++) {
-            const float *p = mesh->positions + 3 * (size_t)v;
-            const double point[3] = {(double)p[0], (double)p[1], (double)p[2]};
-            box_add(&box, point, point);
-        }
+        else if (assets) box_add_points(&box, assets->meshes[i].positions, assets->meshes[i].vertex_count);
     }
 
     double cells = 1;

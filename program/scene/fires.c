@@ -2,6 +2,7 @@
 // around each sheet is moved as far as it could fall, fly or be blown, and made larger by its diagonal, for what hangs,
 // swings or curls.
 #include "scene/messages.h"
+#include "scene/space.h"
 #include "scene/warnings.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@
 
 /// Where a sheet can be, and what it takes to light it.
 typedef struct Place {
-    double low[3], high[3]; ///< m, at the start
+    Box box;                ///< at the start
     double fall[3];         ///< m, how far it may go from there, at most
     double slack;           ///< m, in any direction
     double diagonal;        ///< m, of the box at the start
@@ -78,7 +79,7 @@ static void add_motion(const Scene *scene, uint32_t index, Place *place) {
                                collider->keys[0].rotation[1] == 0 && gravity[0] == 0 && gravity[1] == 0 &&
                                gravity[2] < 0;
             if (collider->def.kind != SINGE_COLLIDER_PLANE || !level) continue;
-            const double gap = place->high[2] - (double)collider->keys[0].position[2];
+            const double gap = place->box.high[2] - (double)collider->keys[0].position[2];
             if (gap >= 0) length = fmin(length, gap);
         }
 
@@ -90,23 +91,15 @@ static Place place_of(const Scene *scene, const SceneAssets *assets, uint32_t in
     const Mesh *mesh = &assets->meshes[index];
     const SceneSheet *sheet = &scene->sheets[index];
     const SingeMaterialDef *material = &sheet->material.def;
-    Place place = {.start = param_most(material->temperature),
+    Place place = {.box = BOX_EMPTY,
+                   .start = param_most(material->temperature),
                    .ignition = param_least(material->ignition_temperature),
                    .capacity = 0.5 * param_least(material->grammage) * param_least(material->specific_heat),
                    .burns = burns(material)};
-    double diagonal = 0;
+    box_add_points(&place.box, mesh->positions, mesh->vertex_count);
+    place.diagonal = box_diagonal(&place.box);
 
-    // the box and the largest cell
-    for (int c = 0; c < 3; c++) {
-        place.low[c] = INFINITY;
-        place.high[c] = -INFINITY;
-        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-            place.low[c] = fmin(place.low[c], (double)mesh->positions[3 * (size_t)v + (size_t)c]);
-            place.high[c] = fmax(place.high[c], (double)mesh->positions[3 * (size_t)v + (size_t)c]);
-        }
-        diagonal += (place.high[c] - place.low[c]) * (place.high[c] - place.low[c]);
-    }
-
+    // the largest cell
     for (size_t k = 0; k < 4 * (size_t)mesh->cell_count; k++) {
         const float *a = mesh->positions + 3 * (size_t)mesh->cells[k];
         const float *b = mesh->positions + 3 * (size_t)mesh->cells[k % 4 == 3 ? k - 3 : k + 1];
@@ -115,7 +108,6 @@ static Place place_of(const Scene *scene, const SceneAssets *assets, uint32_t in
         place.cell = fmax(place.cell, sqrt(side));
     }
 
-    place.diagonal = sqrt(diagonal);
     add_motion(scene, index, &place);
     return place;
 }
@@ -141,8 +133,8 @@ static double path_distance(const SceneSource *source, const Place *place) {
                 for (int c = 0; c < 3; c++) {
                     const double p =
                         (double)a->position[c] + at[side] * ((double)b->position[c] - (double)a->position[c]);
-                    const double below = place->low[c] + fmin(place->fall[c], 0) - p;
-                    const double above = p - place->high[c] - fmax(place->fall[c], 0);
+                    const double below = place->box.low[c] + fmin(place->fall[c], 0) - p;
+                    const double above = p - place->box.high[c] - fmax(place->fall[c], 0);
                     const double out = fmax(fmax(below, above), 0);
                     sum += out * out;
                 }

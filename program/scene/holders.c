@@ -8,6 +8,7 @@
 #include "common/store.h"
 #include "scene/assets.h"
 #include "scene/scene.h"
+#include "scene/space.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -253,13 +254,11 @@ static bool find_grips(Holding *h, uint32_t index, uint32_t *parent) {
     mark_held(pin, mesh, parent);
     Side *sides = find_sides(mesh, parent, &count);
     bool good = sides;
-    Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        const Float3 p = vertex_at(mesh, v);
-        low = float3(fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z));
-        high = float3(fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z));
-    }
-    const float diagonal = float3_length(float3_sub(high, low));
+    Box box = BOX_EMPTY;
+    box_add_points(&box, mesh->positions, mesh->vertex_count);
+    const double *low = box.low, *high = box.high;
+    const float diagonal =
+        float3_length(float3((float)(high[0] - low[0]), (float)(high[1] - low[1]), (float)(high[2] - low[2])));
     for (uint32_t i = 0, next; i < count && good; i = next) {
         for (next = i + 1; next < count && sides[next].root == sides[i].root;) next++;
         PreviewHeld held = {.scale = 1};

@@ -7,6 +7,27 @@
 #include <stdbool.h>
 #include <string.h>
 
+void box_add(Box *box, const double low[3], const double high[3]) {
+    for (int i = 0; i < 3; i++) {
+        box->low[i] = fmin(box->low[i], low[i]);
+        box->high[i] = fmax(box->high[i], high[i]);
+    }
+}
+
+void box_add_points(Box *box, const float *points, uint32_t count) {
+    for (uint32_t k = 0; k < count; k++) {
+        const float *p = points + 3 * (size_t)k;
+        const double point[3] = {(double)p[0], (double)p[1], (double)p[2]};
+        box_add(box, point, point);
+    }
+}
+
+double box_diagonal(const Box *box) {
+    double sum = 0;
+    for (int i = 0; i < 3; i++) sum += (box->high[i] - box->low[i]) * (box->high[i] - box->low[i]);
+    return sqrt(sum);
+}
+
 void rotation_quaternion(const float angles[3], float quaternion[4]) {
     double s[3], c[3];
     for (int i = 0; i < 3; i++) {

@@ -1,8 +1,25 @@
-// Points nearest on triangles, and rotations, which in scenes are about the world's fixed x, then y, then z axis:
+// Boxes, points nearest on triangles, and rotations, which in scenes are about the world's fixed x, then y, then z axis:
 // R = Rz Ry Rx.
 #pragma once
 
 #include "common/float3.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/// A box around points, m.
+typedef struct Box {
+    double low[3], high[3];
+} Box;
+
+#define BOX_EMPTY ((Box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}})
+
+void box_add(Box *box, const double low[3], const double high[3]);
+
+/// Adds `count` points of three numbers.
+void box_add_points(Box *box, const float *points, uint32_t count);
+
+double box_diagonal(const Box *box);
 
 /// A row-major 3 × 3 matrix from angles in radians.
 void rotation_matrix(const float angles[3], double matrix[9]);

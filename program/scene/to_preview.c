@@ -82,10 +82,6 @@ static const double farthest = 1e4;
 /// Min distance of a camera from what it looks at, m near the origin.
 static const double nearest = 1e-5;
 
-typedef struct Box {
-    double low[3], high[3];
-} Box;
-
 /// Unit vectors from the box to the camera, and to the right and up in the picture. Flat sheets are seen from above,
 /// upright ones from the front (-y), a little from the side.
 static void camera_look(const Box *box, const float up[3], double back[3], double right[3], double top[3]) {
@@ -117,13 +113,9 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
     PreviewCamera *camera = &scene->preview.def.camera;
     if (scene->preview.camera_given) return;
 
-    Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    Box box = BOX_EMPTY;
     for (uint32_t s = 0; s < assets->sheet_count; s++)
-        for (size_t v = 0; v < 3 * (size_t)assets->meshes[s].vertex_count; v++) {
-            double x = (double)assets->meshes[s].positions[v];
-            box.low[v % 3] = fmin(box.low[v % 3], x);
-            box.high[v % 3] = fmax(box.high[v % 3], x);
-        }
+        box_add_points(&box, assets->meshes[s].positions, assets->meshes[s].vertex_count);
     double size = 0, longest = 0;
 
     for (int i = 0; i < 3; i++) {

@@ -1,5 +1,6 @@
 // Warns of valid settings that certainly have no effect, or not the intended one.
 #include "scene/messages.h"
+#include "scene/space.h"
 #include "scene/warnings.h"
 
 #include <math.h>
@@ -29,29 +30,17 @@ const char *source_heats_nothing(const Scene *scene, const SceneSource *source) 
     return scene->frames > 1 && (double)def->start >= end ? "it starts after the last frame" : NULL;
 }
 
-/// The sides of the box around a mesh, in m.
-static void box_sides(const Mesh *mesh, double sides[3]) {
-    for (size_t axis = 0; axis < 3; axis++) {
-        double low = INFINITY, high = -INFINITY;
-        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-            low = fmin(low, (double)mesh->positions[3 * (size_t)v + axis]);
-            high = fmax(high, (double)mesh->positions[3 * (size_t)v + axis]);
-        }
-        sides[axis] = high - low;
-    }
-}
-
 /// Files that most likely are in cm or mm.
 static void warn_of_units(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         const SceneSheet *sheet = &scene->sheets[i];
-        double sides[3];
+        Box box = BOX_EMPTY;
         if (!sheet->mesh.name || sheet->units != SCENE_UNITS_M) continue;
-        box_sides(&assets->meshes[i], sides);
-        if (fmax(fmax(sides[0], sides[1]), sides[2]) > 10)
+        box_add_points(&box, assets->meshes[i].positions, assets->meshes[i].vertex_count);
+        const double x = box.high[0] - box.low[0], y = box.high[1] - box.low[1], z = box.high[2] - box.low[2];
+        if (fmax(fmax(x, y), z) > 10)
             message_warn(log, scene->text, sheet->mesh.location,
-                         "the mesh is %.3g x %.3g x %.3g m large: are its numbers cm or mm? (units: cm)", sides[0],
-                         sides[1], sides[2]);
+                         "the mesh is %.3g x %.3g x %.3g m large: are its numbers cm or mm? (units: cm)", x, y, z);
     }
 }
 
@@ -112,14 +101,14 @@ void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *l
         const SceneProbe *probe = &scene->probes[i];
         const Mesh *mesh = &assets->meshes[probe->sheet_index];
         const double gap = assets->probes[i].distance;
-        double sides[3];
-        box_sides(mesh, sides);
+        Box box = BOX_EMPTY;
+        box_add_points(&box, mesh->positions, mesh->vertex_count);
 
         if (probe->kind == SCENE_PROBE_UV && gap > 1e-4)
             message_warn(log, scene->text, probe->location,
                          "the sheet has no uv [%.6g, %.6g]: the probe takes the nearest, %.3g away",
                          (double)probe->uv[0], (double)probe->uv[1], gap);
-        else if (probe->kind == SCENE_PROBE_POINT && gap > 0.1 * hypot(hypot(sides[0], sides[1]), sides[2]))
+        else if (probe->kind == SCENE_PROBE_POINT && gap > 0.1 * box_diagonal(&box))
             message_warn(
                 log, scene->text, probe->location,
                 "the probe's point [%.6g, %.6g, %.6g] m misses the sheet: it takes the nearest point, %.3g m away",
