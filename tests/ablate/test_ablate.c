@@ -169,11 +169,10 @@ TEST(burnt_corners_do_not_swing) {
     SingeSim *sim = test_sim(&def, test_grid(4, 1, 2.5e-3f, 2.5e-3f), NULL);
     const uint32_t held[] = {0, 1, 5, 6}, burnt[] = {3, 4, 9};
     SingePinDef pin = singe_default_pin();
-    SingePinId id;
     assert_int_equal(singe_sim_sheets(sim, &pin.sheet, 1), 1);
     pin.vertices = held;
     pin.vertex_count = 4;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_add_pin(sim, &pin);
     test_steps(sim, 1);
     const Shell *shell = &sim->shell;
     for (int k = 0; k < 3; k++) sim->state.burn.mass[burnt[k]] = 0.1f;

@@ -114,33 +114,29 @@ static void add_soup(SingeSim *sim, uint32_t count) {
         }
     }
     SingeSheetDef def = test_sheet(&mesh);
-    SingeSheetId id;
-    test_ok(sim, singe_sim_add_sheet(sim, &def, &id));
+    test_add_sheet(sim, &def);
     test_mesh_free(&mesh);
 }
 
 static SingeSim *crowd(const Crowd *crowd, int threads, const SingeAllocator *allocator) {
     SingeSimDef def = singe_default_sim();
-    SingeSim *sim;
     def.thread_count = threads, def.contact.enabled = true;
     def.time_step = 1.0f / 96, def.solver.substeps = 3; // coarse: sheets press on each other
     if (allocator) def.allocator = *allocator;
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_create(&def);
     for (int s = 0; s < crowd->sheets && !crowd->soup; s++) {
         TestMesh mesh = test_grid((uint32_t)crowd->cells, (uint32_t)crowd->cells, 5e-3f, 5e-3f);
         test_mesh_move(&mesh, 1e-3f * sinf((float)s), 1e-3f * cosf((float)(3 * s)), 1e-3f + crowd->apart * (float)s);
         SingeSheetDef sheet = test_sheet(&mesh);
-        SingeSheetId id;
-        test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+        test_add_sheet(sim, &sheet);
         test_mesh_free(&mesh);
     }
     if (crowd->soup) add_soup(sim, (uint32_t)(crowd->cells * crowd->cells));
     test_ok(sim, singe_sim_commit(sim));
     SingeColliderDef ground = singe_default_collider();
     SingePoseKey key = test_key(0, 0, 0, 0);
-    SingeColliderId id;
     ground.path_count = 1, ground.path = &key;
-    test_ok(sim, singe_sim_add_collider(sim, &ground, &id));
+    test_add_collider(sim, &ground);
     return sim;
 }
 
@@ -275,11 +271,10 @@ static SingeSim *flag(uint32_t n, float wind, int threads) {
     SingeSim *sim = test_sim(&def, test_grid(n, n, 1.7e-3f, 1.7e-3f), NULL);
     const uint32_t corners[] = {0, n};
     SingePinDef pin = singe_default_pin();
-    SingePinId id;
     assert_int_equal(singe_sim_sheets(sim, &pin.sheet, 1), 1);
     pin.vertices = corners;
     pin.vertex_count = 2;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_add_pin(sim, &pin);
     return sim;
 }
 

@@ -277,8 +277,7 @@ static SingeSim *hung(const SingeSimDef *def, uint32_t cells, const SingeMateria
         SingePinDef pin = singe_default_pin();
         pin.sheet = the_sheet, pin.vertex_count = 1, pin.vertices = &corners[k];
         if (k) pin.path_count = 2, pin.path = keys;
-        SingePinId id;
-        test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+        test_add_pin(sim, &pin);
     }
 
     return sim;
@@ -371,8 +370,7 @@ TEST(a_removed_pin_lets_go) {
     const uint32_t corner = 0;
     SingePinDef pin = singe_default_pin();
     pin.sheet = the_sheet, pin.vertex_count = 1, pin.vertices = &corner;
-    SingePinId id;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    SingePinId id = test_add_pin(sim, &pin);
     test_steps(sim, 200);
     double momentum[3] = {0};
     test_ok(sim, singe_sim_remove_pin(sim, id));

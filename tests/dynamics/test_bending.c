@@ -22,8 +22,7 @@ static void clamp(SingeSim *sim, float cell) {
             p[0] = x, p[1] = y, p[2] = 0;
         }
     pin.sheet = (SingeSheetId){0, 1}, pin.points = points, pin.radius = 0.3f * cell;
-    SingePinId id;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_add_pin(sim, &pin);
 }
 
 /// m, of the middle of the free end after two seconds, of a strip of stiffness D in N m whose shear gives 1/S in m/N.
@@ -117,8 +116,7 @@ static double strip_stiffness(bool diagonal, bool isotropic) {
         memcpy(points + 3 * pin.point_count++, view.rest_position[i], 3 * sizeof(float));
     }
     pin.sheet = (SingeSheetId){0, 1}, pin.points = points, pin.radius = 1e-5f;
-    SingePinId id;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_add_pin(sim, &pin);
     test_steps(sim, 480);
 
     // the tip's sag, of a plate that begins to bend half a row of cells within the clamp

@@ -330,7 +330,6 @@ static SingeSim *folding(int threads, bool creases, SingePinId *right) {
     SingePinDef pin = singe_default_pin();
     SingePoseKey path[9];
     uint32_t vertices[2][6];
-    SingePinId left;
     for (uint32_t j = 0; j < 6; j++) vertices[0][j] = 21 * j, vertices[1][j] = 21 * j + 20;
     for (int k = 0; k < 9; k++) {
         double turn = pi * k / 8;
@@ -339,7 +338,7 @@ static SingeSim *folding(int threads, bool creases, SingePinId *right) {
     }
 
     pin.sheet = (SingeSheetId){0, 1}, pin.vertex_count = 6, pin.vertices = vertices[0];
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &left));
+    test_add_pin(sim, &pin);
     pin.vertices = vertices[1], pin.path_count = 9, pin.path = path;
     test_ok(sim, singe_sim_add_pin(sim, &pin, right));
     return sim;

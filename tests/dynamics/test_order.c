@@ -160,12 +160,11 @@ TEST(a_sheet_pressed_on_the_ground_stays_ordered) {
         const SingePoseKey floor = test_key(0, 0, 0, 0);
         const SingePoseKey displacement[] = {test_key(0, 0.06f, 0.06f, 0.08f), test_key(0.3f, 0.06f, 0.06f, 0.032f),
                                              test_key(0.5f, 0.10f, 0.07f, 0.032f)};
-        SingeColliderId id;
         ground.path_count = 1, ground.path = &floor;
         box.kind = SINGE_COLLIDER_BOX, box.friction = 0.8f, box.path_count = 3, box.path = displacement;
         box.half_size[0] = box.half_size[1] = 0.05f, box.half_size[2] = 0.03f;
-        test_ok(sim, singe_sim_add_collider(sim, &ground, &id));
-        test_ok(sim, singe_sim_add_collider(sim, &box, &id));
+        test_add_collider(sim, &ground);
+        test_add_collider(sim, &box);
         assert_int_equal(step_and_count(sim, 140), 0);
         singe_sim_destroy(sim);
     }
@@ -185,10 +184,9 @@ TEST(a_shrinking_sheet_stays_ordered) {
     def.time_step = 1.0f / 240;
     SingeSim *sim = test_sim(&def, mesh, &material);
     SingePinDef pin = singe_default_pin();
-    SingePinId id;
     const float corner[3] = {0, 0, 0.3f};
     pin.sheet = (SingeSheetId){0, 1}, pin.point_count = 1, pin.points = corner, pin.radius = 0.02f;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_add_pin(sim, &pin);
     assert_int_equal(step_and_count(sim, 180), 0);
     SingeView view = singe_sim_view(sim); // yellow, the first of the middle's cells
     assert_true(view.spring_length[SINGE_YELLOW][view.spring_count[SINGE_YELLOW] / 2] < 0.6f * 0.01414f);

@@ -32,15 +32,13 @@ static double area_of(const SingeMeshView *view) {
 static void burn(const SingeMesh *mesh, uint32_t held) {
     SingeSimDef def = singe_default_sim();
     SingeSheetDef sheet = singe_default_sheet();
-    SingeSim *sim;
     SingePinDef pin = singe_default_pin();
-    SingePinId id;
 
     singe_mesh_fill_sheet(mesh, &sheet);
     pin.vertex_count = 1, pin.vertices = &held;
-    test_ok(NULL, singe_sim_create(&def, &sim, NULL));
+    SingeSim *sim = test_create(&def);
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &pin.sheet));
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_add_pin(sim, &pin);
     test_ok(sim, singe_sim_commit(sim));
     test_steps(sim, 10);
     assert_true(singe_sim_view(sim).particle_flags[held] & SINGE_PINNED);

@@ -219,9 +219,8 @@ static SingeSim *swing(SingeSimDef *def, uint32_t cells, float side) {
     SingeSim *sim = test_sim(def, mesh, &material);
     SingePinDef pin = singe_default_pin();
     const uint32_t corners[] = {0, cells};
-    SingePinId id;
     pin.sheet = (SingeSheetId){0, 1}, pin.vertex_count = 2, pin.vertices = corners;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_add_pin(sim, &pin);
     return sim;
 }
 
@@ -364,10 +363,9 @@ TEST(contact_is_inside_projections) {
     SingeSim *sim = swing(&def, 8, 0.2f);
     SingeColliderDef plane = singe_default_collider();
     SingePoseKey position = test_key(0, 0, 0, -0.05f);
-    SingeColliderId id;
 
     plane.path_count = 1, plane.path = &position;
-    test_ok(sim, singe_sim_add_collider(sim, &plane, &id));
+    test_add_collider(sim, &plane);
     for (int step = 0; step < 150; step++) {
         test_steps(sim, 1);
         SingeView view = singe_sim_view(sim);

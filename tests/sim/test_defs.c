@@ -155,11 +155,10 @@ TEST(bad_colliders_and_wind_are_refused) {
 
 /// Fields beyond an older header's struct_size hold rubbish that must not be read.
 TEST(rubbish_beyond_an_older_def_is_not_read) {
-    SingeSim *sim;
     SingeSimDef def = singe_default_sim();
     def.struct_size = OLDER(SingeSimDef, heat_tolerance);
     def.heat_tolerance = NAN, def.wind.struct_size = 0, def.solver.substeps = -1;
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_create(&def);
     TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     sheet.struct_size = OLDER(SingeSheetDef, drop_pieces_below);
@@ -173,18 +172,16 @@ TEST(rubbish_beyond_an_older_def_is_not_read) {
     test_ok(sim, singe_sim_commit(sim));
     SingePoseKey key = test_key(0, 0, 0, -1);
     SingeSourceDef source = singe_default_source();
-    SingeSourceId source_id;
     source.path_count = 1, source.path = &key;
     source.struct_size = OLDER(SingeSourceDef, texture);
     source.texture.width = -1, source.callback = (SingeFluxFn *)1;
-    test_ok(sim, singe_sim_add_source(sim, &source, &source_id));
+    test_add_source(sim, &source);
     SingePinDef pin = singe_default_pin();
-    SingePinId pin_id;
     const uint32_t vertex = 0;
     pin.sheet = sheet_id, pin.vertex_count = 1, pin.vertices = &vertex;
     pin.struct_size = OLDER(SingePinDef, path_count);
     pin.path_count = 99, pin.path = NULL;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &pin_id));
+    test_add_pin(sim, &pin);
     SingeWindDef wind = singe_default_wind();
     wind.struct_size = OLDER(SingeWindDef, gust_time);
     wind.gust = 1, wind.gust_time = NAN;
@@ -218,8 +215,7 @@ TEST(a_def_inside_may_be_older) {
     SingeSheetDef sheet = test_sheet(&mesh);
     SingeSim *both[2] = {old, new};
     for (int i = 0; i < 2; i++) {
-        SingeSheetId id;
-        test_ok(both[i], singe_sim_add_sheet(both[i], &sheet, &id));
+        test_add_sheet(both[i], &sheet);
         test_ok(both[i], singe_sim_commit(both[i]));
         test_steps(both[i], 5);
     }

@@ -29,8 +29,7 @@ TEST(the_order_does_not_matter) {
 /// An object that is invalid fails at the commit as it would after it, and the commit can be repeated.
 TEST(invalid_objects_fail_at_the_commit) {
     SingeSimDef def = singe_default_sim();
-    SingeSim *sim;
-    test_ok(NULL, singe_sim_create(&def, &sim, NULL));
+    SingeSim *sim = test_create(&def);
     TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     sheet.uv = NULL;
@@ -47,8 +46,7 @@ TEST(invalid_objects_fail_at_the_commit) {
     const float grey[4] = {0, 1, 0.5f, 1};
     picture.kind = SINGE_SOURCE_TEXTURE;
     picture.texture = (SingeTexture){2, 2, grey};
-    SingeSourceId picture_id;
-    test_ok(sim, singe_sim_add_source(sim, &picture, &picture_id));
+    SingeSourceId picture_id = test_add_source(sim, &picture);
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_commit(sim)); // a picture without uv
     assert_string_equal(singe_sim_error(sim)->stage, "source");
     test_ok(sim, singe_sim_remove_source(sim, picture_id));
@@ -66,8 +64,7 @@ TEST(objects_removed_before_the_commit_leave_nothing) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
-    SingeSim *sim;
-    test_ok(NULL, singe_sim_create(&def, &sim, NULL));
+    SingeSim *sim = test_create(&def);
     TestMesh mesh = test_grid(3, 3, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     SingePinDef pin = singe_default_pin();
@@ -107,10 +104,8 @@ TEST(without_a_path_it_stands_still) {
             memcpy(box.rotation, under.rotation, sizeof box.rotation);
         }
 
-        SingeSourceId source;
-        SingeColliderId collider;
-        test_ok(sims[k], singe_sim_add_source(sims[k], &spot, &source));
-        test_ok(sims[k], singe_sim_add_collider(sims[k], &box, &collider));
+        test_add_source(sims[k], &spot);
+        test_add_collider(sims[k], &box);
         test_steps(sims[k], 60);
     }
 
@@ -169,15 +164,12 @@ TEST(user_data_is_the_callers) {
     SingeColliderDef collider = singe_default_collider();
     SingePinDef pin = singe_default_pin();
     const uint32_t vertex = 0;
-    SingeSourceId source_id;
-    SingeColliderId collider_id;
-    SingePinId pin_id;
     sheet.user_data = &ours[0], source.user_data = &ours[1], collider.user_data = &ours[2], pin.user_data = &ours[3];
     pin.vertex_count = 1, pin.vertices = &vertex;
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &pin.sheet));
-    test_ok(sim, singe_sim_add_source(sim, &source, &source_id));
-    test_ok(sim, singe_sim_add_collider(sim, &collider, &collider_id));
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &pin_id));
+    SingeSourceId source_id = test_add_source(sim, &source);
+    SingeColliderId collider_id = test_add_collider(sim, &collider);
+    SingePinId pin_id = test_add_pin(sim, &pin);
     test_ok(sim, singe_sim_commit(sim));
     test_ok(sim, singe_sim_set_source_user_data(sim, source_id, &ours[4]));
     test_ok(sim, singe_sim_clone(sim, &copy));

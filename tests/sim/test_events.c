@@ -103,8 +103,7 @@ TEST(a_cut_makes_one_piece) {
     float line = 0.05f;
     SingeSourceDef source = singe_default_source();
     source.kind = SINGE_SOURCE_CALLBACK, source.callback = hot_line, source.callback_context = &line;
-    SingeSourceId id;
-    test_ok(sim, singe_sim_add_source(sim, &source, &id));
+    test_add_source(sim, &source);
     Tally seen = {0};
     for (int i = 0; i < 400; i++) {
         test_ok(sim, singe_sim_step(sim));

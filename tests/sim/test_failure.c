@@ -94,8 +94,7 @@ static bool ask(void *context) {
 static SingeSim *crowd_make(Asked *asked, int threads) {
     SingeSimDef def = scene_def();
     def.contact.enabled = true, def.thread_count = threads, def.cancel = (SingeCancel){ask, asked};
-    SingeSim *sim;
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_create(&def);
     for (int s = 0; s < 4; s++) {
         TestMesh mesh = test_grid(9, 9, 0.007f, 0.007f);
         test_mesh_move(&mesh, -0.03f, -0.03f, 0.0015f * (float)(s / 2 + 10));
@@ -104,14 +103,12 @@ static SingeSim *crowd_make(Asked *asked, int threads) {
         SingeSheetDef sheet = test_sheet(&mesh);
         sheet.velocity[2] = s < 2 ? 3 : -3;
         sheet.material.temperature = singe_param(s == 0 ? 800 : 300);
-        SingeSheetId id;
-        test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+        test_add_sheet(sim, &sheet);
         test_mesh_free(&mesh);
     }
     SingeColliderDef ball = singe_default_collider();
-    SingeColliderId id;
     ball.kind = SINGE_COLLIDER_SPHERE, ball.radius = 0.01f, ball.conductance = 100, ball.temperature = 700;
-    test_ok(sim, singe_sim_add_collider(sim, &ball, &id));
+    test_add_collider(sim, &ball);
     test_ok(sim, singe_sim_commit(sim));
     return sim;
 }
@@ -269,8 +266,7 @@ TEST(failed_calls_can_be_repeated) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
-    SingeSim *sim;
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_create(&def);
     TestMesh mesh = test_grid(5, 5, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     SingeSheetId sheet_id;

@@ -131,8 +131,7 @@ static void sweep(double speed, bool at_once, double *behind, double *ahead) {
 
     SingeSim *sim = test_sim(&def, mesh, NULL);
     SingeColliderDef collider = block_def(&block, SINGE_COLLIDER_DEFORMING);
-    SingeColliderId id;
-    test_ok(sim, singe_sim_add_collider(sim, &collider, &id));
+    SingeColliderId id = test_add_collider(sim, &collider);
     const double end = 0.2 / speed; // to x = 0.1
     float to[6 * 36][3];
     shifted(&block, 0.2f, 0, 0, to);
@@ -168,8 +167,7 @@ TEST(a_swelling_block_lifts) {
     SingeSimDef def = quiet();
     SingeSim *sim = sheet_at(&def, TOP + 0.002f);
     SingeColliderDef collider = block_def(&block, SINGE_COLLIDER_DEFORMING);
-    SingeColliderId id;
-    test_ok(sim, singe_sim_add_collider(sim, &collider, &id));
+    SingeColliderId id = test_add_collider(sim, &collider);
     test_steps(sim, 120);
     float to[6 * 36][3];
     shifted(&block, 0, 0, 0, to);
@@ -212,14 +210,12 @@ static void round_trip(SingeSim *sim, SingePinId pin, SingeColliderId body, cons
 static SingeSim *cape(const SingeSimDef *def, SingePinId *pin, SingeColliderId *body, Block *block) {
     const float half[3] = {0.03f, 0.03f, 0.08f}, centre[3] = {0, 0, 0.05f};
     block_make(block, half, centre);
-    SingeSim *sim;
-    SingeSheetId sheet;
-    test_ok(NULL, singe_sim_create(def, &sim, NULL));
+    SingeSim *sim = test_create(def);
     TestMesh mesh = test_grid(16, 16, 0.1f / 16, 0.1f / 16);
     test_mesh_move(&mesh, -0.05f, 0, 0.2f);
     SingeSheetDef sheet_def = test_sheet(&mesh);
     sheet_def.material = scene_quick_material();
-    test_ok(sim, singe_sim_add_sheet(sim, &sheet_def, &sheet));
+    SingeSheetId sheet = test_add_sheet(sim, &sheet_def);
     test_mesh_free(&mesh);
     const uint32_t corners[2] = {0, 16};
     SingePinDef pin_def = singe_default_pin();

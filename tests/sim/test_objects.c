@@ -36,8 +36,7 @@ TEST(handles_go_stale) {
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_source(sim, scene.ball));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_move_source(sim, scene.ball, 1, &key));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_source_callback(sim, scene.ball, scene_flux, NULL));
-    SingeSourceId again;
-    test_ok(sim, singe_sim_add_source(sim, &source, &again));
+    SingeSourceId again = test_add_source(sim, &source);
     assert_int_equal(again.index, scene.ball.index); // the slot is used again
     assert_int_not_equal(again.generation, scene.ball.generation);
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_source(sim, scene.ball));
@@ -46,15 +45,13 @@ TEST(handles_go_stale) {
     test_ok(sim, singe_sim_remove_collider(sim, scene.sphere));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_collider(sim, scene.sphere));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_move_collider(sim, scene.sphere, 1, &key));
-    SingeColliderId other;
-    test_ok(sim, singe_sim_add_collider(sim, &collider, &other));
+    test_add_collider(sim, &collider);
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_collider(sim, scene.sphere));
 
     test_ok(sim, singe_sim_remove_pin(sim, scene.points));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_pin(sim, scene.points));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_move_pin(sim, scene.points, 1, &key));
-    SingePinId held;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &held));
+    test_add_pin(sim, &pin);
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_pin(sim, scene.points));
 
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_source(sim, (SingeSourceId){0, 0}));
@@ -105,11 +102,10 @@ TEST(sources_come_and_go) {
     test_steps(sim, 2);
     assert_true(heat_in(sim) == before);
     SingeSourceDef late = singe_default_source();
-    SingeSourceId id;
     late.path_count = 1, late.path = &back;
     late.start = (float)singe_sim_view(sim).time + 1.5f * def.time_step;
     late.end = late.start + 2 * def.time_step;
-    test_ok(sim, singe_sim_add_source(sim, &late, &id));
+    test_add_source(sim, &late);
     for (int i = 0; i < 6; i++) {
         before = heat_in(sim);
         test_ok(sim, singe_sim_step(sim));
@@ -126,9 +122,8 @@ TEST(pins_hold_move_and_let_go) {
     assert_true(view.position[0][2] < 0); // falls
     SingePinDef def = singe_default_pin();
     const float corner[3] = {0, 0, 0};
-    SingePinId pin;
     def.sheet = (SingeSheetId){0, 1}, def.point_count = 1, def.points = corner, def.radius = 0.0105f;
-    test_ok(sim, singe_sim_add_pin(sim, &def, &pin));
+    SingePinId pin = test_add_pin(sim, &def);
     float at[3][3];
     const uint32_t held[3] = {0, 1, 7};
     for (int k = 0; k < 3; k++) memcpy(at[k], view.position[held[k]], 12);
@@ -156,11 +151,10 @@ TEST(pins_hold_move_and_let_go) {
     }
 
     // a second pin keeps what the first one lets go
-    SingePinId second;
     const uint32_t vertex = 0;
     def = singe_default_pin();
     def.sheet = (SingeSheetId){0, 1}, def.vertex_count = 1, def.vertices = &vertex;
-    test_ok(sim, singe_sim_add_pin(sim, &def, &second));
+    SingePinId second = test_add_pin(sim, &def);
     test_ok(sim, singe_sim_remove_pin(sim, pin));
     assert_true(view.particle_flags[0] & SINGE_PINNED);
     assert_false(view.particle_flags[1] & SINGE_PINNED);
@@ -225,11 +219,10 @@ TEST(a_turning_pin_turns) {
     const uint32_t vertices[] = {0, 4};
     const float s = sqrtf(0.5f);
     SingePoseKey path[2] = {test_key(0, 0, 0, 0), {0.2f, {0, 0, 0}, {0, 0, s, s}}};
-    SingePinId id;
 
     pin.sheet = (SingeSheetId){0, 1}, pin.vertex_count = 2, pin.vertices = vertices, pin.path_count = 2,
     pin.path = path;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_add_pin(sim, &pin);
     test_steps(sim, 120);
     SingeView view = singe_sim_view(sim);
     assert_true(fabsf(view.position[4][0]) < 1e-6f && fabsf(view.position[4][1] - 0.04f) < 1e-6f);
@@ -244,9 +237,8 @@ TEST(unused_vertices_are_not_pinned) {
     SingeSim *sim = test_sim(NULL, mesh, NULL);
     const float point[3] = {0.03f, 0.03f, 0};
     SingePinDef pin = singe_default_pin();
-    SingePinId id;
     pin.sheet = (SingeSheetId){0, 1}, pin.point_count = 1, pin.points = point, pin.radius = 0;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_add_pin(sim, &pin);
     assert_true(singe_sim_view(sim).particle_flags[8] & SINGE_PINNED);
     assert_int_equal(singe_sim_view(sim).particle_flags[9], 0);
     singe_sim_destroy(sim);
@@ -276,9 +268,8 @@ TEST(rings_can_be_pinned) {
         uint32_t vertices[8];
         for (uint32_t k = 0; k < 8; k++) vertices[k] = first < 8 && k > 1 ? (first + 1) % 8 : (first + k) % 8;
         SingePinDef pin = singe_default_pin();
-        SingePinId id;
         pin.sheet = (SingeSheetId){0, 1}, pin.vertex_count = 8, pin.vertices = vertices;
-        test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+        test_add_pin(sim, &pin);
         for (int i = 0; i < 20; i++)
             if (singe_sim_step(sim)) fail_msg("vertices from %u on pinned: %s", first, singe_sim_error(sim)->message);
         singe_sim_destroy(sim);
@@ -289,9 +280,8 @@ TEST(colliders_catch_move_and_go) {
     SingeSim *sim = test_sim(NULL, test_grid(8, 8, 0.01f, 0.01f), NULL);
     SingePoseKey low = test_key(0, 0, 0, -0.01f);
     SingeColliderDef def = singe_default_collider();
-    SingeColliderId plane;
     def.path_count = 1, def.path = &low;
-    test_ok(sim, singe_sim_add_collider(sim, &def, &plane));
+    SingeColliderId plane = test_add_collider(sim, &def);
     test_steps(sim, 240);
     SingeView view = singe_sim_view(sim);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_true(view.position[i][2] > -0.01f);
@@ -317,9 +307,8 @@ TEST(hot_colliders_heat) {
     SingeSim *sim = test_sim(&def, test_grid(4, 4, 0.01f, 0.01f), NULL);
     SingePoseKey key = test_key(0, 0, 0, -0.001f);
     SingeColliderDef plane = singe_default_collider();
-    SingeColliderId id;
     plane.path_count = 1, plane.path = &key, plane.conductance = 100, plane.temperature = 350;
-    test_ok(sim, singe_sim_add_collider(sim, &plane, &id));
+    test_add_collider(sim, &plane);
     test_steps(sim, 60);
     assert_true(heat_in(sim) > 0);
     assert_true(singe_sim_stats(sim).temperature_max > 294 && singe_sim_stats(sim).temperature_max < 350);
@@ -353,9 +342,8 @@ TEST(callbacks_can_be_exchanged) {
     SingeSimDef def = weightless();
     SingeSim *sim = test_sim(&def, test_grid(4, 4, 0.01f, 0.01f), NULL);
     SingeSourceDef source = singe_default_source();
-    SingeSourceId id;
     source.kind = SINGE_SOURCE_CALLBACK; // none yet
-    test_ok(sim, singe_sim_add_source(sim, &source, &id));
+    SingeSourceId id = test_add_source(sim, &source);
     test_steps(sim, 2);
     assert_true(heat_in(sim) == 0);
     float flux = 1e4f;

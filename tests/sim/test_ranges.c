@@ -109,8 +109,7 @@ static int try_table(SingeSim *sim, const DefTable *table, const void *standard,
 
 TEST(ranges_match_the_tables) {
     SingeSimDef def = singe_default_sim();
-    SingeSim *sim;
-    test_ok(NULL, singe_sim_create(&def, &sim, NULL));
+    SingeSim *sim = test_create(&def);
     int tried = try_table(sim, &sim_table, &def, sizeof def, try_sim);
     tried += try_table(sim, &solver_table, &def.solver, sizeof def.solver, try_solver);
     tried += try_table(sim, &gas_table, &def.gas, sizeof def.gas, try_gas);

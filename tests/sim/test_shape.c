@@ -10,16 +10,14 @@ static SingeSim *sheet(const uint32_t cells[2], const float size[2]) {
     SingeGridDef grid = singe_default_grid();
     SingeSimDef def = singe_default_sim();
     SingeMesh *mesh;
-    SingeSim *sim;
 
     def.thread_count = 1, def.contact.enabled = true;
     for (int k = 0; k < 2; k++) grid.cells[k] = cells[k], grid.size[k] = size[k];
     assert_int_equal(singe_mesh_create_grid(&grid, &mesh, NULL), SINGE_OK);
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_create(&def);
     SingeSheetDef sheet = singe_default_sheet();
-    SingeSheetId id;
     singe_mesh_fill_sheet(mesh, &sheet);
-    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+    test_add_sheet(sim, &sheet);
     test_ok(sim, singe_sim_commit(sim));
     singe_mesh_destroy(mesh);
     test_spot(sim, 0, 0, 0, 0.05f, 1200, 150);

@@ -63,9 +63,8 @@ TEST(energies_are_accounted_for) {
     float points[3 * 10] = {0};
     for (int k = 0; k < 10; k++) points[3 * k] = k < 5 ? 0 : 0.0025f, points[3 * k + 1] = 0.0025f * (float)(k % 5);
     SingePinDef pin = singe_default_pin();
-    SingePinId id;
     pin.sheet = (SingeSheetId){0, 1}, pin.points = points, pin.point_count = 10, pin.radius = 1e-4f;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_add_pin(sim, &pin);
     double passed = 0, elastic = 0, lost = 0;
     for (int i = 0; i < 160; i++) {
         test_steps(sim, 1);
@@ -96,15 +95,13 @@ TEST(a_hot_sheet_does_not_blur_another) {
         heavy.temperature =
             singe_param_field(5000, 10000, &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.02f, 2, 4}});
 
-        SingeSim *sim;
-        SingeSheetId id;
-        assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+        SingeSim *sim = test_create(&def);
         for (int sheet = 0; sheet < (run < PACES ? 1 : 2); sheet++) {
             TestMesh mesh = test_grid(CELLS, CELLS, 0.0025f, 0.0025f);
             test_mesh_move(&mesh, 0, 0, (float)sheet);
             SingeSheetDef added = test_sheet(&mesh);
             added.material = sheet ? heavy : light;
-            test_ok(sim, singe_sim_add_sheet(sim, &added, &id));
+            test_add_sheet(sim, &added);
             test_mesh_free(&mesh);
         }
         test_ok(sim, singe_sim_commit(sim));

@@ -23,11 +23,10 @@ static SingeSim *lit(float moisture, bool burns) {
     if (!burns) material.mass_rate = singe_param(0);
     SingeSim *sim = test_sim(&def, test_grid(4, 4, 5e-3f, 5e-3f), &material);
     SingeSourceDef source = singe_default_source();
-    SingeSourceId id;
     source.kind = SINGE_SOURCE_TEXTURE;
     source.texture = (SingeTexture){1, 1, &WHITE};
     source.flux = (float)FLUX;
-    test_ok(sim, singe_sim_add_source(sim, &source, &id));
+    test_add_source(sim, &source);
     return sim;
 }
 
@@ -122,7 +121,6 @@ static SingeSim *put_out(float speed, float blow_out, bool smothers, float condu
     SingeSourceDef jet = singe_default_source();
     SingeColliderDef plate = singe_default_collider();
     SingeSourceId id, heat;
-    SingeColliderId collider;
     const SingeValueKey strength[] = {{170 / 480.0f, 0}, {171 / 480.0f, 1}};
     singe_sim_sources(sim, &heat, 1);
     jet.kind = SINGE_SOURCE_JET;
@@ -139,7 +137,7 @@ static SingeSim *put_out(float speed, float blow_out, bool smothers, float condu
     plate.position[2] = -1.5e-3f;
     plate.smothers = smothers;
     plate.conductance = conductance;
-    if (smothers || conductance > 0) test_ok(sim, singe_sim_add_collider(sim, &plate, &collider));
+    if (smothers || conductance > 0) test_add_collider(sim, &plate);
     test_ok(sim, singe_sim_remove_source(sim, heat));
     test_steps(sim, 160);
     assert_true(singe_sim_stats(sim).ledgers_close);
@@ -183,9 +181,8 @@ static SingeSim *covered_by(float cover_rate, float height, float distance, bool
     def.thread_count = threads;
     def.gravity[2] = 0;
     def.solver.substeps = 1;
-    SingeSim *sim;
     SingeSheetId burning, cover;
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_create(&def);
     TestMesh low = test_grid(8, 8, 2.5e-3f, 2.5e-3f), high = test_grid(4, 4, 5e-3f, 5e-3f);
     test_mesh_move(&high, 0, 0, height);
     SingeSheetDef sheet = test_sheet(&low), above = test_sheet(&high);
@@ -198,11 +195,10 @@ static SingeSim *covered_by(float cover_rate, float height, float distance, bool
     test_ok(sim, singe_sim_commit(sim));
 
     SingeSourceDef source = singe_default_source();
-    SingeSourceId heat;
     source.kind = SINGE_SOURCE_TEXTURE;
     source.texture = (SingeTexture){1, 1, &WHITE};
     source.flux = (float)FLUX;
-    test_ok(sim, singe_sim_add_source(sim, &source, &heat));
+    SingeSourceId heat = test_add_source(sim, &source);
     test_steps(sim, 200);
     test_ok(sim, singe_sim_remove_source(sim, heat));
     SingeMaterialDef *keeps = from_above ? &above.material : &sheet.material;
@@ -276,9 +272,7 @@ static double flames_above(float distance) {
     def.gas.enabled = true;
     def.gas.cell_size = 8e-3f;
     def.gas.height = 0.05f;
-    SingeSim *sim;
-    SingeSheetId id;
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_create(&def);
     TestMesh low = test_grid(8, 8, 5e-3f, 5e-3f), high = test_grid(10, 10, 8e-3f, 8e-3f);
     test_mesh_move(&high, -20e-3f, -20e-3f, 3e-3f);
     SingeSheetDef sheet = test_sheet(&low), blanket = test_sheet(&high);
@@ -288,8 +282,8 @@ static double flames_above(float distance) {
     sheet.material.temperature = singe_param(800); // gives off gas whatever its flame does
     blanket.material.mass_rate = singe_param(0);
     blanket.material.smother_distance = singe_param(distance);
-    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
-    test_ok(sim, singe_sim_add_sheet(sim, &blanket, &id));
+    test_add_sheet(sim, &sheet);
+    test_add_sheet(sim, &blanket);
     test_ok(sim, singe_sim_commit(sim));
 
     const double before = singe_sim_stats(sim).mass;

@@ -31,17 +31,31 @@ SingeSheetDef test_sheet(const TestMesh *mesh) {
     return def;
 }
 
-SingeSim *test_sim(const SingeSimDef *def, TestMesh mesh, const SingeMaterialDef *material) {
-    SingeSimDef standard = singe_default_sim();
+SingeSim *test_create(const SingeSimDef *def) {
     SingeSim *sim;
     SingeError error = {0};
-    SingeResult result = singe_sim_create(def ? def : &standard, &sim, &error);
+    if (singe_sim_create(def, &sim, &error)) fail_msg("create: %s", error.message);
+    return sim;
+}
 
-    if (result) fail_msg("create: %s", error.message);
+#define ADD(Kind, kind)                                                           \
+    Singe##Kind##Id test_add_##kind(SingeSim *sim, const Singe##Kind##Def *def) { \
+        Singe##Kind##Id id;                                                       \
+        test_ok(sim, singe_sim_add_##kind(sim, def, &id));                        \
+        return id;                                                                \
+    }
+
+ADD(Sheet, sheet)
+ADD(Source, source)
+ADD(Collider, collider)
+ADD(Pin, pin)
+
+SingeSim *test_sim(const SingeSimDef *def, TestMesh mesh, const SingeMaterialDef *material) {
+    SingeSimDef standard = singe_default_sim();
+    SingeSim *sim = test_create(def ? def : &standard);
     SingeSheetDef sheet = test_sheet(&mesh);
     if (material) sheet.material = *material;
-    SingeSheetId id;
-    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+    test_add_sheet(sim, &sheet);
     test_ok(sim, singe_sim_commit(sim));
     test_mesh_free(&mesh);
     return sim;
@@ -63,9 +77,7 @@ SingeSourceId test_spot(SingeSim *sim, float x, float y, float z, float radius, 
     def.falloff = radius;
     def.temperature = temperature;
     def.conductance = conductance;
-    SingeSourceId id;
-    test_ok(sim, singe_sim_add_source(sim, &def, &id));
-    return id;
+    return test_add_source(sim, &def);
 }
 
 static void assert_same_stats(const SingeStats *a, const SingeStats *b) {

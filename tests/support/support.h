@@ -48,6 +48,12 @@ SingeSheetDef test_sheet(const TestMesh *mesh);
 /// A committed simulation of one sheet; NULL stands for the default Def or material. Frees the mesh.
 SingeSim *test_sim(const SingeSimDef *def, TestMesh mesh, const SingeMaterialDef *material);
 
+/// Calls that must succeed.
+SingeSim *test_create(const SingeSimDef *def);
+SingeSheetId test_add_sheet(SingeSim *sim, const SingeSheetDef *def);
+SingeSourceId test_add_source(SingeSim *sim, const SingeSourceDef *def);
+SingeColliderId test_add_collider(SingeSim *sim, const SingeColliderDef *def);
+SingePinId test_add_pin(SingeSim *sim, const SingePinDef *def);
 void test_steps(SingeSim *sim, int count);
 
 /// A key that only places.

@@ -525,13 +525,11 @@ TEST(flaws_of_meshes_are_counted) {
 /// Through the public call: after the commit, to a sheet that there is.
 TEST(simulations_draw_meshes) {
     SingeSimDef def = singe_default_sim();
-    SingeSim *sim;
-    SingeSheetId id;
     TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     def.surface_detail = 0;
-    test_ok(NULL, singe_sim_create(&def, &sim, NULL));
-    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+    SingeSim *sim = test_create(&def);
+    SingeSheetId id = test_add_sheet(sim, &sheet);
 
     SingeRenderMeshDef render = singe_default_render_mesh();
     const float positions[] = {0.01f, 0.01f, 1e-3f, 0.05f, 0.01f, 1e-3f, 0.01f, 0.05f, 1e-3f};

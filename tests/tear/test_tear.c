@@ -36,9 +36,8 @@ static void grip(SingeSim *sim, bool right, float by) {
         for (uint32_t i = 0; i <= GRIP; i++) held[count++] = j * (ALONG + 1) + (right ? ALONG - i : i);
     const SingePoseKey path[2] = {test_key(0, 0, 0, 0), test_key(0.25f, by, 0, 0)};
     SingePinDef pin = singe_default_pin();
-    SingePinId id;
     pin.vertex_count = count, pin.vertices = held, pin.path_count = 2, pin.path = path, pin.sheet.generation = 1;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_add_pin(sim, &pin);
 }
 
 /// A strip of this strength that is pulled apart; where `line` is not 1, a row of vertices across has that share of it.
@@ -48,15 +47,13 @@ static SingeSim *pulled(const SingeSimDef *def, float strength, float line, cons
     for (uint32_t v = 0; v < mesh.vertex_count; v++) weak[v] = v % (ALONG + 1) == WEAK;
     const SingeAttribute attribute = {"weak", weak};
     SingeSheetDef sheet = test_sheet(&mesh);
-    SingeSheetId id;
-    SingeSim *sim;
     jitter(&mesh);
     if (from) sheet.material = *from;
     sheet.attribute_count = 1, sheet.attributes = &attribute;
     sheet.material.strength =
         singe_param_field(strength, strength * line, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "weak"});
-    assert_int_equal(singe_sim_create(def, &sim, NULL), SINGE_OK);
-    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+    SingeSim *sim = test_create(def);
+    test_add_sheet(sim, &sheet);
     test_ok(sim, singe_sim_commit(sim));
     test_mesh_free(&mesh);
     grip(sim, false, 0);
@@ -206,9 +203,8 @@ TEST(line_force_of_a_hanging_strip_equals_its_weight) {
     uint32_t top[WIDE + 1];
     for (uint32_t i = 0; i <= WIDE; i++) top[i] = LONG * (WIDE + 1) + i;
     SingePinDef pin = singe_default_pin();
-    SingePinId id;
     pin.vertex_count = WIDE + 1, pin.vertices = top, pin.sheet.generation = 1;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_add_pin(sim, &pin);
     test_steps(sim, 300);
 
     const SingeView view = singe_sim_view(sim);
@@ -246,10 +242,9 @@ TEST(tubes_tear_around) {
         for (uint32_t i = 0; i < 2 * AROUND; i++) held[i] = (k ? (LONG - 1) * AROUND : 0) + i;
         const SingePoseKey path[2] = {test_key(0, 0, 0, 0), test_key(0.25f, 0, 0, k ? 9e-3f : 0)};
         SingePinDef pin = singe_default_pin();
-        SingePinId id;
         pin.vertex_count = 2 * AROUND, pin.vertices = held, pin.sheet.generation = 1;
         pin.path_count = 2, pin.path = path;
-        test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+        test_add_pin(sim, &pin);
     }
 
     test_steps(sim, STEPS);
@@ -371,14 +366,13 @@ TEST(cold_sheets_swing_whole) {
         SingeSimDef def = singe_default_sim();
         TestMesh mesh = test_grid(20, 20, 0.05f, 0.05f);
         SingePinDef pin = singe_default_pin();
-        SingePinId id;
         SingeMaterialDef material = singe_default_material();
         material.grammage = singe_param(0.1f), material.drag = material.damping = singe_param(0);
         def.solver.tearing = true, def.solver.substeps = substeps[k], def.solver.smoothing = 0;
         SingeSim *sim = test_sim(&def, mesh, &material);
         const uint32_t held[2] = {0, 20};
         pin.vertex_count = 2, pin.vertices = held, pin.sheet.generation = 1;
-        test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+        test_add_pin(sim, &pin);
         test_steps(sim, 480);
         assert_int_equal(singe_sim_stats(sim).tears, 0);
         singe_sim_destroy(sim);
@@ -388,10 +382,9 @@ TEST(cold_sheets_swing_whole) {
 /// Vertices in reserve lie behind each sheet's own; the drawn mesh and the pins number them as they were given.
 TEST(several_sheets_keep_their_numbers) {
     SingeSimDef def = pull_def();
-    SingeSim *sim;
     SingeSheetId id[2];
 
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_create(&def);
     for (int k = 0; k < 2; k++) {
         TestMesh mesh = test_grid(6, 4, side, side);
         test_mesh_move(&mesh, 0, 0, (float)k);
@@ -447,9 +440,8 @@ TEST(without_reserve_it_tears_no_further) {
         const float points[6] = {k * wide, 0, 0, k * wide, 8 * side, 0};
         const SingePoseKey path[2] = {test_key(0, 0, 0, 0), test_key(0.5f, k ? 0.05f : -0.05f, k ? 0.05f : -0.05f, 0)};
         SingePinDef pin = singe_default_pin();
-        SingePinId id;
         pin.points = points, pin.point_count = 2, pin.sheet.generation = 1, pin.path_count = 2, pin.path = path;
-        test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+        test_add_pin(sim, &pin);
     }
 
     test_steps(sim, 300);
@@ -623,13 +615,11 @@ TEST(tears_end_at_vertices_of_many_cells) {
     for (uint32_t v = 0; v < mesh.vertex_count; v++) weak[v] = v > 0 && (v - 1) % (SPOKES / 2) == SPOKES / 4;
     const SingeAttribute attribute = {"weak", weak};
     SingeSheetDef sheet = test_sheet(&mesh);
-    SingeSheetId id;
-    SingeSim *sim;
     sheet.attribute_count = 1, sheet.attributes = &attribute;
     sheet.material.strength =
         singe_param_field(20, 1, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "weak"});
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
-    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+    SingeSim *sim = test_create(&def);
+    SingeSheetId id = test_add_sheet(sim, &sheet);
     test_ok(sim, singe_sim_commit(sim));
     for (int right = 0; right < 2; right++) {
         uint32_t held[SPOKES], count = 0;
@@ -637,9 +627,8 @@ TEST(tears_end_at_vertices_of_many_cells) {
             if (right ? mesh.positions[3 * v] > 6 * side : mesh.positions[3 * v] < -6 * side) held[count++] = v;
         const SingePoseKey path[2] = {test_key(0, 0, 0, 0), test_key(0.25f, right ? 9e-3f : 0, 0, 0)};
         SingePinDef pin = singe_default_pin();
-        SingePinId made;
         pin.vertex_count = count, pin.vertices = held, pin.path_count = 2, pin.path = path, pin.sheet = id;
-        test_ok(sim, singe_sim_add_pin(sim, &pin, &made));
+        test_add_pin(sim, &pin);
     }
 
     test_steps(sim, STEPS);
@@ -659,11 +648,10 @@ static void flux_fails(void *context, const SingeView *view, float *flux, float 
 TEST(failed_steps_change_nothing) {
     SingeSim *sim = burning(1, SINGE_INSTRUCTIONS_BEST);
     SingeSourceDef source = singe_default_source();
-    SingeSourceId id;
     bool fails = false;
 
     source.kind = SINGE_SOURCE_CALLBACK, source.callback = flux_fails, source.callback_context = &fails;
-    test_ok(sim, singe_sim_add_source(sim, &source, &id));
+    test_add_source(sim, &source);
     test_steps(sim, 75);
     assert_true(singe_sim_stats(sim).tears > 0);
     TestBytes before = test_save(sim);
