@@ -89,13 +89,14 @@ static void draw_mirrored(Preview *preview, Block *block) {
 static void fill_table(Preview *preview, Block *block) {
     Table sum[LANES] = {{.polish = 0}};
     int count[LANES] = {0};
-    for (int i = 0; i < LANES; i++) block->key[i] = sample_key(block->x[i], block->y[i], preview->def.seed);
+    for (int i = 0; i < LANES; i++)
+        block->key[i] = 0x80008000u; // the same points of the lens, or a soft table were speckled
 
     // where a lens blurs the table, its grain is as fine as the distance between the samples on the lens
     block_aim(preview, block, SAMPLE_CENTRE, (const float[2]){0, 0});
     float far = backdrop_hit(preview, block->origin[0], block->direction[0]);
-    float blur = isfinite(far) ? camera_blur(&preview->camera, far) : 0, wide = maxf(0.7f * blur, 1);
-    int samples = preview->camera.lens > 0 ? 8 : 4;
+    float blur = isfinite(far) ? camera_blur(&preview->camera, far) : 0, wide = maxf(blur, 1);
+    const int samples = blur > 1.5f ? 9 : 4;
 
     for (int s = 0; s < samples; s++) {
         float at[2];

@@ -102,7 +102,7 @@ static void crumbs(const Preview *preview, Float3 position, float footprint, Tab
         const float ash = stepf(0.3f, 0.65f, hash_unit(key + 6));
         const float crease = 1 - stepf(0, 0.16f, fabsf(noise2(2.2f * x, 2.2f * y, key >> 16 & 255)));
         const float rim = 1 - stepf(0.02f, 0.22f, depth),
-                    grain = noise2(position.x * 2600, position.y * 2600, key & 255);
+                    grain = visible(0.0006f, footprint) * noise2(position.x * 2600, position.y * 2600, key & 255);
         float value = mixf(0.020f, 0.20f + 0.24f * hash_unit(key + 8), ash);
         value *= (1 + 0.5f * clampf(side, -1, 1)) * (1 + 0.16f * grain);
         value += (0.03f + 0.12f * ash) * maxf(rim, 0.6f * crease);

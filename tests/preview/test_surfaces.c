@@ -104,3 +104,21 @@ TEST(heated_metal_wears_temper_colours) {
                   (double)blue[2]);
     assert_true(blue[1] < 0.85f * blue[0] && blue[2] > 1.2f * blue[0]);
 }
+
+/// A table far out of focus changes little from pixel to pixel. Its few samples, others in each pixel, left it speckled.
+TEST(a_table_out_of_focus_is_smooth) {
+    static uint8_t rgb[BYTES];
+    SingeSurface nothing = {0};
+    PreviewDef def = above();
+    def.camera.eye[1] = def.camera.target[1] = 0.118f, def.camera.fov = 0.15f; // a joint
+    def.camera.aperture = 0.01f, def.camera.focus = 0.25f;
+    draw(&def, &nothing, 0, rgb);
+    float change = 0;
+    for (int y = 0; y + 2 < H; y++)
+        for (int x = 0; x < W; x++)
+            change += fabsf((float)pixel(rgb, x, y)[1] - 2 * (float)pixel(rgb, x, y + 1)[1] +
+                            (float)pixel(rgb, x, y + 2)[1]) /
+                      (W * H);
+    print_message("changes by %.3f levels\n", (double)change);
+    assert_true(change < 2);
+}
