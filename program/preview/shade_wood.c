@@ -1,79 +1,141 @@
 // Wood: of the table's planks, and of things that are cut from it.
 //
 // Each plank is cut from its own trunk: the year rings are cylinders around an axis oblique to the plank, so that the cut
-// shows parallel lines or pointed arches. A ring darkens towards its end, the late wood, and ends abruptly. Fibres and
-// pores run along the plank. Every octave fades when a pixel no longer resolves it.
+// shows parallel lines or pointed arches, ragged where it is nearly along a ring. A ring darkens towards its end, the late
+// wood, and ends abruptly; wide pores, dark dashes along the fibres, are crowded where the next begins. Where a branch was
+// cut there is a knot, and fibres and rings flow around it. Every octave fades when a pixel no longer resolves it.
 
 #include "preview/shape_look.h"
 
-/// Late wood, 0 to 1, of the year rings: years differ in width and in strength, and fade in and out along a plank.
-static float year_rings(const Plank *p, uint32_t seed, float footprint) {
-    float u = p->along + p->shift, bend = 0.011f * noise2(u * 2.3f, p->across * 9, seed);
-    bend += 0.0022f * noise2(u * 9, p->across * 40, seed + 1);
+/// Where a point is among the fibres, and what it is cut through.
+typedef struct Grain {
+    float u, v;   ///< m, along the fibres and across them
+    float depth;  ///< m, above the trunk's axis
+    float knot;   ///< distance from the middle of a knot over its radius; large: there is none
+    float late;   ///< late wood, 0 to 1
+    float porous; ///< 0 to 1, how crowded wide pores are
+} Grain;
 
-    // the trunk's axis is below the plank and rises along it
-    float aside = p->across + 0.09f * (p->hue - 0.5f) + bend;
-    float depth = 0.012f + 0.09f * p->tone + 0.05f * (p->along - 0.6f) - p->deep;
-    float radius = sqrtf(aside * aside + depth * depth), year = radius / (0.0034f + 0.0022f * p->hue);
-    year += 0.35f * noise2(u * 1.3f, radius * 60, seed + 2) + 1.1f * noise2(p->shift, radius * 85, seed + 9);
-    float within;
-    int ring = noise_floor(year, &within);
-    float strength = 0.2f + 0.8f * hash_unit((uint32_t)ring * 0x27d4eb2fu + seed + (uint32_t)(1024 * p->tone));
-    strength *= 0.75f + 0.5f * noise2(u * 3.7f, radius * 110, seed + 10);
-    float slope = maxf(fabsf(aside) / maxf(radius, 1e-4f), 0.12f); // slope of the cut through the rings
-    float late = stepf(0.05f, 0.88f, within) * (1 - stepf(0.86f, 1.0f, within));
-
-    return mixf(0.33f, late, visible(0.0035f / slope, footprint)) * strength;
+/// Branches: fibres pass them as a stream passes a pile, and the trunk's rings bulge around them.
+static void grow_knots(const Plank *p, uint32_t seed, float footprint, Grain *grain) {
+    enum { PLACES = 3 };
+    if (p->width < 0.06f) return;
+    for (uint32_t k = 0; k < PLACES; k++) {
+        const uint32_t key = hash_u32((uint32_t)(1024 * p->shift) + seed + 0x9e3779b1u * k);
+        if (hash_unit(key) > 0.4f) continue;
+        const float size = 0.0025f + 0.011f * hash_unit(key + 1) * hash_unit(key + 2), skew = hash_unit(key + 5) - 0.5f;
+        const float x = (p->along - 1.3f * ((float)k + hash_unit(key + 3)) / PLACES) / size;
+        const float y = (p->across - 0.9f * p->width * (hash_unit(key + 4) - 0.5f)) / size + 0.4f * skew * x;
+        const float far2 = 0.16f * x * x + y * y, room = maxf(1 - far2 / 60, 0),
+                    near = room * room * visible(2 * size, footprint);
+        if (near <= 0) continue;
+        grain->v -= size * y * near * minf(1 / maxf(far2, 1e-6f), 1);
+        grain->depth -= 3.2f * size * near * expf(-far2 / 7);
+        grain->knot = minf(grain->knot, sqrtf(mixf(0.35f, 0.9f, hash_unit(key + 6)) * x * x + y * y) +
+                                            0.22f * noise2(1.3f * x, 1.3f * y, key & 255));
+    }
 }
 
-/// Fibres: streaks along the grain, from 8 mm to half a millimetre across, each finer one shorter.
-static float wood_fibres(float u, float y, uint32_t seed, float footprint) {
-    float sum = 0, wide = 0.008f, weight = 0.5f;
-    for (uint32_t octave = 0; octave < 5; octave++, wide *= 0.5f, weight *= 0.86f) {
+/// Years differ in width and in strength, and fade in and out along a plank.
+static void grow_rings(const Plank *p, uint32_t seed, float footprint, Grain *grain) {
+    const float u = grain->u, v = grain->v;
+    const float bend = 0.011f * noise2(u * 2.3f, v * 9, seed) + 0.0030f * noise2(u * 9, v * 30, seed + 1);
+    const float aside = v + 0.09f * (p->hue - 0.5f) + bend;
+    const float radius = sqrtf(aside * aside + grain->depth * grain->depth), wide = 0.0034f + 0.0030f * p->hue;
+    float year = radius / wide + 0.35f * noise2(u * 1.3f, radius * 60, seed + 2);
+    year += 1.1f * noise2(p->shift, radius * 85, seed + 9) + 0.30f * noise2(u * 17, v * 70, seed + 3);
+    year += visible(0.002f, footprint) *
+            (0.10f * noise2(u * 40, v * 330, seed + 4) + 0.035f * noise2(u * 170, v * 1300, seed + 7));
+
+    float within;
+    const int ring = noise_floor(year, &within);
+    const float slope = maxf(fabsf(aside) / maxf(radius, 1e-4f), 0.12f); // of the cut through the rings
+    const float fall = clampf(1.2f * footprint * slope / wide, 0.03f, 0.4f);
+    const float late = stepf(0.25f, 1.0f - fall, within) * (1 - stepf(1 - fall, 1.0f, within));
+    const float shown = visible(0.0035f / maxf(slope, 0.3f), footprint);
+    float strength = 0.35f + 0.65f * hash_unit((uint32_t)ring * 0x27d4eb2fu + seed + (uint32_t)(1024 * p->tone));
+    strength *= 0.75f + 0.5f * noise2(u * 3.7f, radius * 110, seed + 10);
+    grain->late = mixf(0.33f, late, shown) * mixf(0.65f, strength, shown);
+    grain->porous = mixf(0.3f, 1 - stepf(0.05f, 0.5f, within), shown);
+}
+
+/// Dashes along the fibres, one or none in each cell of a lattice `wide` across: how much of a pixel they cover.
+static float dashes(float u, float v, float wide, float often, uint32_t seed, float footprint) {
+    const float shown = visible(1.3f * wide, footprint), even = 0.18f * often;
+    if (shown <= 0) return even;
+    float fx, fy;
+    const int row = noise_floor(v / wide, &fy);
+    const int column = noise_floor(u / (11 * wide) + 7 * hash_unit((uint32_t)row * 0x85ebca6bu + seed), &fx);
+    const uint32_t key = sample_key(column, row, seed);
+    if (hash_unit(key) >= often) return (1 - shown) * even;
+    const float half = mixf(0.12f, 0.30f, hash_unit(key + 1)), reach = mixf(0.15f, 0.48f, hash_unit(key + 2));
+    const float x = (fx - mixf(reach, 1 - reach, hash_unit(key + 3))) / reach,
+                y = fy - mixf(half, 1 - half, hash_unit(key + 4));
+    const float taper = sqrtf(maxf(1 - x * x, 0)), soft = maxf(0.4f * half, 0.6f * footprint / wide);
+    const float dark = mixf(0.5f, 1, hash_unit(key + 5));
+    return mixf(even, taper > 0 ? dark * stepf(-soft, soft, half * taper - fabsf(y)) : 0, shown);
+}
+
+/// Fibres: streaks along the grain, from 2 mm to an eighth of one across, each finer one shorter.
+static float wood_fibres(const Grain *grain, uint32_t seed, float footprint) {
+    float sum = 0, wide = 0.002f, weight = 0.5f;
+    for (uint32_t octave = 0; octave < 5; octave++, wide *= 0.5f, weight *= 0.9f) {
         const float shown = visible(wide, footprint);
         if (shown <= 0) break;
-        sum += shown * weight * noise2(u / (26 * wide), y / wide, seed + octave);
+        sum += shown * weight * noise2(grain->u / (16 * wide), grain->v / wide, seed + octave);
     }
     return sum;
 }
 
-/// Pores: dark dashes along the grain, a few tenths of a millimetre across, crowded in the early wood.
-static float wood_pores(float u, float y, float late, uint32_t seed, float footprint) {
-    float sum = 0;
-    for (uint32_t k = 0; k < 2; k++) {
-        const float wide = k ? 0.00045f : 0.0008f, shown = visible(1.3f * wide, footprint);
-        const float n = noise2(u / (30 * wide), y / wide + 0.5f * (float)k, seed + k);
-        sum += shown * stepf(0.28f + 0.3f * late, 0.72f + 0.3f * late, n);
-    }
-    return minf(sum, 1);
-}
-
 void wood_look(const Plank *plank, float x, float y, uint32_t seed, float footprint, Table *table) {
     const Plank p = *plank;
-    float u = p.along + p.shift, late = year_rings(&p, seed, footprint);
-    float bow = 0.011f * noise2(u * 2.3f, p.across * 9, seed), side = y + 0.6f * bow; // fibres follow the rings
-    const float fibre = wood_fibres(u, side, seed + 20, footprint),
-                pores = wood_pores(u, side, late, seed + 30, footprint);
+    // the trunk's axis is below the plank and rises or falls along it
+    const float rise = (p.hue > 0.5f ? 1 : -1) * (0.035f + 0.07f * p.tone);
+    Grain grain = {.u = p.along + p.shift, .v = p.across, .knot = 9};
+    grain.depth = 0.016f + 0.09f * p.tone + rise * (p.along - 0.6f) - p.deep;
+    grow_knots(&p, seed + 40, footprint, &grain);
+    grow_rings(&p, seed, footprint, &grain);
+    const float u = grain.u, late = grain.late;
+    grain.v += y - p.across;
+    const float fibre = wood_fibres(&grain, seed + 20, footprint);
+    float pores = 0.9f * dashes(u, grain.v, 0.00075f, 0.9f * grain.porous, seed + 30, footprint);
+    pores = maxf(pores, 0.7f * dashes(u, grain.v, 0.0004f, 0.4f, seed + 31, footprint));
 
     // planks differ, and the heart of a tree is darker than its outside
-    float blotch = noise2(u * 3.1f, p.across * 14, seed + 5), wear = noise2(x * 5, y * 5, seed + 6);
-    float heart = noise2(u * 0.9f, p.across * 11 + 7 * p.hue, seed + 8);
-    float value = 1.09f + 0.42f * (p.tone - 0.5f) - 0.44f * late + 0.17f * fibre + 0.10f * blotch + 0.05f * wear;
+    const float blotch = noise2(u * 3.1f, p.across * 14, seed + 5), wear = noise2(x * 5, y * 5, seed + 6);
+    const float heart = noise2(u * 0.9f, p.across * 11 + 7 * p.hue, seed + 8);
+    float value = 1.19f + 0.46f * (p.tone - 0.5f) - 0.66f * late + 0.24f * fibre + 0.10f * blotch + 0.05f * wear;
     value += 0.10f * heart;
-    value *= 1 - 0.42f * pores;
+    value *= 1 - 0.64f * pores;
 
-    // a joint: a dark gap, soft-edged, and a bevel next to it that leans towards it
-    float soft = maxf(0.0011f, 0.7f * footprint), joint = 1 - stepf(0.0003f, soft + 0.0003f, p.edge);
-    float bevel = (1 - stepf(0.0008f, 0.0026f, p.edge)) * visible(0.0016f, footprint);
-    value *= (1 - 0.86f * joint * minf(1, 0.0016f / footprint)) * (1 - 0.18f * bevel);
+    // a knot is dark, darkest at its bark, and has rings of its own
+    const float bark = fabsf(grain.knot - 1), inside = 1 - stepf(0.9f, 1.05f, grain.knot);
+    if (grain.knot < 2.5f) {
+        const float own = noise2(6 * grain.knot, p.shift, seed + 11) + 0.8f * fibre;
+        value *= mixf(1 - 0.3f * (1 - stepf(0.9f, 2.5f, grain.knot)), 0.50f + 0.18f * own, inside);
+        value *=
+            1 - 0.55f * (1 - stepf(0.02f, 0.20f, bark)) * (0.6f + 0.4f * noise2(u * 220, grain.v * 220, seed + 14));
+    }
+
+    // a joint: a dark gap, soft-edged, and a bevel next to it, worn unevenly, that leans towards it; dirt lies along it
+    const float worn = 0.00022f * noise2(x * 60, y * 60, seed + 12), edge = p.edge + worn + 0.0004f * (p.hue - 0.5f);
+    const float soft = maxf(0.0008f, 0.7f * footprint), joint = 1 - stepf(0.0003f, soft + 0.0003f, edge);
+    const float bevel = (1 - stepf(0.0008f, 0.0030f, edge)) * visible(0.0016f, footprint);
+    const float dirt = (1 - stepf(0.0005f, 0.009f, edge)) * (0.6f + 0.4f * noise2(x * 45, y * 45, seed + 13));
+    value *= (1 - 0.86f * joint * minf(1, 0.0016f / footprint)) * (1 - 0.12f * bevel) * (1 - 0.30f * dirt);
 
     // late wood is redder, early wood more golden; planks differ
-    float red = clampf(0.35f * late + 0.6f * (p.hue - 0.5f) - 0.12f * fibre, -0.35f, 0.5f);
+    const float red = clampf(0.45f * late + 0.5f * (p.hue - 0.4f) - 0.10f * fibre + 0.3f * inside, -0.25f, 0.55f);
     table->albedo = float3_scale(float3(1 + 0.22f * red, 1 - 0.10f * red, 1 - 0.42f * red), maxf(value, 0.04f));
 
-    // an oiled face: dull in the pores and where it is worn, and its mirror image breaks up along the fibres
-    table->polish = (0.44f - 0.14f * late + 0.16f * wear + 0.10f * fibre) * (1 - 0.8f * joint) * (1 - 0.6f * pores);
-    float across = clampf(p.across / (0.5f * p.width), -1, 1);
+    // an oiled face: scratched in any direction, dull in the pores and where it is worn, and its mirror image breaks up along the fibres
+    const float line = minf(fabsf(noise2(24 * x + 150 * y, 60 * y - 9 * x, seed + 15)),
+                            fabsf(noise2(14 * x - 120 * y, 70 * x + 8 * y, seed + 16)));
+    const float scratch =
+        visible(0.0012f, footprint) * (1 - stepf(0.005f, 0.04f, line)) * stepf(0.0f, 0.5f, wear + 0.4f * blotch);
+    table->polish = (0.46f - 0.16f * late + 0.20f * wear + 0.16f * fibre - 0.2f * scratch) * (1 - 0.8f * joint) *
+                    (1 - 0.6f * pores);
+    const float across = clampf(p.across / (0.5f * p.width), -1, 1);
     table->tilt[0] = 0.004f * wear;
     table->tilt[1] = 0.012f * blotch + 0.030f * fibre + 0.010f * across + 0.16f * bevel * (across > 0 ? 1.0f : -1.0f);
 }
@@ -110,7 +172,7 @@ void shape_wood(const Preview *preview, const Place *place, Point *point) {
     const Plank plank = {.along = p[axis[0]] + 0.6f,
                          .across = across,
                          .deep = p[axis[2]],
-                         .width = board ? STAVE : 0.1f,
+                         .width = board ? STAVE : 0.04f,
                          .edge = board ? 0.5f * STAVE - fabsf(across) + 0.0009f : 1,
                          .tone = hash_unit(key),
                          .hue = hash_unit(key + 1),
