@@ -69,24 +69,27 @@ void shape_metal(const Place *place, Point *point) {
 // that rises along it cools it most below.
 
 #define SHAPE_GAIN 0.147f
-#define SHAPE_MIDDLE 205.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
+#define SHAPE_MIDDLE 150.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
 #define SHAPE_LIMB 190.0f   ///< K, by which the limb is cooler than the middle
 #define SHAPE_BELOW 30.0f   ///< K, by which what faces down is cooler than the middle
-#define SCALE_COOLER 120.0f ///< K, scale over metal
+#define SCALE_COOLER 215.0f ///< K, scale over metal
 
 void shape_glow(const Preview *preview, const Place *place, Point *point) {
     const float unit = 3.5f / maxf(place->size, 1e-6f);
     const Float3 p = float3_scale(place->p, unit);
-    const float small = noise3(float3_scale(p, 7.1f), 43), middle = noise3(float3_scale(p, 2.7f), 42);
+    const Float3 aslant =
+        float3(0.8f * p.x + 0.6f * p.y, 0.64f * p.y - 0.48f * p.x + 0.6f * p.z, 0.8f * p.z + 0.36f * p.x - 0.48f * p.y);
+    const float small = noise3(float3_scale(aslant, 7.1f), 43), middle = noise3(float3_scale(p, 2.7f), 42);
     const float broad = noise3(float3_scale(p, 0.8f), 41);
     const float fine = visible(0.2f / unit, point->footprint) * noise3(float3_scale(p, 19), 44);
     const float lies = broad + 0.6f * middle + 0.35f * small + 0.15f * fine; // scale lies where it is high
-    const float scale = stepf(-0.22f, -0.08f, lies), rim = scale * (1 - stepf(-0.08f, 0.10f, lies));
+    const float scale = stepf(-0.14f, 0.0f, lies), rim = scale * (1 - stepf(0.0f, 0.18f, lies));
     const float wall = noise_walls(float3_mad(float3_scale(p, 0.9f), float3(small, middle, broad), 0.22f), 45);
     const float crack = scale * (1 - stepf(0.02f, 0.07f + 0.4f * unit * point->footprint, wall));
 
     const float facing = clampf(float3_dot(point->normal, point->view), 0, 1), aside = 1 - facing;
-    const float cool = scale * (1 - 0.8f * crack) * (0.75f + 0.5f * middle + 0.3f * small) + 0.25f * rim;
+    const float cool = scale * (1 - 0.85f * crack) * (0.85f + 0.8f * middle + 0.5f * small) + 0.25f * rim -
+                       0.22f * (1 - scale) * (1 + small);
     const float temperature = place->shape->temperature * (1 + 0.012f * broad) - SCALE_COOLER * cool -
                               SHAPE_LIMB * aside * sqrtf(aside) + SHAPE_BELOW * minf(point->normal.z, 0.5f) +
                               SHAPE_MIDDLE * facing * facing;

@@ -148,3 +148,23 @@ TEST(a_table_out_of_focus_is_smooth) {
     print_message("changes by %.3f levels\n", (double)change);
     assert_true(change < 2);
 }
+
+/// Scale on a ball of 1300 K shows: how much its inner face varies. It was an even disc.
+TEST(a_glowing_ball_wears_scale) {
+    static uint8_t rgb[BYTES];
+    SingeSurface nothing = {0};
+    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .rotation = {0, 0, 0, 1}, .radius = 0.02f, .temperature = 1300};
+    PreviewDef def = above();
+    def.camera.fov = 0.09f, def.samples = 16;
+    def.shapes = &ball, def.shape_count = 1;
+    draw(&def, &nothing, 0, rgb);
+    float sum = 0, squares = 0, count = 0;
+    for (int y = H / 2 - 18; y < H / 2 + 18; y++)
+        for (int x = W / 2 - 18; x < W / 2 + 18; x++, count++) {
+            const float green = (float)pixel(rgb, x, y)[1];
+            sum += green, squares += green * green;
+        }
+    const float mean = sum / count, varies = sqrtf(squares / count - mean * mean) / mean;
+    print_message("a glowing ball of %.0f varies by %.2f\n", (double)mean, (double)varies);
+    assert_true(varies > 0.26f); // was 0.21
+}
