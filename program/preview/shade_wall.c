@@ -61,14 +61,24 @@ static void brick(float u, float v, uint32_t seed, float footprint, Table *table
     const float cloud = noise2(u * 16, v * 16, key & 255),
                 lump = rough(u, v, 0.011f, 0.05f, seed + 5, footprint, table);
     const float grain = rough(u, v, 0.0022f, 0.08f, seed + 6, footprint, table);
-    const float pit = stepf(0.45f, 0.8f, noise2(u * 260, v * 260, seed + 7)) * visible(0.003f, footprint);
+    const float open =
+        noise2(u * 340 + v * 150, v * 340 - u * 150, seed + 7) + 0.5f * noise2(u * 900, v * 900, seed + 9);
+    const float pit = stepf(0.55f, 0.9f, open) * visible(0.002f, footprint);
     const float tone = hash_unit(key), hue = hash_unit(key + 1) - 0.5f;
-    float value = 0.72f + 0.5f * tone + 0.16f * cloud + 0.10f * lump + 0.10f * grain;
-    value *= (1 - 0.35f * pit) * (hash_unit(key + 2) < 0.08f ? 0.5f : 1); // one in twelve is burnt dark
-    const Float3 clay = float3_scale(float3(0.62f + 0.10f * hue, 0.30f + 0.04f * hue, 0.21f), maxf(value, 0.1f));
-    const float mortar = 0.46f + 0.09f * noise2(u * 60, v * 60, seed + 8) + 0.08f * grain;
-    const float shadow = 1 - 0.55f * (1 - stepf(-0.5f * BRICK_JOINT, 0, edge)); // deepest in its middle
-    table->albedo = float3_mix(float3_scale(float3(1, 0.96f, 0.88f), mortar * shadow), clay, face);
+    float value = 0.94f + 0.55f * tone + 0.20f * cloud + 0.10f * lump + 0.12f * grain;
+    value *= (1 - 0.45f * pit) * (hash_unit(key + 2) < 0.08f ? 0.6f : 1); // one in twelve is burnt dark
+    value *=
+        1 - 0.35f * hash_unit(key + 3) * stepf(0.2f, 1, fabsf(2 * along / BRICK_LONG - 1)); // and many at their ends
+    Float3 clay =
+        float3_scale(float3(0.56f + 0.14f * hue, 0.31f + 0.05f * hue, 0.22f - 0.03f * hue), maxf(value, 0.1f));
+
+    // lime comes out of the joints and blooms on the faces; mortar stands back in the shadow of the brick above
+    const float lime =
+        stepf(0.0f, 0.9f, noise2(u * 9, v * 13, seed + 10) + 0.4f * noise2(u * 70, v * 70, seed + 11) - 18 * edge);
+    clay = float3_mix(clay, float3(0.60f, 0.55f, 0.50f), 0.35f * lime);
+    const float mortar = 0.62f + 0.10f * noise2(u * 60, v * 60, seed + 8) + 0.12f * grain;
+    const float shadow = 1 - (up > 0.5f * BRICK_HIGH ? 0.1f : 0.45f) * stepf(-0.006f, 0, edge) * (1 - face);
+    table->albedo = float3_mix(float3_scale(float3(1, 0.95f, 0.86f), mortar * shadow), clay, face);
 }
 
 float wall_hit(const Preview *preview, Float3 origin, Float3 direction) {

@@ -168,3 +168,22 @@ TEST(a_glowing_ball_wears_scale) {
     print_message("a glowing ball of %.0f varies by %.2f\n", (double)mean, (double)varies);
     assert_true(varies > 0.26f); // was 0.21
 }
+
+/// Mortar is lighter than bricks: rows of pixels along a joint, over those along the middles of bricks. It was a dark line.
+TEST(mortar_is_lighter_than_bricks) {
+    static uint8_t rgb[BYTES];
+    SingeSurface nothing = {0};
+    PreviewDef def = small();
+    def.camera = (PreviewCamera){.eye = {0, 0, 0.45f}, .target = {0, 1, 0.45f}, .up = {0, 0, 1}, .fov = 0.3f};
+    def.wall = PREVIEW_WALL_BRICK, def.wall_distance = 0.4f;
+    draw(&def, &nothing, 0, rgb);
+    const int half = (int)(0.0375f / 0.4f / (2 * tanf(0.15f)) * H); // of a brick's height, in pixels
+    float row[2] = {0, 0};
+    for (int x = 0; x < W; x++)
+        for (int k = -1; k < 1; k++) {
+            row[0] += pixel(rgb, x, H / 2 + k)[1];
+            row[1] += 0.5f * (float)(pixel(rgb, x, H / 2 - half + k)[1] + pixel(rgb, x, H / 2 + half + k)[1]);
+        }
+    print_message("mortar over bricks: %.2f\n", (double)(row[0] / row[1]));
+    assert_true(row[0] > 1.15f * row[1]);
+}
