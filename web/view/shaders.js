@@ -173,38 +173,62 @@ in vec3 vPosition, vNormal;
 out vec4 colour;
 float hash(vec2 p) { return fract(sin(dot(p, vec2(127.1, 311.7))) * 43758.5453); }
 float noise2(float x, float y, float z) { return noise4(vec3(x, y, z)).r; }
+float visible(float wide, float size) { return clamp(1.5 - 0.9 * size / wide, 0.0, 1.0); }
+float dashes(float u, float v, float wide, float often, float size) {
+    float even = 0.18 * often, shown = visible(1.3 * wide, size), row = floor(v / wide), at = u / (11.0 * wide) + 7.0 * hash(vec2(row, 3.0));
+    vec2 cell = vec2(mod(floor(at), 997.0), row);
+    if (hash(cell) >= often) return (1.0 - shown) * even;
+    float w = mix(0.12, 0.3, hash(cell + 0.1)), reach = mix(0.15, 0.48, hash(cell + 0.2));
+    float x = (fract(at) - mix(reach, 1.0 - reach, hash(cell + 0.3))) / reach, y = fract(v / wide) - mix(w, 1.0 - w, hash(cell + 0.4));
+    float soft = max(0.4 * w, 0.6 * size / wide), dark = mix(0.5, 1.0, hash(cell + 0.5));
+    return mix(even, dark * step(abs(x), 1.0) * stepf(-soft, soft, w * sqrt(max(1.0 - x * x, 0.0)) - abs(y)), shown);
+}
 void main() {
     vec3 p = vPosition, view = normalize(eye - p);
     float size = max(length(dFdx(p)), length(dFdy(p)));
     float row = floor(p.y / 0.118), across = fract(p.y / 0.118), shift = hash(vec2(row, 7.0));
-    float column = floor(p.x / 1.3 + shift), along = fract(p.x / 1.3 + shift);
+    float column = floor(p.x / 1.3 + shift), along = fract(p.x / 1.3 + shift) * 1.3;
     float tone = hash(vec2(row, column)), hue = hash(vec2(row + 0.3, column + 0.7));
-    float edge = min(min(across, 1.0 - across) * 0.118, min(along, 1.0 - along) * 1.3);
-    float u = along * 1.3 + 60.0 * hash(vec2(row + 0.5, column)), v = (across - 0.5) * 0.118;
+    float edge = min(min(across, 1.0 - across) * 0.118, min(along, 1.3 - along)) + 0.0002 * noise2(p.x * 60.0, p.y * 60.0, 12.5);
+    float u = along + 60.0 * hash(vec2(row + 0.5, column)), v0 = (across - 0.5) * 0.118, v = v0;
 
-    float bend = 0.011 * noise2(u * 2.3, v * 9.0, 0.5) + 0.0022 * noise2(u * 9.0, v * 40.0, 1.5);
-    float aside = v + 0.09 * (hue - 0.5) + bend, depth = 0.012 + 0.09 * tone + 0.05 * (along * 1.3 - 0.6);
-    float radius = sqrt(aside * aside + depth * depth), year = radius / (0.0034 + 0.0018 * hue) + 0.35 * noise2(u * 1.3, radius * 60.0, 2.5);
-    float within = fract(year), strength = 0.45 + 0.55 * hash(vec2(floor(year), tone));
-    float late = stepf(0.25, 0.9, within) * (1.0 - stepf(0.9, 1.0, within));
-    float sharp = clamp(1.5 - 0.9 * size / (0.0035 / max(abs(aside) / radius, 0.12)), 0.0, 1.0);
-    late = mix(0.33, late, sharp) * strength;
+    float depth = 0.016 + 0.09 * tone + (hue > 0.5 ? 1.0 : -1.0) * (0.035 + 0.07 * tone) * (along - 0.6), knot = 9.0;
+    for (float k = 0.0; k < 3.0; k++) {
+        vec2 key = vec2(row + 0.1 * k, column);
+        if (hash(key + 0.01) > 0.4) continue;
+        float r = 0.0025 + 0.011 * hash(key + 0.02) * hash(key + 0.03), x = (along - 1.3 * (k + hash(key + 0.04)) / 3.0) / r;
+        float y = (v0 - 0.106 * (hash(key + 0.05) - 0.5)) / r + 0.4 * (hash(key + 0.06) - 0.5) * x;
+        float far = 0.16 * x * x + y * y, room = max(1.0 - far / 60.0, 0.0), near = room * room * visible(2.0 * r, size);
+        if (near <= 0.0) continue;
+        v -= r * y * near * min(1.0 / max(far, 1e-6), 1.0);
+        depth -= 3.2 * r * near * exp(-far / 7.0);
+        knot = min(knot, sqrt(mix(0.35, 0.9, hash(key + 0.07)) * x * x + y * y) + 0.22 * noise2(1.3 * x, 1.3 * y, 9.5));
+    }
 
-    float y = p.y + 0.4 * bend;
-    float fibre = noise2(u * 9.0, y * 520.0, 3.5) * clamp(1.5 - 0.9 * size / 0.0022, 0.0, 1.0)
-        + 0.8 * noise2(u * 14.0, y * 1100.0, 4.5) * clamp(1.5 - 0.9 * size / 0.001, 0.0, 1.0);
-    float pores = noise2(u * 75.0, y * 1700.0, 5.5) * clamp(1.5 - 0.9 * size / 0.0008, 0.0, 1.0);
-    float blotch = noise2(u * 3.1, v * 14.0, 6.5), wear = noise2(p.x * 5.0, p.y * 5.0, 7.5);
-    float value = 1.10 + 0.34 * (tone - 0.5) - 0.50 * late + 0.055 * fibre + 0.10 * blotch + 0.05 * wear;
-    value *= 1.0 - 0.38 * stepf(0.25, 0.7, pores);
-    float soft = max(0.0009, 0.7 * size), joint = 1.0 - stepf(0.0002, soft + 0.0002, edge);
-    value *= 1.0 - 0.8 * joint * min(1.0, 0.0016 / size);
+    float bend = 0.011 * noise2(u * 2.3, v * 9.0, 0.5) + 0.003 * noise2(u * 9.0, v * 30.0, 1.5);
+    float aside = v + 0.09 * (hue - 0.5) + bend, radius = length(vec2(aside, depth)), wide = 0.0034 + 0.003 * hue;
+    float year = radius / wide + 0.35 * noise2(u * 1.3, radius * 60.0, 2.5) + 1.1 * noise2(u * 0.01, radius * 85.0, 9.5) + 0.3 * noise2(u * 17.0, v * 70.0, 3.5)
+        + 0.1 * visible(0.002, size) * noise2(u * 40.0, v * 330.0, 4.5);
+    float within = fract(year), slope = max(abs(aside) / radius, 0.12), fall = clamp(1.2 * size * slope / wide, 0.03, 0.4), sharp = visible(0.0035 / max(slope, 0.3), size);
+    float late = stepf(0.25, 1.0 - fall, within) * (1.0 - stepf(1.0 - fall, 1.0, within)), strength = 0.35 + 0.65 * hash(vec2(floor(year), tone));
+    late = mix(0.33, late, sharp) * mix(0.65, strength, sharp);
 
-    float red = clamp(0.35 * late + 0.5 * (hue - 0.5), -0.3, 0.5);
+    float y = p.y + v - v0;
+    float fibre = 0.5 * noise2(u * 31.0, y * 500.0, 3.5) * visible(0.002, size) + 0.45 * noise2(u * 62.0, y * 1000.0, 4.5) * visible(0.001, size)
+        + 0.4 * noise2(u * 125.0, y * 2000.0, 6.5) * visible(0.0005, size);
+    float pores = max(0.9 * dashes(u, y, 0.00075, 0.9 * mix(0.3, 1.0 - stepf(0.05, 0.5, within), sharp), size), 0.7 * dashes(u, y + 0.7, 0.0004, 0.4, size));
+    float blotch = noise2(u * 3.1, v * 14.0, 6.5), wear = noise2(p.x * 5.0, p.y * 5.0, 7.5), inside = 1.0 - stepf(0.9, 1.05, knot);
+    float value = 1.19 + 0.46 * (tone - 0.5) - 0.66 * late + 0.24 * fibre + 0.10 * blotch + 0.05 * wear;
+    value *= 1.0 - 0.64 * pores;
+    value *= mix(1.0 - 0.3 * (1.0 - stepf(0.9, 2.5, knot)), 0.5 + 0.18 * noise2(6.0 * knot, u, 8.5), inside) * (1.0 - 0.4 * (1.0 - stepf(0.02, 0.2, abs(knot - 1.0))));
+    float soft = max(0.0008, 0.7 * size), joint = 1.0 - stepf(0.0003, soft + 0.0003, edge);
+    value *= (1.0 - 0.86 * joint * min(1.0, 0.0016 / size)) * (1.0 - 0.2 * (1.0 - stepf(0.0005, 0.009, edge)));
+
+    float red = clamp(0.45 * late + 0.5 * (hue - 0.4) + 0.3 * inside, -0.25, 0.55);
     vec3 albedo = ${colour} * vec3(1.0 + 0.22 * red, 1.0 - 0.10 * red, 1.0 - 0.42 * red) * max(value, 0.04);
     vec3 n = normalize(vec3(0.004 * wear, 0.012 * (blotch + fibre), 1.0));
-    float polish = (0.42 - 0.18 * late + 0.10 * wear) * (1.0 - 0.8 * joint), seen = lampSeen(p + vec3(0.0, 0.0, 0.0006));
-    vec3 c = albedo * lit(p, n, 0.0, seen) + 0.10 * polish * shine(p, n, view, 26.0, seen);
+    float polish = (0.46 - 0.16 * late + 0.20 * wear + 0.16 * fibre) * (1.0 - 0.8 * joint) * (1.0 - 0.6 * pores), open = lampSeen(p + vec3(0.0, 0.0, 0.0006));
+    vec3 c = albedo * lit(p, n, 0.0, open) + 0.10 * polish * shine(p, n, view, 26.0, open);
     ${fade}
     colour = vec4(c, 1.0);
 }`;

@@ -122,8 +122,9 @@ void main() {
         float row = floor(at.y / 0.075), shift = at.x / 0.225 + 0.5 * mod(row, 2.0), soft = 0.0012 + 0.6 * fwidth(at.y);
         vec2 from = vec2(fract(shift) * 0.225, at.y - row * 0.075), side = min(from, vec2(0.225, 0.075) - from);
         float tone = hash(vec2(row, floor(shift))), edge = min(side.x, side.y) - 0.005 + 0.002 * noise4(vec3(at * 130.0, 6.5)).r, isFace = smoothstep(-soft, soft, edge);
-        vec3 clay = vec3(0.62, 0.30, 0.21) * (0.72 + 0.5 * tone + 0.16 * cloud + 0.10 * grain);
-        albedo *= mix(vec3(0.46, 0.44, 0.40) * (1.0 - 0.55 * (1.0 - smoothstep(-0.005, 0.0, edge))), clay, isFace);
+        float hue = hash(vec2(row + 0.5, floor(shift))) - 0.5;
+        vec3 clay = vec3(0.56 + 0.14 * hue, 0.31 + 0.05 * hue, 0.22) * (0.94 + 0.55 * tone + 0.20 * cloud + 0.12 * grain);
+        albedo *= mix(vec3(0.62, 0.59, 0.53) * (1.0 - (from.y > 0.0375 ? 0.1 : 0.45) * smoothstep(-0.006, 0.0, edge) * (1.0 - isFace)), clay, isFace);
         tilt = 0.04 * vec2(grain, sweep);
     } else if (bricks > -0.5) {
         albedo *= 0.94 + 0.08 * cloud + 0.05 * sweep + 0.05 * grain;
