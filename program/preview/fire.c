@@ -330,14 +330,17 @@ static SingeResult check_gas(const SingeGas *gas, SingeError *error) {
 static bool make_tables(Preview *preview) {
     Fire *fire = &preview->fire;
     if (fire->noise && fire->tiles) return true;
-    size_t count = (size_t)FIRE_NOISE * FIRE_NOISE * FIRE_NOISE;
+    const uint32_t side = FIRE_CORNERS, period = FIRE_NOISE, count = side * side * side;
     if (!fire->noise) fire->noise = allocator_resize(preview->allocator, NULL, 0, count * sizeof *fire->noise);
     if (!fire->noise) return false;
 
     fire->tiles = allocator_resize(preview->allocator, NULL, 0, (size_t)preview->def.thread_count * sizeof(FireTile));
     if (!fire->tiles) return false;
-    for (uint32_t i = 0; i < count; i++)
-        for (uint32_t c = 0; c < 4; c++) fire->noise[i][c] = 2 * hash_unit(4 * i + c + 1) - 1;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t x = i % side % period, y = i / side % side % period, z = i / (side * side) % period;
+        const uint32_t key = 4 * (x + period * (y + period * z));
+        for (uint32_t c = 0; c < 4; c++) fire->noise[i][c] = 2 * hash_unit(key + c + 1) - 1;
+    }
     fire_fill_colours(preview);
 
     return true;
@@ -414,7 +417,7 @@ void fire_free(Preview *preview) {
     Fire *fire = &preview->fire;
     free_cells(preview, fire);
     allocator_resize(preview->allocator, fire->noise,
-                     fire->noise ? (size_t)FIRE_NOISE * FIRE_NOISE * FIRE_NOISE * sizeof *fire->noise : 0, 0);
+                     fire->noise ? (size_t)FIRE_CORNERS * FIRE_CORNERS * FIRE_CORNERS * sizeof *fire->noise : 0, 0);
     allocator_resize(preview->allocator, fire->tiles,
                      fire->tiles ? (size_t)preview->def.thread_count * sizeof(FireTile) : 0, 0);
     *fire = (Fire){.cells = NULL};

@@ -12,7 +12,8 @@ enum {
     FIRE_BRICK = 2,   ///< cells along the side of a brick, the unit of empty space that is skipped
     FIRE_STEPS = 128, ///< max steps of a ray outside empty bricks
     FIRE_RUNS = 8,    ///< max parts of a ray that are near flames
-    FIRE_NOISE = 16,  ///< corners along the side of the lattice of noise, a power of two
+    FIRE_NOISE = 16,  ///< cells along the side of the lattice of noise, a power of two: there it repeats
+    FIRE_CORNERS = FIRE_NOISE + 1,
     FIRE_COLOURS = 64,
 };
 
@@ -80,7 +81,7 @@ typedef struct Fire {
     Float3 daylight;   ///< of sun and sky, per unit of the smoke's albedo
     Float3 low, high;  ///< m, bounds of the bricks that are not empty
     FireTile *tiles;   ///< [def.thread_count] work area of each thread; NULL before the first gas
-    float (*noise)[4]; ///< [FIRE_NOISE^3] four numbers from -1 to 1 at every corner; NULL before the first gas
+    float (*noise)[4]; ///< [FIRE_CORNERS^3] four numbers from -1 to 1 at every corner; NULL before the first gas
     Float3 colours[FIRE_COLOURS]; ///< radiance of a thick flame from its coolest to its hottest
 } Fire;
 
@@ -99,11 +100,8 @@ enum { FIRE_FLAME = 1, FIRE_SMOKE = 2 };
 
 typedef struct Preview Preview;
 
-/// Corner (x, y, z) of the noise, which repeats.
-static inline size_t fire_noise_at(int x, int y, int z) {
-    const int m = FIRE_NOISE - 1;
-    return (size_t)((x & m) + FIRE_NOISE * ((y & m) + FIRE_NOISE * (z & m)));
-}
+/// Corner (x, y, z) of the noise, each from 0 to FIRE_NOISE.
+static inline size_t fire_noise_at(int x, int y, int z) { return (size_t)(x + FIRE_CORNERS * (y + FIRE_CORNERS * z)); }
 
 // fire.c
 void fire_free(Preview *preview);

@@ -34,6 +34,7 @@
 // front hides much of what burns behind it, and a body of many sheets does not add up to one flat yellow. Soot thins out
 // towards the tips.
 
+#include "common/float4.h"
 #include "preview/internal.h"
 
 // Gas leaves the paper slowly and accelerates: v^2 = BASE_SPEED^2 + 2 BUOYANCY h at the height h. An eddy that was formed
@@ -97,31 +98,32 @@ typedef struct Noise {
     float a, b, c, d;
 } Noise;
 
-/// The integer part of x, and the rest. Positions are within some kilometres, so it fits an int.
-static inline int fire_split(float x, float *rest) {
-    int whole = (int)x - (x < (float)(int)x);
-    *rest = x - (float)whole;
+static inline Four four_of(Float3 p) { return (Four){p.x, p.y, p.z, 0}; }
+
+/// The integer parts of x, and the rests. Positions are within some kilometres, so they fit.
+static inline Float4Mask four_split(Four x, Four *rest) {
+    Float4Mask whole = __builtin_convertvector(x, Float4Mask);
+    whole += x < __builtin_convertvector(whole, Four);
+    *rest = x - __builtin_convertvector(whole, Four);
     return whole;
 }
 
 /// Four smooth noises from -1 to 1 at q, lattice size 1.
-static inline Noise noise_at(const Fire *fire, Float3 q) {
-    float fx, fy, fz;
-    int x = fire_split(q.x, &fx), y = fire_split(q.y, &fy), z = fire_split(q.z, &fz);
-    fx = fx * fx * (3 - 2 * fx);
-    fy = fy * fy * (3 - 2 * fy);
-    fz = fz * fz * (3 - 2 * fz);
+static inline Noise noise_at(const Fire *fire, Four q) {
+    Four f;
+    const Float4Mask at = four_split(q, &f) & (FIRE_NOISE - 1);
+    f = f * f * (3 - 2 * f);
+    const float(*corner)[4] = (const float(*)[4])fire->noise + fire_noise_at(at[0], at[1], at[2]);
     Four layer[2];
 
-    for (int k = 0; k < 2; k++) {
-        Four a = four_load(fire->noise[fire_noise_at(x, y, z + k)]);
-        Four b = four_load(fire->noise[fire_noise_at(x, y + 1, z + k)]);
-        a += (four_load(fire->noise[fire_noise_at(x + 1, y, z + k)]) - a) * fx;
-        b += (four_load(fire->noise[fire_noise_at(x + 1, y + 1, z + k)]) - b) * fx;
-        layer[k] = a + (b - a) * fy;
+    for (int k = 0; k < 2; k++, corner += fire_noise_at(0, 0, 1)) {
+        Four a = four_load(corner[0]), b = four_load(corner[fire_noise_at(0, 1, 0)]);
+        a += (four_load(corner[1]) - a) * f[0];
+        b += (four_load(corner[fire_noise_at(1, 1, 0)]) - b) * f[0];
+        layer[k] = a + (b - a) * f[1];
     }
 
-    Four n = layer[0] + (layer[1] - layer[0]) * fz;
+    Four n = layer[0] + (layer[1] - layer[0]) * f[2];
     return (Noise){n[0], n[1], n[2], n[3]};
 }
 
@@ -136,9 +138,8 @@ static inline float eddies_passed(float height, float time) {
 /// Noise of eddies `width` across, of which `often` pass where one of the largest does; rotated away from the axes.
 static inline Noise eddies(const Fire *fire, Float3 p, float passed, float width, float often) {
     const float c = 0.829f, s = 0.559f; // 34 degrees around the vertical
-    float across = 1 / width;
-    return noise_at(fire, float3((c * p.x - s * p.y) * across + 0.21f * passed,
-                                 (s * p.x + c * p.y) * across + 0.17f * passed, -often * passed));
+    const Four turned = (Four){c, s, 0, 0} * p.x + (Four){-s, c, 0, 0} * p.y;
+    return noise_at(fire, turned * (1 / width) + (Four){0.21f, 0.17f, -often, 0} * passed);
 }
 
 // ---- flame and smoke
@@ -171,7 +172,7 @@ float fire_share(const Fire *fire, size_t at) {
 }
 
 float fire_flicker(const Fire *fire, Float3 p) {
-    Noise whole = noise_at(fire, float3(0.4f, 0.6f, 6 * fire->moment));
+    Noise whole = noise_at(fire, (Four){0.4f, 0.6f, 6 * fire->moment, 0});
     Noise part = eddies(fire, p, EDDY_RATE * fire->moment / sqrtf(fire->scale), fire->scale * 0.04f, 1);
     return maxf(1 + 0.5f * whole.a + 0.8f * part.c, 0.1f);
 }
@@ -194,15 +195,15 @@ float fire_feed(const Fire *fire, Float3 p, float height, float flame) {
     return maxf(flame * (1 + more) + joined * minf(flame / FED_WHOLLY, 1), 0);
 }
 
-/// The flame at a position p that large eddies have moved, from its cell, the gradient of its share in 1/m, and the noises.
-static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float rise, float passed, float slope,
-                        Noise wide, Noise fine, float blur, FirePoint *point) {
+/// The flame at a position p that large eddies have moved, from its share, the gradient of that in 1/m, and the noises.
+static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, float passed, float slope, Noise wide,
+                        Noise fine, float blur, FirePoint *point) {
     float torn = stepf(0, 0.02f, rise);
     float tall = rise / (fire->scale * FLAME_HEIGHT);
     float coarse = 0.075f + 0.425f * torn, small = 0.025f + 0.225f * torn;
-    float edge = cell->flame + coarse * (0.6f - 2.4f * fabsf(wide.c)) + small * (0.4f - 2 * fabsf(fine.c)) - EDGE -
+    float edge = flame + coarse * (0.6f - 2.4f * fabsf(wide.c)) + small * (0.4f - 2 * fabsf(fine.c)) - EDGE -
                  TAPER * (1 - expf(-tall)) - 0.1f * (1 - torn);
-    edge = minf(edge, 2 * (cell->flame - FLAME_SEEN));
+    edge = minf(edge, 2 * (flame - FLAME_SEEN));
     float noisy = 2 * (coarse / EDDY_WIDE + small / EDDY_FINE) / fire->scale;
     point->depth = maxf(edge / sqrtf(slope * slope + 0.4f * noisy * noisy + 1), FIRE_OUTSIDE);
     if (!(point->depth > 0)) return;
@@ -232,10 +233,10 @@ static void shade_flame(const Fire *fire, const FireCell *cell, Float3 p, float 
     float clear =
         stepf(-0.5f, 0.6f, 0.15f * (wide.d + fine.d) + torn * (0.57f - 0.17f * (3 - sharp) - sharp * fabsf(thread.a)));
 
-    float core = stepf(0.35f, 0.7f, cell->flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
+    float core = stepf(0.35f, 0.7f, flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
     float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.21f;
-    hot += JOINED_HOT * stepf(0.95f, 1.35f, cell->flame); // where tongues have joined
+    hot += JOINED_HOT * stepf(0.95f, 1.35f, flame); // where tongues have joined
     hot += FOOT_HOT * streak * (1 - above) - FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));
 
     soot *= dense * soot * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);
@@ -261,65 +262,88 @@ void fire_between(const FirePoint *a, const FirePoint *b, float step, Matter *ma
     matter->dense += part * mixf(a->opaque, b->opaque, from);
 }
 
-/// p in cells, counted from the centre of the first.
-static Float3 in_cells(const Fire *fire, Float3 p) { return float3_scale(float3_sub(p, fire->origin), 1 / fire->cell); }
+/// p in cells, counted from the centre of the first, within `inside` cells of the bounds.
+static inline Four in_cells(const Fire *fire, Float3 p, float inside) {
+    const Four at = (four_of(p) - four_of(fire->origin)) * (1 / fire->cell);
+    const Four last = {(float)fire->size[0], (float)fire->size[1], (float)fire->size[2], 1};
+    return float4_min(last - (1 + inside), float4_max(float4_all(inside), at));
+}
 
-/// Quadratic B-spline over 3 x 3 x 3 cells at p, and the length of the gradient of `flame` if `slope` is not NULL.
-static FireCell cell_at(const Fire *fire, Float3 p, float *slope) {
-    const Float3 g = in_cells(fire, p);
-    float f[3], w[3][3], v[3][3];
-    int base[3];
-    const float at[3] = {g.x, g.y, g.z};
+static inline size_t cell_number(const Fire *fire, Float4Mask at) {
+    return (size_t)at[0] + (size_t)fire->size[0] * ((size_t)at[1] + (size_t)fire->size[1] * (size_t)at[2]);
+}
 
-    for (int c = 0; c < 3; c++) {
-        float bounded = clampf(at[c], 1, (float)(fire->size[c] - 2));
-        base[c] = (int)(bounded + 0.5f) - 1;
-        base[c] = base[c] > fire->size[c] - 3 ? fire->size[c] - 3 : base[c];
-        f[c] = bounded - (float)(base[c] + 1);
-        w[c][0] = 0.5f * (0.5f - f[c]) * (0.5f - f[c]);
-        w[c][1] = 0.75f - f[c] * f[c];
-        w[c][2] = 0.5f * (0.5f + f[c]) * (0.5f + f[c]);
-        v[c][0] = f[c] - 0.5f;
-        v[c][1] = -2 * f[c];
-        v[c][2] = f[c] + 0.5f;
+/// The weights of 3 x 3 x 3 cells in a quadratic B-spline at p, and their changes per cell, along x, y and z. Returns the
+/// number of the first.
+static inline size_t spline_at(const Fire *fire, Float3 p, Four weight[3], Four change[3]) {
+    const Four at = in_cells(fire, p, 1);
+    const Float4Mask middle = __builtin_convertvector(at + 0.5f, Float4Mask);
+    const Four f = at - __builtin_convertvector(middle, Four);
+    weight[0] = 0.5f * (0.5f - f) * (0.5f - f);
+    weight[1] = 0.75f - f * f;
+    weight[2] = 0.5f * (0.5f + f) * (0.5f + f);
+    change[0] = f - 0.5f;
+    change[1] = -2 * f;
+    change[2] = f + 0.5f;
+    return cell_number(fire, middle - 1);
+}
+
+/// The flame at p and its gradient per cell, in that order.
+static inline Four flame_at(const Fire *fire, Float3 p) {
+    Four w[3], v[3], along[3][3], sum = {0, 0, 0, 0};
+    const FireCell *first = &fire->cells[spline_at(fire, p, w, v)];
+    for (int k = 0; k < 3; k++) { // v in place of w where the gradient's component is along that axis
+        const Four low = FLOAT4_SHUFFLE(w[k], v[k], 0, 4, 1, 5), high = FLOAT4_SHUFFLE(w[k], v[k], 2, 6, 3, 7);
+        along[0][k] = FLOAT4_SHUFFLE(low, w[k], 0, 1, 4, 4);
+        along[1][k] = FLOAT4_SHUFFLE(w[k], low, 1, 1, 7, 6);
+        along[2][k] = FLOAT4_SHUFFLE(w[k], high, 2, 2, 4, 5);
     }
 
-    Four sum = {0, 0, 0, 0};
-    float along[3] = {0, 0, 0};
-    for (int z = 0; z < 3; z++)
-        for (int y = 0; y < 3; y++) {
-            size_t row = (size_t)base[0] + (size_t)fire->size[0] *
-                                               ((size_t)(base[1] + y) + (size_t)fire->size[1] * (size_t)(base[2] + z));
-            const FireCell *cells = &fire->cells[row];
-            Four across = four_load(&cells[0].flame) * w[0][0] + four_load(&cells[1].flame) * w[0][1] +
-                          four_load(&cells[2].flame) * w[0][2];
-            sum += across * (w[2][z] * w[1][y]);
-            float change = cells[0].flame * v[0][0] + cells[1].flame * v[0][1] + cells[2].flame * v[0][2];
-            along[0] += change * w[1][y] * w[2][z];
-            along[1] += across[0] * v[1][y] * w[2][z];
-            along[2] += across[0] * w[1][y] * v[2][z];
-        }
+    for (int z = 0; z < 3; z++, first += (size_t)fire->size[0] * (size_t)fire->size[1]) {
+        Four layer = {0, 0, 0, 0};
+        const FireCell *row = first;
+        for (int y = 0; y < 3; y++, row += fire->size[0])
+            layer +=
+                along[1][y] * (along[0][0] * row[0].flame + along[0][1] * row[1].flame + along[0][2] * row[2].flame);
+        sum += along[2][z] * layer;
+    }
 
-    if (slope) *slope = sqrtf(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]) / fire->cell;
+    return sum;
+}
+
+/// All values of the cells at p.
+static FireCell cell_at(const Fire *fire, Float3 p) {
+    Four w[3], v[3], sum = {0, 0, 0, 0};
+    const FireCell *first = &fire->cells[spline_at(fire, p, w, v)];
+    for (int z = 0; z < 3; z++, first += (size_t)fire->size[0] * (size_t)fire->size[1]) {
+        const FireCell *row = first;
+        for (int y = 0; y < 3; y++, row += fire->size[0])
+            sum += (w[z][2] * w[y][1]) * (four_load(&row[0].flame) * w[0][0] + four_load(&row[1].flame) * w[1][0] +
+                                          four_load(&row[2].flame) * w[2][0]);
+    }
     return (FireCell){sum[0], sum[1], sum[2], sum[3]};
+}
+
+/// How far the widest eddies move the flame at p, and its height above the paper, linear between the cells.
+static inline Four sway_at(const Fire *fire, Float3 p) {
+    const size_t right = 1, back = (size_t)fire->size[0], up = back * (size_t)fire->size[1];
+    const Four at = in_cells(fire, p, 0.005f);
+    const Float4Mask whole = __builtin_convertvector(at, Float4Mask);
+    const Four f = at - __builtin_convertvector(whole, Four);
+    const float(*corner)[4] = (const float(*)[4])fire->sway + cell_number(fire, whole);
+    Four layer[2];
+    for (int k = 0; k < 2; k++, corner += up) {
+        Four a = four_load(corner[0]), b = four_load(corner[back]);
+        a += (four_load(corner[right]) - a) * f[0];
+        b += (four_load(corner[back + right]) - b) * f[0];
+        layer[k] = a + (b - a) * f[1];
+    }
+    return layer[0] + (layer[1] - layer[0]) * f[2];
 }
 
 FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
     FirePoint point = {.depth = FIRE_OUTSIDE};
-
-    // how far the widest eddies move the flame there, and its height above the paper, linear between the cells
-    float f[3];
-    const Float3 g = in_cells(fire, p);
-    const float at[3] = {g.x, g.y, g.z};
-    size_t base = 0, over[3] = {1, (size_t)fire->size[0], (size_t)fire->size[0] * (size_t)fire->size[1]};
-    for (int c = 0; c < 3; c++)
-        base += over[c] * (size_t)fire_split(clampf(at[c], 0, (float)fire->size[c] - 1.01f), &f[c]);
-    Four sway = {0, 0, 0, 0};
-    for (int k = 0; k < 8; k++) {
-        size_t corner = base + (k & 1 ? over[0] : 0) + (k & 2 ? over[1] : 0) + (k & 4 ? over[2] : 0);
-        float weight = (k & 1 ? f[0] : 1 - f[0]) * (k & 2 ? f[1] : 1 - f[1]) * (k & 4 ? f[2] : 1 - f[2]);
-        sway += four_load(fire->sway[corner]) * weight;
-    }
+    const Four sway = sway_at(fire, p);
     p = float3_add(p, float3(sway[0], sway[1], 0));
 
     // large eddies move it, then small ones
@@ -328,17 +352,14 @@ FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
     Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), scale * 0.7f * FIRE_WARP_WIDE);
 
     // whether the small eddies can bring flame there
-    const Float3 h = in_cells(fire, shifted);
-    size_t x = (size_t)clampf(h.x + 0.5f, 0, (float)(fire->size[0] - 1));
-    size_t y = (size_t)clampf(h.y + 0.5f, 0, (float)(fire->size[1] - 1));
-    size_t z = (size_t)clampf(h.z + 0.5f, 0, (float)(fire->size[2] - 1));
-    if (!fire->burns[x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z)]) return point;
+    const Four near = in_cells(fire, shifted, 0) + 0.5f;
+    if (!fire->burns[cell_number(fire, __builtin_convertvector(near, Float4Mask))]) return point;
 
-    float slope;
     Noise fine = eddies(fire, shifted, passed, sqrtf(scale) * EDDY_FINE, FINE_OFTEN * sqrtf(scale));
-    const FireCell cell =
-        cell_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), sqrtf(scale) * 0.7f * FIRE_WARP_FINE), &slope);
-    if (cell.flame > 0.02f) shade_flame(fire, &cell, shifted, sway[2], passed, slope, wide, fine, blur, &point);
+    const Four flame =
+        flame_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), sqrtf(scale) * 0.7f * FIRE_WARP_FINE));
+    const float slope = sqrtf(flame[1] * flame[1] + flame[2] * flame[2] + flame[3] * flame[3]) / fire->cell;
+    if (flame[0] > 0.02f) shade_flame(fire, flame[0], shifted, sway[2], passed, slope, wide, fine, blur, &point);
     return point;
 }
 
@@ -350,7 +371,7 @@ Matter fire_smoke_at(const Fire *fire, Float3 p) {
     Float3 moved = float3_mad(p, float3(wide.a, wide.b, wide.c), warp);
     const Noise small = eddies(fire, moved, passed + 0.4f * wide.c, eddy / 2.6f, 0.9f);
     moved = float3_mad(moved, float3(small.a, small.b, small.c), 0.5f * warp);
-    const FireCell cell = cell_at(fire, moved, NULL);
+    const FireCell cell = cell_at(fire, moved);
     const float fold = maxf(1.15f - 2.1f * fabsf(wide.d + 0.5f * small.d) + 0.3f * small.a, 0);
     const float dense = cell.smoke * SMOKE_SEEN_AS * fold * fold * fold;
 
