@@ -64,6 +64,7 @@ void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour 
     const uint32_t first = springs->strand_first[strand], end = springs->strand_first[strand + 1];
     const float side = colour == SINGE_YELLOW ? 0.70710678f : 1; // of a cell, over the spring
     size_t slot = set->strand_slot[strand] + (size_t)(from - first) * STRAND_LANES;
+    bool bends = false;
 
     for (uint32_t k = from; k < to; k++, slot += STRAND_LANES) {
         // the spring before, which is the last one at the start of a ring
@@ -82,7 +83,9 @@ void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour 
         bool whole = set->weight[slot] > 0 && set->weight[slot_before] > 0; // neither burnt nor torn
         const float mean = 0.5f * (length[before] + length[k]);
         set->bend_limit[slot] = fresh && whole ? bend_limit(shell, a, b, c, mean, side * mean) : INFINITY;
+        bends |= set->bend_limit[slot] < INFINITY;
     }
+    if (bends) atomic_store_explicit(&set->bends, true, memory_order_relaxed);
 }
 
 typedef struct Curvature {
@@ -102,6 +105,6 @@ void curvature_project(const DynamicsPlan *plan, Pool *pool, DynamicsState *dyna
     for (int i = 0; i < 2; i++) {
         const StrandSet *set = &plan->strands.sets[colours[i]];
         Curvature job = {set, plan->kernels->bend, dynamics->position[0], 0};
-        if (set->bend_limit) strand_families(set, pool, curvature_range, &job, &job.first_group);
+        if (set->bend_limit && set->bends) strand_families(set, pool, curvature_range, &job, &job.first_group);
     }
 }

@@ -52,6 +52,7 @@ typedef struct StrandSet {
     float *weight;        ///< [row_count STRAND_LANES] W of eq 19, with char; 0 where there is no spring
     float *compliance;    ///< [row_count STRAND_LANES] m/N
     float *bend_limit;    ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
+    _Atomic bool bends;   ///< some limit is, or has been, finite
     float *pull;          ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: not needed
     uint32_t run_count;   ///< of springs: PREPARE_RUN each, in the springs' order
     _Atomic uint8_t *stale; ///< [run_count] 1: weights, lengths or limits of the run change in this step
