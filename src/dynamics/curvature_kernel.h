@@ -8,11 +8,14 @@ typedef struct Bend {
 
 /// Straightens bends that are too sharp by their share BEND_GAIN; false if there are none.
 static inline bool bend_straighten(Bend *bend, Lanes max) {
-    LaneNode a = float4s_node(&bend->a), b = float4s_node(&bend->b), c = float4s_node(&bend->c);
-    Lanes two = lanes_all(2), x = a.x - two * b.x + c.x, y = a.y - two * b.y + c.y, z = a.z - two * b.z + c.z;
-    Lanes square = x * x + y * y + z * z, limit = max * max, zero = lanes_all(0);
+    // r as quadruples, so that it alone is turned into lanes
+    const Float4s twice = float4s_add(&bend->b, &bend->b), half = float4s_sub(&bend->a, &twice);
+    const Float4s off = float4s_add(&half, &bend->c);
+    const LaneNode r = float4s_node(&off);
+    Lanes square = r.x * r.x + r.y * r.y + r.z * r.z, limit = max * max, zero = lanes_all(0);
     if (__builtin_expect(!lanes_any_less(limit, square), 1)) return false;
 
+    LaneNode a = float4s_node(&bend->a), b = float4s_node(&bend->b), c = float4s_node(&bend->c);
     Lanes weight = lanes_max(a.w + lanes_all(4) * b.w + c.w, lanes_all(1e-20f));
     Lanes factor = (lanes_all(1) - max / lanes_sqrt(square)) * lanes_all(BEND_GAIN) / weight;
     factor = lanes_where_less(limit, square, factor, zero);

@@ -8,23 +8,26 @@
 /// would be thrown about.
 #define HEIGHT_MAX 0.05f
 
-/// The cells of the lanes: their nodes, corners and then centres, and what the heights must be.
+/// The cells of the lanes: their nodes, corners and then centres, and what the heights must be, where that varies.
 typedef struct HeightCells {
     uint32_t node[5][LANES]; ///< four times the particle
     float enough[LANES];     ///< m
     float alive[LANES];      ///< 1 or 0
 } HeightCells;
 
-/// `count` cells of the family from number `first` on; lanes beyond repeat the last one.
-static inline void height_cells(const HeightLanes *job, uint32_t first, uint32_t count, HeightCells *cells) {
+/// `count` cells of the family from number `first` on; lanes beyond repeat the last one. Whether all are alive.
+static inline bool height_cells(const HeightLanes *job, uint32_t first, uint32_t count, HeightCells *cells) {
+    uint8_t all = SINGE_ALIVE;
     for (uint32_t lane = 0; lane < LANES; lane++) {
         const uint32_t cell = job->cells[first + (lane < count ? lane : count - 1)];
         const uint32_t centre = job->first_centre + cell;
         for (int i = 0; i < 4; i++) cells->node[i][lane] = 4 * job->corner[cell][i];
         cells->node[4][lane] = 4 * centre;
-        cells->enough[lane] = job->min * field_at(job->thickness, centre);
+        if (job->thickness.mask) cells->enough[lane] = job->min * field_at(job->thickness, centre);
         cells->alive[lane] = job->flags[cell] & SINGE_ALIVE;
+        all &= job->flags[cell];
     }
+    return all;
 }
 
 /// 1 where a height is enough, by its square: `above` is the height times |n|, `square` is |n|^2.
@@ -44,30 +47,33 @@ static inline void height_move(const HeightLanes *job, const uint32_t *node, Lan
 
 /// Corrects the cells of the lanes. Whether all are twice as high as they must be.
 static inline bool height_lanes(const HeightLanes *job, uint32_t first, uint32_t count) {
-    const Lanes zero = lanes_all(0), one = lanes_all(1);
+    const Lanes zero = lanes_all(0), ones = lanes_all(1);
     HeightCells cells;
-    LaneNode node[5];
-    height_cells(job, first, count, &cells);
-    for (int i = 0; i < 5; i++) {
-        const Float4s particles = float4s_gather(job->position, cells.node[i]);
-        node[i] = float4s_node(&particles);
-    }
+    Float4s p[5];
+    const bool all = height_cells(job, first, count, &cells);
+    for (int i = 0; i < 5; i++) p[i] = float4s_gather(job->position, cells.node[i]);
 
-    // heights
-    const LanePoint p0 = points_of(node[0]), p1 = points_of(node[1]), p2 = points_of(node[2]), p3 = points_of(node[3]);
-    const LanePoint normal = points_cross(points_sub(p2, p0), points_sub(p3, p1));
-    const LanePoint sum = points_add(points_add(p0, p1), points_add(p2, p3));
-    const LanePoint off = points_sub(points_of(node[4]), points_scale(sum, lanes_all(0.25f)));
+    // heights: differences as quadruples, so that three are turned into lanes and not five
+    const Float4s one = float4s_sub(&p[2], &p[0]), two = float4s_sub(&p[3], &p[1]);
+    const Float4s front = float4s_add(&p[0], &p[1]), back = float4s_add(&p[2], &p[3]), sum = float4s_add(&front, &back);
+    const Float4s twice_p = float4s_add(&p[4], &p[4]), four = float4s_add(&twice_p, &twice_p);
+    const Float4s off4 = float4s_sub(&four, &sum);
+    const LanePoint normal = points_cross(points_of(float4s_node(&one)), points_of(float4s_node(&two)));
+    const LanePoint off = points_scale(points_of(float4s_node(&off4)), lanes_all(0.25f));
     const Lanes above = points_dot(off, normal), square = points_dot(normal, normal);
-    const Lanes enough = lanes_load(cells.enough), alive = lanes_load(cells.alive);
+    const Lanes enough =
+        job->thickness.mask ? lanes_load(cells.enough) : lanes_all(job->min * field_at(job->thickness, 0));
+    const Lanes alive = all ? ones : lanes_load(cells.alive);
     const Lanes twice = height_is_enough(above, square, lanes_all(2) * enough);
-    if (!lanes_any_less(lanes_where_less(zero, alive, twice, one), one)) return true;
+    if (!lanes_any_less(lanes_where_less(zero, alive, twice, ones), ones)) return true;
 
     // too low: project them
+    LaneNode node[5];
+    for (int i = 0; i < 5; i++) node[i] = float4s_node(&p[i]);
     const Lanes high = height_is_enough(above, square, enough);
     Lanes weight = node[4].w + (node[0].w + node[1].w + node[2].w + node[3].w) / lanes_all(16);
     weight = lanes_where_less(zero, square, lanes_where_less(zero, alive, weight, zero), zero);
-    weight = lanes_where_less(high, one, weight, zero);
+    weight = lanes_where_less(high, ones, weight, zero);
     if (!lanes_any_less(zero, weight)) return false;
 
     const Lanes length = lanes_sqrt(square), missing = enough - above / length;

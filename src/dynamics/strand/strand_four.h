@@ -47,6 +47,14 @@ static inline LaneNode float4s_node(const Float4s *float4s) {
     return (LaneNode){q[0], q[1], q[2], q[3]};
 }
 
+static inline Float4s float4s_add(const Float4s *a, const Float4s *b) {
+    return (Float4s){{a->at[0] + b->at[0], a->at[1] + b->at[1], a->at[2] + b->at[2], a->at[3] + b->at[3]}};
+}
+
+static inline Float4s float4s_sub(const Float4s *a, const Float4s *b) {
+    return (Float4s){{a->at[0] - b->at[0], a->at[1] - b->at[1], a->at[2] - b->at[2], a->at[3] - b->at[3]}};
+}
+
 static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lanes factor) {
     Float4s correction;
     for (int e = 0; e < 4; e++) correction.at[e] = (b->at[e] - a->at[e]) * float4_all(factor[e]);

@@ -41,6 +41,14 @@ static inline void float4s_scatter(float *position, const uint32_t *node, const 
 
 static inline LaneNode float4s_node(const Float4s *float4s) { return *float4s; }
 
+static inline Float4s float4s_add(const Float4s *a, const Float4s *b) {
+    return (Float4s){a->x + b->x, a->y + b->y, a->z + b->z, 0};
+}
+
+static inline Float4s float4s_sub(const Float4s *a, const Float4s *b) {
+    return (Float4s){a->x - b->x, a->y - b->y, a->z - b->z, 0};
+}
+
 static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lanes factor) {
     return (Float4s){(b->x - a->x) * factor, (b->y - a->y) * factor, (b->z - a->z) * factor, 0};
 }

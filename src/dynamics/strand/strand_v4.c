@@ -66,6 +66,14 @@ static inline LaneNode float4s_node(const Float4s *float4s) {
                       (Lanes)_mm512_shuffle_ps(zw01, zw23, 0x44), (Lanes)_mm512_shuffle_ps(zw01, zw23, 0xEE)};
 }
 
+static inline Float4s float4s_add(const Float4s *a, const Float4s *b) {
+    return (Float4s){{a->at[0] + b->at[0], a->at[1] + b->at[1], a->at[2] + b->at[2], a->at[3] + b->at[3]}};
+}
+
+static inline Float4s float4s_sub(const Float4s *a, const Float4s *b) {
+    return (Float4s){{a->at[0] - b->at[0], a->at[1] - b->at[1], a->at[2] - b->at[2], a->at[3] - b->at[3]}};
+}
+
 #define FLOAT4_CORRECTION(e) \
     _mm512_mul_ps(_mm512_sub_ps(b->at[e], a->at[e]), _mm512_permute_ps((__m512)factor, (e)*0x55))
 static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lanes factor) {
