@@ -134,7 +134,6 @@ TEST(wood_is_not_smeared_along_its_grain) {
 /// A table far out of focus changes little from pixel to pixel. Its few samples, others in each pixel, left it speckled.
 TEST(a_table_out_of_focus_is_smooth) {
     static uint8_t rgb[BYTES];
-    SingeSurface nothing = {0};
     PreviewDef def = above();
     def.camera.eye[1] = def.camera.target[1] = 0.118f, def.camera.fov = 0.15f; // a joint
     def.camera.aperture = 0.01f, def.camera.focus = 0.25f;
@@ -152,7 +151,6 @@ TEST(a_table_out_of_focus_is_smooth) {
 /// Scale on a ball of 1300 K shows: how much its inner face varies. It was an even disc.
 TEST(a_glowing_ball_wears_scale) {
     static uint8_t rgb[BYTES];
-    SingeSurface nothing = {0};
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .rotation = {0, 0, 0, 1}, .radius = 0.02f, .temperature = 1300};
     PreviewDef def = above();
     def.camera.fov = 0.09f, def.samples = 16;
@@ -172,7 +170,6 @@ TEST(a_glowing_ball_wears_scale) {
 /// Mortar is lighter than bricks: rows of pixels along a joint, over those along the middles of bricks. It was a dark line.
 TEST(mortar_is_lighter_than_bricks) {
     static uint8_t rgb[BYTES];
-    SingeSurface nothing = {0};
     PreviewDef def = small();
     def.camera = (PreviewCamera){.eye = {0, 0, 0.45f}, .target = {0, 1, 0.45f}, .up = {0, 0, 1}, .fov = 0.3f};
     def.wall = PREVIEW_WALL_BRICK, def.wall_distance = 0.4f;
