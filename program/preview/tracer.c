@@ -1,4 +1,5 @@
 // Rays of a picture against its sheets and shapes.
+#include "common/float4.h"
 #include "preview/internal.h"
 
 /// Shadow rays on their way.
@@ -78,20 +79,52 @@ void tracer_intersect(const Preview *preview, const int *valid, Rays *rays, Hits
         if (hits->triangle[i] != BVH_NONE) rays->far[i] = wanted.far[i];
 }
 
+/// Bits of the rays that come near a shape, whose sphere is looked at by four at a time.
+static unsigned rays_near(const Preview *preview, const PreviewShape *shape, const Rays *rays) {
+    const Float3 centre = shape_centre(shape);
+    const float extent = 1.001f * shape_extent(shape, preview->def.shutter) + 1e-5f; // beyond the error of a distance
+    unsigned near = 0;
+    for (int i = 0; i < LANES; i += 4) {
+        const Float4 dx = float4_load(rays->direction[0] + i), x = centre.x - float4_load(rays->origin[0] + i);
+        const Float4 dy = float4_load(rays->direction[1] + i), y = centre.y - float4_load(rays->origin[1] + i);
+        const Float4 dz = float4_load(rays->direction[2] + i), z = centre.z - float4_load(rays->origin[2] + i);
+        const Float4 along = x * dx + y * dy + z * dz;
+        const Float4 ax = x - along * dx, ay = y - along * dy, az = z - along * dz;
+        near |= float4_bits((ax * ax + ay * ay + az * az <= extent * extent) & (along >= -extent) &
+                            (along <= float4_load(rays->far + i) + extent))
+                << i;
+    }
+    return near;
+}
+
+/// Which of the rays a shape blocks.
+static unsigned rays_blocked(const Preview *preview, const Rays *rays, unsigned asked) {
+    unsigned blocked = 0;
+    for (uint32_t k = 0; k < preview->shape_count && asked & ~blocked; k++) {
+        const PreviewShape *shape = &preview->shapes[k];
+        Float3 normal;
+        for (unsigned near = rays_near(preview, shape, rays) & asked & ~blocked; near; near &= near - 1) {
+            const int i = __builtin_ctz(near);
+            if (shape_intersect(shape, shutter_moment(preview, rays->time[i]), rays_origin(rays, i),
+                                rays_direction(rays, i), preview->scene.epsilon, rays->far[i], &normal) > 0)
+                blocked |= 1u << i;
+        }
+    }
+    return blocked;
+}
+
 void tracer_occlude(const Preview *preview, const int *valid, Rays *rays, float clear[LANES]) {
     const PreviewScene *scene = &preview->scene;
     bool any = false;
+    unsigned asked_bits = 0;
+    for (int i = 0; i < LANES; i++) asked_bits |= (valid[i] ? 1u : 0u) << i;
+    const unsigned blocked = rays_blocked(preview, rays, asked_bits);
 
     for (int i = 0; i < LANES; i++) {
-        clear[i] = 1;
-        if (!valid[i]) rays->far[i] = -1;
-        if (!valid[i]) continue;
-        Float3 o = rays_origin(rays, i), d = rays_direction(rays, i), normal;
-        float moment = shutter_moment(preview, rays->time[i]);
-        for (uint32_t k = 0; k < preview->shape_count && clear[i] > 0; k++)
-            if (shape_intersect(&preview->shapes[k], moment, o, d, scene->epsilon, rays->far[i], &normal) > 0)
-                clear[i] = 0;
-        if (clear[i] <= 0 || !tracer_near(scene, o, d, rays->far[i], 0)) rays->far[i] = -1;
+        clear[i] = blocked >> i & 1 ? 0 : 1;
+        if (!valid[i] || clear[i] <= 0 ||
+            !tracer_near(scene, rays_origin(rays, i), rays_direction(rays, i), rays->far[i], 0))
+            rays->far[i] = -1;
         any = any || rays->far[i] >= 0;
     }
 
