@@ -166,6 +166,9 @@ bool tracer_near(const PreviewScene *scene, Float3 origin, Float3 direction, flo
 /// Nearest hits of the lanes that are valid; moves their `far` there.
 void tracer_intersect(const Preview *preview, const int *valid, Rays *rays, Hits *hits);
 
+/// Bits of the rays that may meet a shape: those that come near the sphere around it.
+unsigned tracer_shape_near(const Preview *preview, const PreviewShape *shape, const Rays *rays);
+
 /// clear[i] is the transmittance along the ray of a valid lane, shapes included; for other lanes, whose `far` must be
 /// -1, it is 1. Changes `far`.
 void tracer_occlude(const Preview *preview, const int *valid, Rays *rays, float clear[LANES]);

@@ -80,31 +80,50 @@ static float moved_across(Float3 motion, Float3 ray) {
     return float3_length(float3_mad(motion, ray, -float3_dot(motion, ray)));
 }
 
-/// The point that a lane's ray sees; false if it passes through a hole and must continue.
-static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
-    Float3 o = block->origin[lane], d = block->direction[lane], normal = {0, 0, 1}, found = {0, 0, 1};
-    Point *point = &block->point[lane];
-    const Hits *hits = &block->hits;
-    bool paper = hits->triangle[lane] != BVH_NONE;
-    float distance = paper ? block->rays.far[lane] : INFINITY;
-    const PreviewShape *shape = NULL;
-    float moment = shutter_moment(preview, block->time[lane]);
+/// The shapes that the rays of a block meet first.
+typedef struct Met {
+    const PreviewShape *shape[LANES]; ///< NULL: none before the sheets
+    float distance[LANES];            ///< to what is met, sheets included
+    Float3 normal[LANES];
+} Met;
+
+static void meet_shapes(const Preview *preview, const Block *block, Met *met) {
+    unsigned wanted = 0;
+    for (int i = 0; i < LANES; i++) {
+        wanted |= (block->valid[i] ? 1u : 0u) << i;
+        met->shape[i] = NULL;
+        met->distance[i] = block->hits.triangle[i] != BVH_NONE ? block->rays.far[i] : INFINITY;
+    }
 
     for (uint32_t k = 0; k < preview->shape_count; k++) {
-        float t = shape_intersect(&preview->shapes[k], moment, o, d, 0, distance, &normal);
-        if (t > 0) {
-            distance = t;
-            shape = &preview->shapes[k];
-            found = normal;
+        const PreviewShape *shape = &preview->shapes[k];
+        for (unsigned near = wanted & tracer_shape_near(preview, shape, &block->rays); near; near &= near - 1) {
+            const int i = __builtin_ctz(near);
+            Float3 normal = {0, 0, 1};
+            const float t = shape_intersect(shape, shutter_moment(preview, block->time[i]), block->origin[i],
+                                            block->direction[i], 0, met->distance[i], &normal);
+            if (!(t > 0)) continue;
+            met->distance[i] = t;
+            met->shape[i] = shape;
+            met->normal[i] = normal;
         }
     }
+}
+
+/// The point that a lane's ray sees; false if it passes through a hole and must continue.
+static bool resolve(const Preview *preview, Block *block, int lane, const Met *met, bool last) {
+    Float3 o = block->origin[lane], d = block->direction[lane];
+    Point *point = &block->point[lane];
+    const Hits *hits = &block->hits;
+    const float distance = met->distance[lane];
+    const PreviewShape *shape = met->shape[lane];
 
     if (backdrop_hit(preview, o, d) < distance) {
         block_see_backdrop(preview, block, lane);
         return true;
     }
 
-    if (!shape && !paper) {
+    if (!shape && hits->triangle[lane] == BVH_NONE) {
         miss_point(point, preview, d);
         return true;
     }
@@ -114,8 +133,9 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
         point->hit = true;
         point->temperature = shape->temperature;
         point->moved = preview->def.shutter * moved_across(float3_load(shape->velocity), d);
+        const Float3 found = met->normal[lane];
         point->normal = point->geometric = float3_dot(found, point->view) >= 0 ? found : float3_scale(found, -1);
-        shape_shade(preview, shape, moment, point);
+        shape_shade(preview, shape, shutter_moment(preview, block->time[lane]), point);
         return true;
     }
 
@@ -152,11 +172,13 @@ void block_find_points(const Preview *preview, Block *block, const int *active) 
     }
 
     for (int pass = 0; pass < HOLE_LIMIT && left; pass++) {
+        Met met;
         tracer_intersect(preview, block->valid, &block->rays, &block->hits);
+        meet_shapes(preview, block, &met);
         left = 0;
         for (int i = 0; i < LANES; i++) {
             if (!block->valid[i]) continue;
-            if (!resolve(preview, block, i, pass == HOLE_LIMIT - 1)) {
+            if (!resolve(preview, block, i, &met, pass == HOLE_LIMIT - 1)) {
                 block->rays.near[i] = block->rays.far[i] + preview->scene.epsilon;
                 block->rays.far[i] = INFINITY;
                 left++;

@@ -79,8 +79,7 @@ void tracer_intersect(const Preview *preview, const int *valid, Rays *rays, Hits
         if (hits->triangle[i] != BVH_NONE) rays->far[i] = wanted.far[i];
 }
 
-/// Bits of the rays that come near a shape, whose sphere is looked at by four at a time.
-static unsigned rays_near(const Preview *preview, const PreviewShape *shape, const Rays *rays) {
+unsigned tracer_shape_near(const Preview *preview, const PreviewShape *shape, const Rays *rays) {
     const Float3 centre = shape_centre(shape);
     const float extent = 1.001f * shape_extent(shape, preview->def.shutter) + 1e-5f; // beyond the error of a distance
     unsigned near = 0;
@@ -103,7 +102,7 @@ static unsigned rays_blocked(const Preview *preview, const Rays *rays, unsigned 
     for (uint32_t k = 0; k < preview->shape_count && asked & ~blocked; k++) {
         const PreviewShape *shape = &preview->shapes[k];
         Float3 normal;
-        for (unsigned near = rays_near(preview, shape, rays) & asked & ~blocked; near; near &= near - 1) {
+        for (unsigned near = tracer_shape_near(preview, shape, rays) & asked & ~blocked; near; near &= near - 1) {
             const int i = __builtin_ctz(near);
             if (shape_intersect(shape, shutter_moment(preview, rays->time[i]), rays_origin(rays, i),
                                 rays_direction(rays, i), preview->scene.epsilon, rays->far[i], &normal) > 0)
