@@ -122,7 +122,7 @@ static SingeResult walk_nodes(Walk *walk, int64_t roots) {
             return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: EXT_mesh_gpu_instancing is not supported", node);
         walk->seen[node] = 1;
 
-        Transform own, here;
+        Transform own = {0}, here; // gcc 14 does not see that a refused transform ends the walk
         TRY(node_transform(gltf, node, &own));
         here = chain(&level->parent, &own);
         TRY(gltf_index(gltf, object, "mesh", gltf->mesh_count, &mesh));
