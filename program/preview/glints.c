@@ -100,7 +100,7 @@ void glints_add(const Preview *preview, Block *block, const int *active) {
     for (int i = 0; i < LANES; i++) {
         Point *point = &block->point[i];
         if (!active[i] || !point->glints) continue;
-        const Mirrored seen = mirror_see(preview, preview->glints[0], block->x[i], block->y[i]);
+        const Mirrored seen = mirror_see(preview, preview->glints[0], (float)block->x[i], (float)block->y[i]);
         point->glints = seen.share > 0.05f;
         if (!point->glints) continue;
         point->glow =

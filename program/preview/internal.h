@@ -237,8 +237,8 @@ void mirror_free(Preview *preview);
 /// Smooths a map across, and so many times down. The second map is scratch.
 void mirror_smooth(const Preview *preview, Mirrored *const maps[2], int times);
 
-/// What a pixel mirrors.
-Mirrored mirror_see(const Preview *preview, const Mirrored *map, int x, int y);
+/// What a map mirrors at a point of the picture, in pixels.
+Mirrored mirror_see(const Preview *preview, const Mirrored *map, float x, float y);
 
 // glints.c
 /// Whether there is metal.

@@ -74,11 +74,11 @@ void mirror_smooth(const Preview *preview, Mirrored *const maps[2], int times) {
     }
 }
 
-Mirrored mirror_see(const Preview *preview, const Mirrored *map, int x, int y) {
+Mirrored mirror_see(const Preview *preview, const Mirrored *map, float x, float y) {
     const int across = mirror_across(preview), down = (int)(mask_size(preview) / (size_t)across);
     float fx, fy;
-    int i = noise_floor(clampf(((float)x + 0.5f) / BLOCK - 0.5f, 0, (float)across - 1), &fx);
-    int j = noise_floor(clampf(((float)y + 0.5f) / BLOCK - 0.5f, 0, (float)down - 1), &fy);
+    int i = noise_floor(clampf((x + 0.5f) / BLOCK - 0.5f, 0, (float)across - 1), &fx);
+    int j = noise_floor(clampf((y + 0.5f) / BLOCK - 0.5f, 0, (float)down - 1), &fy);
     const Mirrored *at = &map[j * across + i], *below = j + 1 < down ? at + across : at;
     const int right = i + 1 < across;
     return mirror_mix(mirror_mix(at[0], at[right], fx), mirror_mix(below[0], below[right], fx), fy);

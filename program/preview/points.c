@@ -70,8 +70,16 @@ void block_see_backdrop(const Preview *preview, Block *block, int lane) {
         return;
     }
     ground_shade(preview, distance, table, point);
+
+    // its waves bend the mirrored ray up or down and aside, over a third of the way from the lens to what it meets; those
+    // of honed stone are as fine as what makes it dull
+    const float *tilt = table->tilt, wavy = preview->def.ground == PREVIEW_GROUND_STONE ? 0.15f : 0.7f;
+    const float bend = wavy / preview->camera.pixel;
+    const Float3 right = float3_unit_or(preview->camera.right, float3(1, 0, 0));
+    const float aside = -d.z * (right.x * tilt[0] + right.y * tilt[1]), down = -(d.x * tilt[0] + d.y * tilt[1]);
     if (preview->mirrored[0])
-        point->mirrored = mirror_see(preview, preview->mirrored[0], block->x[lane], block->y[lane]);
+        point->mirrored = mirror_see(preview, preview->mirrored[0], (float)block->x[lane] + bend * aside,
+                                     (float)block->y[lane] + bend * down);
     point->glow = float3_scale(point->mirrored.light, light_mirrored(point));
 }
 

@@ -129,11 +129,9 @@ void wood_look(const Plank *plank, float x, float y, uint32_t seed, float footpr
     table->albedo = float3_scale(float3(1 + 0.22f * red, 1 - 0.10f * red, 1 - 0.42f * red), maxf(value, 0.04f));
 
     // an oiled face: scratched in any direction, dull in the pores and where it is worn, and its mirror image breaks up along the fibres
-    const float line = minf(fabsf(noise2(24 * x + 150 * y, 60 * y - 9 * x, seed + 15)),
-                            fabsf(noise2(14 * x - 120 * y, 70 * x + 8 * y, seed + 16)));
-    const float scratch =
-        visible(0.0012f, footprint) * (1 - stepf(0.005f, 0.04f, line)) * stepf(0.0f, 0.5f, wear + 0.4f * blotch);
-    table->polish = (0.46f - 0.16f * late + 0.20f * wear + 0.16f * fibre - 0.2f * scratch) * (1 - 0.8f * joint) *
+    float scratch = dashes(0.03f * (8 * x + 6 * y), 8 * y - 6 * x, 0.005f, 0.06f, seed + 15, 10 * footprint);
+    scratch += dashes(0.03f * (9 * x - 4 * y), 9 * y + 4 * x, 0.005f, 0.06f, seed + 16, 10 * footprint);
+    table->polish = (0.46f - 0.16f * late + 0.20f * wear + 0.16f * fibre - 0.3f * scratch) * (1 - 0.8f * joint) *
                     (1 - 0.6f * pores);
     const float across = clampf(p.across / (0.5f * p.width), -1, 1);
     table->tilt[0] = 0.004f * wear;

@@ -217,6 +217,34 @@ TEST(a_glossy_ground_mirrors_embers) {
     assert_float_equal((seen[2] - seen[0]) / (seen[1] - seen[0]), 2, 0.1);
 }
 
+/// The waves of a wooden floor break up what it mirrors: bends from pixel to pixel down the image of a ball, over its light.
+/// The floor itself is black, and what it mirrors of an even sky is divided out.
+TEST(waves_of_wood_break_its_reflections) {
+    static float beauty[2][W * H][3];
+    PreviewDef def = at_night();
+    PreviewShape ball = {
+        .kind = SINGE_COLLIDER_SPHERE, .position = {0, 0, 0.08f}, .radius = 0.025f, .temperature = 1450};
+    SingeSurface nothing = {0};
+    def.shapes = &ball, def.shape_count = 1;
+    def.camera = (PreviewCamera){.eye = {0, -0.5f, 0.1f}, .target = {0, 0, -0.08f}, .up = {0, 0, 1}, .fov = 0.3f};
+    def.ground = PREVIEW_GROUND_WOOD, def.ground_gloss = 6;
+    for (int c = 0; c < 3; c++) def.ground_colour[c] = 0;
+    see(&def, &nothing, NULL, beauty[0]);
+    for (int c = 0; c < 3; c++) def.sky_colour[c] = 1;
+    def.shape_count = 0;
+    see(&def, &nothing, NULL, beauty[1]);
+    float bends = 0, sum = 0;
+    for (int y = H / 2 - 16; y < H / 2 + 16; y++)
+        for (int x = W / 2 - 12; x < W / 2 + 12; x++) {
+            float share[3];
+            for (int k = 0; k < 3; k++)
+                share[k] = beauty[0][(y + k - 1) * W + x][0] / beauty[1][(y + k - 1) * W + x][0];
+            bends += fabsf(share[0] - 2 * share[1] + share[2]), sum += share[1];
+        }
+    print_message("mirrored light bends by %.3f from pixel to pixel\n", (double)(bends / sum));
+    assert_true(bends > 0.045f * sum); // was 0.018
+}
+
 /// Where a wall meets the floor the light does not jump from one pixel to the next: the steepest step in a column is at most
 /// .56 of the way in focus, with the rim slanted, and .5 where a lens blurs it. One sample a pixel, which is enough where
 /// nothing but a floor is seen, breaks both bars: .66 and .92.
