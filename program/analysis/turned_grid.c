@@ -20,8 +20,7 @@ SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error) {
     // a square rotated by 45 degrees is sqrt 2 times as wide; equal extra cells on both sides keep the lines in place
     const uint32_t wide = (uint32_t)cut->cells + 2 * (uint32_t)ceil(0.21 * cut->cells + 1);
     const float size = (float)(cut->size * wide / cut->cells);
-    SingeResult result = mesh_grid(size, size, wide, wide, (SingeAllocator){0}, mesh, error);
-    if (result) return result;
+    TRY(mesh_grid(size, size, wide, wide, (SingeAllocator){0}, mesh, error));
     mesh_grid_wear(mesh, wide, wide, &cut->wear);
     const double c = cos(cut->angle), s = sin(cut->angle), half = cut->size / 2;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {

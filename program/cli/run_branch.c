@@ -417,8 +417,7 @@ SingeResult branch_fill(Run *run, SingeError *error) {
     console_note(run->console, "continuing from frame %d of %s", branch->frame, from->path);
 
     // the checkpoint at the branch is kept, as no other has its scene and its frame
-    result = run_write_checkpoint(run, (Progress){branch->frame, 0}, error);
-    if (result) return result;
+    TRY(run_write_checkpoint(run, (Progress){branch->frame, 0}, error));
     char *kept = folder_kept(to, branch->frame);
     result = folder_link(to->checkpoint, kept, error);
     free(kept);

@@ -96,8 +96,7 @@ static const char *table_path(const Folder *folder, int table) {
 
 /// Reads a file and checks that it has these lines, which take *size bytes.
 static SingeResult lines_read(const char *path, const Extent *extent, Bytes *bytes, size_t *size, SingeError *error) {
-    SingeResult result = file_read(path, (SingeAllocator){0}, bytes, error);
-    if (result) return result;
+    TRY(file_read(path, (SingeAllocator){0}, bytes, error));
 
     size_t at = strlen(extent->header);
     bool good = bytes->size >= at && memcmp(bytes->data, extent->header, at) == 0;

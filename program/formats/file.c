@@ -184,8 +184,7 @@ SingeResult file_write(const char *path, const void *data, size_t size, SingeErr
 SingeResult file_draft(const char *path, char **draft, SingeError *error) {
     int file = -1;
     *draft = NULL;
-    SingeResult result = check_target(path, error);
-    if (result) return result;
+    TRY(check_target(path, error));
 
     char *name = malloc(PATH_MAX + 64);
     if (!name) return refuse_memory(error, "file", path);

@@ -102,8 +102,7 @@ static SingeResult put_pictures(GlbFile *f, const char *path, SingeError *error)
         Bytes bytes;
         uint32_t before;
         if (!f->scene->sheets[i].picture || picture_of(f->scene, i, &before) != i) continue;
-        SingeResult result = output_picture_read(path, f->scene->sheets[i].picture, &bytes, error);
-        if (result) return result;
+        TRY(output_picture_read(path, f->scene->sheets[i].picture, &bytes, error));
         sink_text(&f->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}", f->view_count++ ? "," : "",
                   f->data.size, bytes.size);
         sink_bytes(&f->data, bytes.data, bytes.size);
@@ -199,8 +198,7 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
 /// The header and the two chunks; the data are multiples of 4 bytes anyway.
 SingeResult glb_finish(GlbFile *f, const char *up, const char *extras, const char *path, SingeError *error) {
     if (f->pictures_inside && f->mesh_count) {
-        const SingeResult result = put_pictures(f, path, error);
-        if (result) return result;
+        TRY(put_pictures(f, path, error));
     }
     put_scene(f, up, extras);
     if (f->data.size + f->text.size > UINT32_MAX / 2)

@@ -124,8 +124,7 @@ static uint32_t vat_find(const Vat *vat, const SingeSurface *s, uint32_t i) {
 
 static SingeResult take_frame(Vat *vat, int number, const char *path, SingeError *error) {
     OutputFrame frame;
-    SingeResult result = vat->cache->read(vat->cache->context, number, &frame, error);
-    if (result) return result;
+    TRY(vat->cache->read(vat->cache->context, number, &frame, error));
 
     // moves the remaining vertices, and records their displacements
     memset(vat->found, 0, vat->count);

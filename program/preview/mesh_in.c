@@ -215,8 +215,7 @@ static SingeResult check_surface(const SingeSurface *surface, SingeError *error)
 SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError *error) {
     PreviewScene *scene = &preview->scene;
     scene->vertex_count = scene->triangle_count = 0;
-    SingeResult result = check_surface(surface, error);
-    if (result) return result;
+    TRY(check_surface(surface, error));
 
     const uint32_t vertices = surface->vertex_count;
     const size_t position = sizeof *scene->positions;

@@ -130,8 +130,7 @@ SingeResult preview_pack(Preview *preview, const SingeSurface *surface, double t
                          SingeError *error) {
     *bytes = NULL;
     preview->time = time;
-    SingeResult result = mesh_load(preview, surface, error);
-    if (result) return result;
+    TRY(mesh_load(preview, surface, error));
     fire_raise(preview);
     light_gather(preview);
 

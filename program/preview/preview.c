@@ -159,8 +159,7 @@ static SingeResult preview_allocate(Preview *preview, SingeError *error) {
                             def->height);
     for (uint32_t s = 0; s < def->sheet_count; s++) cloth_count(def, s, &preview->weaves[s]);
     for (uint32_t s = 0; s < def->sheet_count && def->pictures; s++) {
-        SingeResult result = texture_create(preview, &preview->textures[s], def->pictures[s], error);
-        if (result) return result;
+        TRY(texture_create(preview, &preview->textures[s], def->pictures[s], error));
     }
     return SINGE_OK;
 }

@@ -176,8 +176,7 @@ static SingeResult construct(SceneBuilder *builder, SceneFault *fault) {
     if (result) return result;
 
     fault->object = FAULT_COMMIT;
-    result = take_error(builder, singe_sim_commit(builder->sim));
-    if (result) return result;
+    TRY(take_error(builder, singe_sim_commit(builder->sim)));
 
     const struct {
         int object;
@@ -193,8 +192,7 @@ static SingeResult construct(SceneBuilder *builder, SceneFault *fault) {
         fault->object = lists[k].object;
         for (uint32_t i = 0; i < lists[k].count; i++) {
             fault->index = i;
-            result = lists[k].add(builder, i);
-            if (result) return result;
+            TRY(lists[k].add(builder, i));
         }
     }
 
