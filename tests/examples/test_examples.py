@@ -36,6 +36,7 @@ class Example(Case):
         self.cells = self.record("whole")["counts"]["cells"]
         self.fps = self.record("whole")["scene"]["fps"]
         self.say = {}
+        self.addCleanup(self.report)
 
     def column(self, name):
         return [row[name] for row in self.rows]
@@ -53,6 +54,7 @@ class Example(Case):
         self.assertEqual(self.rows[-1]["frame"], len(self.rows))
         self.verified()
         self.say["ledgers"] = f"{max(self.column('ledger_error')):.1e}, {max(self.column('mass_ledger_error')):.1e}"
+        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
 
     def verified(self):
         """`singe verify` finds no faults in the cache, except known ones."""
@@ -157,6 +159,7 @@ class Example(Case):
 
     def report(self):
         print("  ".join(f"{name} {value}" for name, value in self.say.items() if value != 0))
+        self.say.clear()
 
 
 class Letter(Example):
@@ -170,13 +173,11 @@ class Letter(Example):
         hottest = max(self.column("temperature_max")) - ZERO_CELSIUS
         self.say["front"] = f"{1e3 * last['front_speed']:.2f} mm/s"
         self.say["hottest"] = f"{hottest:.0f} C"
-        self.say["burnt"] = f"{last['burnt_fraction']:.2f}"
         self.say["left"] = f"{last['pieces']:.0f} pieces, {last['particles']:.0f} particles, {ash} vertices of ash"
         leaf = 1e4 * self.leaf(len(self.rows))
         self.say["leaf"] = f"{leaf:.0f} cm2 of char at last"
         self.curls("56-60")
         self.keeps_still()
-        self.report()
         self.assertGreaterEqual(leaf, 10)
         self.assertTrue(750 <= hottest <= 1050)  # of flame and embers; strips without edges keep to 950 (heat_front)
         # what office paper does, lying free
@@ -207,7 +208,6 @@ class LetterHanging(Example):
         self.say["unburnt"] = f"{1e3 * rest:.2f} mm/s rms in the last second"
         self.say["hottest"] = f"{max(self.column('temperature_max')) - ZERO_CELSIUS:.0f} C"
         self.curls("100-119")
-        self.report()
         self.assertLessEqual(max(self.column("strain_mean")), 0.008)
         self.assertLessEqual(max(self.column("strain_p99")), 0.03)
         self.assertGreater(self.column("tears")[-1], 0)
@@ -224,10 +224,8 @@ class HotSphere(Example):
         self.common()
         self.before_the_fire()
         last = self.rows[-1]
-        self.say["burnt"] = f"{last['burnt_fraction']:.2f}"
         self.say["pieces"] = f"{last['pieces']:.0f}"
         self.look("50-69")
-        self.report()
         self.assertGreaterEqual(last["pieces"], 2)
         self.assertTrue(0.1 < last["burnt_fraction"] < 0.9)
         self.assertEqual(max(self.column("inverted_cells")), 0)
@@ -238,10 +236,8 @@ class PageHot(Example):
 
     def test_burns_where_the_picture_says(self):
         self.common()
-        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.say["pieces"] = f"{self.rows[-1]['pieces']:.0f}"
         self.look("40-49", unburnt=None)  # nothing of it stays unburnt
-        self.report()
         self.assertGreater(self.rows[-1]["burnt_fraction"], 0.6)
         self.assertGreaterEqual(self.rows[-1]["pieces"], 4)
         self.assertEqual(max(self.column("inverted_cells")), 0)
@@ -255,8 +251,6 @@ class Note(Example):
     def test_burns_to_ash(self):
         self.common()
         last = self.rows[-1]
-        self.say["burnt"] = f"{last['burnt_fraction']:.2f}"
-        self.report()
         self.assertGreater(last["burnt_fraction"], 0.75)  # what is left is ash and a rest of char
         self.assertLess(self.rows[12]["burnt_fraction"], 1e-3)  # the match comes first
         self.assertEqual(max(self.column("inverted_cells")), 0)
@@ -269,9 +263,7 @@ class Macro(Example):
 
     def test_burns_to_a_leaf(self):
         self.common()
-        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.curls("40-49")
-        self.report()
         self.assertTrue(0.6 < self.rows[-1]["burnt_fraction"] < 0.95)
         self.assertLess(self.rows[-1]["pieces"], 20)
         self.assertEqual(max(self.column("inverted_cells")), 0)
@@ -284,7 +276,6 @@ class Newspaper(Example):
         self.common()
         self.say["front"] = f"{1e3 * self.rows[-1]['front_speed']:.2f} mm/s"
         self.curls("80-99")
-        self.report()
         # newsprint as sources have it: 7.8 to 12.4 mm/s
         self.assertTrue(7.8e-3 <= self.rows[-1]["front_speed"] <= 12.4e-3)
         self.assertTrue(0.2 < self.rows[-1]["burnt_fraction"] < 0.9)
@@ -300,12 +291,10 @@ class Curtain(Example):
         self.common()
         ignited = next(row["time"] for row in self.rows if row["ignited"] > 0)
         self.say["ignites"] = f"after {ignited:.1f} s"
-        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         # gusts keep it moving long after the hooks have come to rest
         moving = root_mean_square([row["speed_rms_unburnt"] for row in self.rows if 2 < row["time"] < 4])
         self.say["swings"] = f"{100 * moving:.1f} cm/s rms"
         self.look("100-119", unburnt=None)
-        self.report()
         self.assertTrue(0.1 < self.rows[-1]["burnt_fraction"] < 0.9)
         self.assertGreater(moving, 0.02)
         self.assertLessEqual(max(self.column("strain_mean")), 0.01)
@@ -316,9 +305,7 @@ class StackEdge(Example):
 
     def test_goes_from_sheet_to_sheet(self):
         self.common()
-        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.look("60-79")
-        self.report()
         # one sheet alone is a fifth
         self.assertGreater(self.rows[-1]["burnt_fraction"], 0.4)
         self.assertEqual(max(self.column("inverted_cells")), 0)
@@ -350,11 +337,9 @@ class Stack(Example):
         self.common()
         self.before_the_fire()
         burnt = self.burnt_of_sheets()
-        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.say["char of the sheets"] = " ".join(f"{share:.2f}" for share in burnt)
         lit = self.lit()
         self.say["lit"] = " ".join(f"{time:.1f}" for time in lit) + " s"
-        self.report()
         self.assertGreater(burnt[0], burnt[4])
         self.assertGreater(burnt[4], 0.01)
         match_out = 1.1  # s
@@ -383,8 +368,6 @@ class CrumpledBall(Example):
         sizes = ("x".join(f"{1e3 * side:.0f}" for side in size) for size in (flat, held, lying))
         self.say["size"] = ", ".join(sizes) + " mm"
         self.say["strain"] = f"mean {max(self.column('strain_mean')):.4f} p99 {max(self.column('strain_p99')):.4f}"
-        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
-        self.report()
         # 21 cm long as it lay flat, less than half of that between the boxes, and not flat again when they have gone
         self.assertGreater(max(flat), 0.2)
         self.assertLess(max(held), 0.1)
@@ -424,7 +407,6 @@ class HotIron(Example):
         last_under, last_beside = self.parts(len(self.rows))
         burnt = sum(v["burnt"] for v in last_under) / len(last_under)
         self.say["char at last"] = f"{burnt:.2f}"
-        self.report()
         self.assertTrue(290 < heated < 335 and warmest < 80)
         self.assertEqual(max(v["burnt"] for v in beside + last_beside), 0)
         self.assertGreater(burnt, 0.5)
@@ -465,10 +447,8 @@ class Shirt(Example):
         burnt = [vertex["rest_z"] for vertex in self.vertices(burning) if vertex["burnt"] > 0.5]
         self.say["hem"] = f"{below:.2f} m"
         self.say["fire"] = f"up to {max(burnt):.2f} m in frame {burning}"
-        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.say["strain"] = f"mean {max(self.column('strain_mean')):.4f}"
         self.say["tears"] = f"{self.rows[104]['tears']:.0f} until frame 105"
-        self.report()
         self.assertTrue(0.75 < below < 0.84)  # from 0.85 m: it hangs from the shoulders, and not through them
         self.assertEqual(self.rows[lit - 1]["burnt_fraction"], 0)
         self.assertGreater(max(burnt), 1.2)  # climbs
@@ -497,7 +477,6 @@ class Garment(Example):
         first, last = buttons(1), buttons(len(self.rows))
         self.say["buttons"] = f"{len(first)}, {len(last)} at the end, {1e3 * min(last):.2f} to {1e3 * max(last):.2f} mm"
         self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
-        self.report()
         self.assertEqual(self.cells, 1312)
         self.assertEqual(len(first), 5)
         self.assertTrue(0.0135 < min(first) <= max(first) < 0.0155)
@@ -523,11 +502,9 @@ class BurningTorus(Example):
         self.common()
         first, rest, last = (max(v["z"] for v in self.vertices(frame)) for frame in (1, 15, len(self.rows)))
         self.say["top"] = f"{1e3 * first:.0f}, {1e3 * rest:.0f}, {1e3 * last:.0f} mm"
-        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.say["pieces"] = f"{self.rows[-1]['pieces']:.0f}"
         halves = max(self.unburnt_halves(frame) for frame in range(90, 150, 5))
         self.say["halves"] = halves
-        self.report()
         self.assertEqual(self.unburnt_halves(15), 1)
         self.assertGreaterEqual(halves, 2)
         self.assertGreater(self.column("tears")[-1], 0)
@@ -546,8 +523,6 @@ class Title(Example):
         self.common()
         last = self.rows[-1]
         self.say["arrival"] = f"{1e3 * last['arrival_error']:.1f} ms, {last['arrival_missed']:.0f} missed"
-        self.say["burnt"] = f"{last['burnt_fraction']:.2f}"
-        self.report()
         self.assertTrue(0 < max(self.column("arrival_error")) <= 1.01 / (self.fps * 16)) # a step
         self.assertEqual(max(self.column("arrival_missed")), 0)
         self.assertEqual(max(self.column("inverted_cells")), 0)
@@ -590,7 +565,6 @@ class Blanket(Example):
         self.run_example("air", "--threads", "1", "--set", "sheets.1.material.smother_distance=0")
         air = [float(row["burnt_fraction"]) for row in self.stats("air")]
         self.say["burnt"] = f"{burnt[19]:.4f} before, {burnt[-1]:.4f} at the end, {air[-1]:.4f} with air"
-        self.report()
         self.assertGreater(burnt[19], 0.005)
         self.assertLess(burnt[-1] - burnt[48], 1e-6)
         self.assertLess(self.rows[-1]["temperature_max"], 240 + ZERO_CELSIUS)
