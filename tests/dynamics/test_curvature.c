@@ -9,19 +9,22 @@
 
 #include "support/test.h"
 
+// what a case works on
+static Bench bench;
+
 enum { NX = 24, NY = 6 };
 static const float cell = 2e-3f, curvature = 350; // about 40 degrees a cell
 
-static void open_sheet(Bench *bench, Quads quads, float limit) {
+static void open_sheet(Bench *b, Quads quads, float limit) {
     SingeMaterialDef material = singe_default_material();
     material.curvature_max = singe_param(limit);
-    bench_open(bench, quads, &material, 2);
+    bench_open(b, quads, &material, 2);
 }
 
 /// Folds a grid along its middle column: `angle` in rad within one row of edges, or spread over an arc of `turns`
 /// cells.
-static void fold(Bench *bench, float angle, int turns) {
-    for (uint32_t v = 0; v < bench->shell.vertex_count; v++) {
+static void fold(Bench *b, float angle, int turns) {
+    for (uint32_t v = 0; v < b->shell.vertex_count; v++) {
         uint32_t i = v % (NX + 1);
         float x = 0, z = 0, heading = 0;
         for (uint32_t k = 0; k < i; k++) {
@@ -30,17 +33,17 @@ static void fold(Bench *bench, float angle, int turns) {
             x += cell * cosf(heading), z += cell * sinf(heading);
         }
 
-        float *p = bench->state.dynamics.position[v];
+        float *p = b->state.dynamics.position[v];
         p[0] = x, p[2] = z;
     }
 }
 
 /// The largest |r| of three vertices in a row along x, over what an arc of the limit has.
-static double sharpest(const Bench *bench) {
+static double sharpest(const Bench *b) {
     double max = 0;
-    for (uint32_t v = 0; v < bench->shell.vertex_count; v++) {
+    for (uint32_t v = 0; v < b->shell.vertex_count; v++) {
         if (v % (NX + 1) == 0 || v % (NX + 1) == NX) continue;
-        const float(*x)[4] = (const float(*)[4])bench->state.dynamics.position;
+        const float(*x)[4] = (const float(*)[4])b->state.dynamics.position;
         Float3 a = float3_sub(float3_load(x[v]), float3_load(x[v - 1])),
                b = float3_sub(float3_load(x[v + 1]), float3_load(x[v]));
         max = fmax(max, (double)float3_length(float3_sub(b, a)));
@@ -50,11 +53,11 @@ static double sharpest(const Bench *bench) {
 }
 
 /// kg m and kg m2: sums of m x and of m x cross x_0, which no force between particles changes.
-static void momenta(const Bench *bench, const float (*start)[4], double *sums) {
+static void momenta(const Bench *b, const float (*start)[4], double *sums) {
     memset(sums, 0, 6 * sizeof *sums);
-    for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
-        const float *x = bench->state.dynamics.position[i];
-        double m = (double)bench->shell.matter.mass[i], d[3];
+    for (uint32_t i = 0; i < b->shell.particle_count; i++) {
+        const float *x = b->state.dynamics.position[i];
+        double m = (double)b->shell.matter.mass[i], d[3];
         for (int k = 0; k < 3; k++) d[k] = (double)x[k] - (double)start[i][k];
         for (int k = 0; k < 3; k++) {
             int a = (k + 1) % 3, b = (k + 2) % 3;
@@ -64,24 +67,23 @@ static void momenta(const Bench *bench, const float (*start)[4], double *sums) {
     }
 }
 
-static float (*copy_positions(const Bench *bench))[4] {
-    size_t bytes = (bench->shell.particle_count + 1) * sizeof *bench->state.dynamics.position;
+static float (*copy_positions(const Bench *b))[4] {
+    size_t bytes = (b->shell.particle_count + 1) * sizeof *b->state.dynamics.position;
     float(*copy)[4] = malloc(bytes);
-    memcpy(copy, bench->state.dynamics.position, bytes);
+    memcpy(copy, b->state.dynamics.position, bytes);
     return copy;
 }
 
-static bool is_touched(Bench *bench) {
-    bench_prepare(bench);
-    float(*before)[4] = copy_positions(bench);
-    curvature_project(bench->plan, bench->pool, &bench->state.dynamics);
-    bool touched = memcmp(before, bench->state.dynamics.position, bench->shell.particle_count * sizeof *before) != 0;
+static bool is_touched(Bench *b) {
+    bench_prepare(b);
+    float(*before)[4] = copy_positions(b);
+    curvature_project(b->plan, b->pool, &b->state.dynamics);
+    bool touched = memcmp(before, b->state.dynamics.position, b->shell.particle_count * sizeof *before) != 0;
     free(before);
     return touched;
 }
 
 TEST(sharp_folds_are_rounded) {
-    Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
     bench_prepare(&bench);
@@ -92,7 +94,6 @@ TEST(sharp_folds_are_rounded) {
 }
 
 TEST(momenta_are_kept) {
-    Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
     bench_prepare(&bench);
@@ -112,7 +113,6 @@ TEST(momenta_are_kept) {
 }
 
 TEST(gentle_bends_are_not_touched) {
-    Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 0.9f * curvature * cell * 8, 8);
     assert_false(is_touched(&bench));
@@ -123,7 +123,6 @@ TEST(gentle_bends_are_not_touched) {
 
 /// A limit beyond what cells of this size bear is that of the cells: beta, 45 degrees for these.
 TEST(coarse_cells_set_the_curvature_limit) {
-    Bench bench;
     const float beta = atanf(2 * singe_default_material().thickness.value / cell);
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), 1e5f);
     fold(&bench, 0.95f * beta * 8, 8);
@@ -134,7 +133,6 @@ TEST(coarse_cells_set_the_curvature_limit) {
 }
 
 TEST(without_a_limit_nothing_is_touched) {
-    Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), 0);
     fold(&bench, 2.5f, 1);
     assert_false(is_touched(&bench));
@@ -142,7 +140,6 @@ TEST(without_a_limit_nothing_is_touched) {
 }
 
 TEST(char_folds_as_it_likes) {
-    Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.burn.mass[i] = 0.9f;
@@ -151,7 +148,6 @@ TEST(char_folds_as_it_likes) {
 }
 
 TEST(removed_springs_do_not_bend) {
-    Bench bench;
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
@@ -162,7 +158,6 @@ TEST(removed_springs_do_not_bend) {
 
 /// A tube that is rounder at rest than the limit, and a flat sheet whose vertices lie off their rows.
 TEST(rest_shapes_are_kept) {
-    Bench bench;
     open_sheet(&bench, quads_grid(8, NY, cell, cell, true), 100);
     assert_false(is_touched(&bench));
     bench_close(&bench);
@@ -179,7 +174,6 @@ TEST(rest_shapes_are_kept) {
 
 /// Around a tube that is pressed flat there are folds at every ring's first vertex or elsewhere: all are rounded.
 TEST(rings_are_limited_all_around) {
-    Bench bench;
     open_sheet(&bench, quads_grid(32, 2, cell, cell, true), curvature);
     for (uint32_t turn = 0; turn < 32; turn++) {
         for (uint32_t v = 0; v < bench.shell.vertex_count; v++) {

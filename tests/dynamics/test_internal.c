@@ -7,18 +7,19 @@
 
 #include "dynamics/dynamics_plan.h"
 
+// what a case works on
+static Bench bench;
+
 static const float pi = 3.14159265f;
 
-static void momentum(const Bench *bench, double p[3]) {
+static void momentum(const Bench *b, double p[3]) {
     p[0] = p[1] = p[2] = 0;
-    for (uint32_t i = 0; i < bench->shell.particle_count; i++)
-        for (int k = 0; k < 3; k++)
-            p[k] += (double)bench->state.dynamics.velocity[i][k] / (double)bench->plan->inverse_mass[i];
+    for (uint32_t i = 0; i < b->shell.particle_count; i++)
+        for (int k = 0; k < 3; k++) p[k] += (double)b->state.dynamics.velocity[i][k] / (double)b->plan->inverse_mass[i];
 }
 
 /// Share of a standing wave across the sheet that is left after `steps` of friction, measured off the margins.
 static double wave_left(float cell, float wavelength, int steps) {
-    Bench bench;
     uint32_t n = (uint32_t)lroundf(0.4f / cell);
 
     bench_open_plain(&bench, quads_grid(n, 4, cell, cell, false));
@@ -51,7 +52,6 @@ TEST(waves_decay_by_their_length) {
 }
 
 TEST(friction_keeps_momentum) {
-    Bench bench;
     bench_open_plain(&bench, quads_grid(20, 16, 0.004f, 0.004f, false));
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         bench.state.burn.mass[i] = 0.3f + 0.7f * (float)(i % 7) / 6;
@@ -76,7 +76,6 @@ TEST(friction_keeps_momentum) {
 
 /// Friction does not act across a spring that is gone.
 TEST(friction_stops_at_cuts) {
-    Bench bench;
     bench_open_plain(&bench, quads_grid(20, 1, 0.01f, 0.01f, false));
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t k = 0; k < bench.shell.springs[c].count; k++) {
@@ -96,7 +95,6 @@ TEST(friction_stops_at_cuts) {
 }
 
 TEST(inverted_cells_are_mended) {
-    Bench bench;
     bench_open_plain(&bench, quads_grid(8, 8, 0.005f, 0.005f, false));
     double thickness = (double)field_at(bench.shell.matter.thickness, shell_centre(&bench.shell, 0));
     for (uint32_t c = 0; c < bench.shell.cell_count; c += 9) // the diagonal: centres pushed through their corners
@@ -117,15 +115,15 @@ TEST(inverted_cells_are_mended) {
 }
 
 /// The most that a side of any cell is longer than its target, times it.
-static double longest_side(const Bench *bench) {
-    const Shell *shell = &bench->shell;
+static double longest_side(const Bench *b) {
+    const Shell *shell = &b->shell;
     double max = 0;
     for (uint32_t c = 0; c < shell->cell_count; c++)
         for (int i = 0; i < 4; i++) {
-            const float(*x)[4] = (const float(*)[4])bench->state.dynamics.position;
+            const float(*x)[4] = (const float(*)[4])b->state.dynamics.position;
             Float3 side = float3_sub(float3_load(x[shell->cells[c][(i + 1) & 3]]), float3_load(x[shell->cells[c][i]]));
             uint32_t spring = shell->cell_springs[c].blue[i];
-            max = fmax(max, (double)(float3_length(side) / bench->state.burn.spring_length[SINGE_BLUE][spring]));
+            max = fmax(max, (double)(float3_length(side) / b->state.burn.spring_length[SINGE_BLUE][spring]));
         }
     return max;
 }
@@ -133,7 +131,6 @@ static double longest_side(const Bench *bench) {
 /// A vertex that was pulled away by three cells returns to a quarter more than a side and flies off no further;
 /// momentum is conserved.
 TEST(sides_have_a_max) {
-    Bench bench;
     bench_open_plain(&bench, quads_grid(12, 12, 0.01f, 0.01f, false));
     bench_prepare(&bench);
     float(*x)[4] = bench.state.dynamics.position, (*v)[4] = bench.state.dynamics.velocity;
@@ -163,7 +160,6 @@ TEST(some_sides_have_no_max) {
     for (int kind = 0; kind < 5; kind++) {
         SingeMaterialDef material = bench_plain_material();
         if (kind == 1) material.compliance[SINGE_BLUE].value = 1e-3f;
-        Bench bench;
         bench_open(&bench, quads_grid(3, 1, 0.01f, 0.01f, false), &material, 1);
         bench_prepare(&bench);
         float(*x)[4] = bench.state.dynamics.position;
@@ -185,7 +181,6 @@ TEST(some_sides_have_no_max) {
 
 /// Eq 19 by hand: the mean of the ends' weights, softened by how far they are burnt; none where a spring is gone.
 TEST(weights_follow_eq_19) {
-    Bench bench;
     SingeMaterialDef material = bench_plain_material();
     material.weight[SINGE_BLUE].value = 0.8f, material.char_weight.value = 0.4f, material.mass_min.value = 0.2f;
     bench_open(&bench, quads_grid(3, 3, 0.005f, 0.005f, false), &material, 1);
@@ -204,7 +199,6 @@ TEST(weights_follow_eq_19) {
 TEST(compliance_does_not_depend_on_substeps) {
     double stretch[2];
     for (int run = 0; run < 2; run++) {
-        Bench bench;
         SingeMaterialDef material = bench_plain_material();
         material.damping = singe_param(6);
         for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = singe_param(5);
@@ -229,7 +223,6 @@ TEST(compliance_does_not_depend_on_substeps) {
 /// Two masses on a spring between two corners swing with omega^2 = (w_a + w_b)/c, and keep their energy: eq 13 gives
 /// back all that the projection takes.
 TEST(compliant_springs_swing_with_their_period_and_energy) {
-    Bench bench;
     SingeMaterialDef material = bench_plain_material();
     const double compliance = 20, h = 1.0 / 40000;
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = singe_param(c == SINGE_BLUE ? 20 : 1e6f);
@@ -267,7 +260,6 @@ TEST(compliant_springs_swing_with_their_period_and_energy) {
 
 /// Springs burnt to ash keep a share of their weight that varies: here from 0.2 at the left to 0.8 at the right.
 TEST(char_weight_follows_an_attribute) {
-    Bench bench;
     SingeMaterialDef material = bench_plain_material();
     material.char_weight =
         singe_param_field(0.2f, 0.8f, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "along"});
@@ -288,7 +280,6 @@ TEST(char_weight_follows_an_attribute) {
 TEST(damping_and_drag_follow_a_texture) {
     static const float halves[] = {0, 1};
     for (int drag = 0; drag < 2; drag++) {
-        Bench bench;
         SingeMaterialDef material = bench_plain_material();
         SingeParam param =
             singe_param_field(0, 4, &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}});
@@ -314,7 +305,6 @@ TEST(damping_and_drag_follow_a_texture) {
 
 /// A ribbon whose lower half gives and whose upper half does not: the stretch of its two ends as it hangs.
 static void hang(SingeParam compliance, double stretch[2]) {
-    Bench bench;
     SingeMaterialDef material = bench_plain_material();
     material.damping = singe_param(6);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = compliance;

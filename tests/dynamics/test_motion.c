@@ -10,23 +10,26 @@
 
 #include "support/test.h"
 
-static Float3 centre_of_mass(const Bench *bench) {
+// what a case works on
+static Bench bench;
+
+static Float3 centre_of_mass(const Bench *b) {
     double sum[3] = {0, 0, 0}, mass = 0;
-    for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
-        double m = (double)bench->shell.matter.mass[i];
-        for (int k = 0; k < 3; k++) sum[k] += m * (double)bench->state.dynamics.position[i][k];
+    for (uint32_t i = 0; i < b->shell.particle_count; i++) {
+        double m = (double)b->shell.matter.mass[i];
+        for (int k = 0; k < 3; k++) sum[k] += m * (double)b->state.dynamics.position[i][k];
         mass += m;
     }
 
     return float3((float)(sum[0] / mass), (float)(sum[1] / mass), (float)(sum[2] / mass));
 }
 
-static double blue_strain(const Bench *bench) {
-    const SpringSet *blue = &bench->shell.springs[SINGE_BLUE];
+static double blue_strain(const Bench *b) {
+    const SpringSet *blue = &b->shell.springs[SINGE_BLUE];
     double worst = 0;
     for (uint32_t k = 0; k < blue->count; k++) {
-        Float3 d = float3_sub(float3_load(bench->state.dynamics.position[blue->ends[k][1]]),
-                              float3_load(bench->state.dynamics.position[blue->ends[k][0]]));
+        Float3 d = float3_sub(float3_load(b->state.dynamics.position[blue->ends[k][1]]),
+                              float3_load(b->state.dynamics.position[blue->ends[k][0]]));
         worst = fmax(worst, fabs((double)float3_length(d) / (double)blue->rest[k] - 1));
     }
 
@@ -34,7 +37,6 @@ static double blue_strain(const Bench *bench) {
 }
 
 TEST(a_sheet_falls_freely) {
-    Bench bench;
     bench_open_plain(&bench, quads_grid(10, 10, 0.02f, 0.02f, false));
     float start = centre_of_mass(&bench).z;
     for (int step = 0; step < 240; step++) bench_step(&bench, 1.0f / 480);
@@ -47,7 +49,6 @@ TEST(a_sheet_falls_freely) {
 }
 
 TEST(drag_gives_a_terminal_speed) {
-    Bench bench;
     SingeMaterialDef material = bench_plain_material();
     material.drag = singe_param(1.3f);
     bench_open(&bench, quads_grid(6, 6, 0.02f, 0.02f, false), &material, 1);
@@ -65,7 +66,6 @@ TEST(free_pieces_flutter) {
     enum { STEPS = 480, PIECES = 6 };
     double turned[PIECES];
     for (int freed = 0; freed < PIECES; freed++) {
-        Bench bench;
         SingeMaterialDef material = bench_plain_material();
         material.drag = singe_param(1.3f);
         material.grammage = singe_param(0.020f);
@@ -99,7 +99,6 @@ TEST(free_pieces_flutter) {
 
 /// A thrown, spinning sheet: lengths kept, momentum kept.
 TEST(free_flight_keeps_lengths_and_momentum) {
-    Bench bench;
     bench_open_plain(&bench, quads_grid(20, 20, 0.01f, 0.01f, false));
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
         const float *r = bench.shell.rest_position[i];
@@ -121,7 +120,6 @@ TEST(free_flight_keeps_lengths_and_momentum) {
 
 /// Damping takes exp(-d t) of a free motion, by (1 + h d)^-1 in every substep.
 TEST(damping_decays_exponentially) {
-    Bench bench;
     SingeMaterialDef material = bench_plain_material();
     material.damping = singe_param(2);
     bench_open(&bench, quads_grid(4, 4, 0.01f, 0.01f, false), &material, 1);
@@ -149,15 +147,14 @@ TEST(damping_decays_exponentially) {
 }
 
 /// Angular momentum about the centre of mass.
-static void angular_momentum(const Bench *bench, double spin[3]) {
+static void angular_momentum(const Bench *b, double spin[3]) {
     double centre[3] = {0}, drift[3] = {0}, mass = 0;
     spin[0] = spin[1] = spin[2] = 0;
     for (int pass = 0; pass < 2; pass++)
-        for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
-            double m = (double)bench->shell.matter.mass[i], r[3], v[3];
+        for (uint32_t i = 0; i < b->shell.particle_count; i++) {
+            double m = (double)b->shell.matter.mass[i], r[3], v[3];
             for (int k = 0; k < 3; k++) {
-                r[k] = (double)bench->state.dynamics.position[i][k],
-                v[k] = (double)bench->state.dynamics.velocity[i][k];
+                r[k] = (double)b->state.dynamics.position[i][k], v[k] = (double)b->state.dynamics.velocity[i][k];
                 if (pass == 0) centre[k] += m * r[k], drift[k] += m * v[k];
                 else r[k] -= centre[k] / mass, v[k] -= drift[k] / mass;
             }
@@ -170,7 +167,6 @@ static void angular_momentum(const Bench *bench, double spin[3]) {
 
 /// Share of its spin that a free sheet has left after a second of one turn, about x (along the arc) or z (normal).
 static double spin_left(int axis, float smoothing, bool bent) {
-    Bench bench;
     SingeMaterialDef material = bench_plain_material();
     material.compliance[SINGE_GREEN] = singe_param(1); // a cloth: what is stiff swings between bends as it turns
     Quads quads = quads_grid(20, 20, 0.01f, 0.01f, false);
@@ -213,7 +209,6 @@ TEST(spin_decays_as_predicted) {
 
 /// The largest strain after a second of a sheet crushed to 1 % of its size, and a little thrown about.
 static double open_crushed(uint32_t seed) {
-    Bench bench;
     bench_open_plain(&bench, quads_grid(12, 12, 0.01f, 0.01f, false));
     bench.plan->settings.gravity[2] = 0;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
@@ -246,7 +241,6 @@ TEST(a_crushed_sheet_opens) {
 
 /// Distance that a small sheet slides in 0.5 s down a plane of this slope.
 static double slide(float slope, float friction) {
-    Bench bench;
     bench_open_plain(&bench, quads_grid(4, 4, 0.01f, 0.01f, false));
     SingeColliderDef plane = singe_default_collider();
     plane.friction = friction;
@@ -277,7 +271,6 @@ TEST(friction_holds_a_block_on_a_slope) {
 }
 
 TEST(a_moving_plane_carries_the_sheet) {
-    Bench bench;
     bench_open_plain(&bench, quads_grid(4, 4, 0.01f, 0.01f, false));
     SingeColliderDef plane = singe_default_collider();
     plane.friction = 0.8f;
@@ -292,7 +285,6 @@ TEST(a_moving_plane_carries_the_sheet) {
 
 TEST(no_vertex_is_inside_a_collider) {
     for (SingeColliderKind kind = SINGE_COLLIDER_SPHERE; kind <= SINGE_COLLIDER_CAPSULE; kind++) {
-        Bench bench;
         bench_open_plain(&bench, quads_grid(20, 20, 0.01f, 0.01f, false));
         SingeColliderDef def = singe_default_collider();
         def.kind = kind;
@@ -335,7 +327,6 @@ TEST(bytes_do_not_depend_on_the_thread_count) {
 
 /// A sheet held along its upper edge comes to rest with little strain, no crossed layer, no jitter.
 TEST(a_hung_sheet_comes_to_rest) {
-    Bench bench;
     SingeMaterialDef material = singe_default_material();
     material.damping = singe_param(2); // else it swings for seconds: centres lie to one side of the held edge
     Quads quads = quads_grid(30, 40, 0.005f, 0.005f, false);

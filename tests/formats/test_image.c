@@ -7,10 +7,14 @@
 
 TEST_IN_FOLDER("a.png")
 
-static SingeResult read_copy(const uint8_t *data, size_t size, Image *image, SingeError *error) {
+// what a case works on
+static Image image;
+static SingeError error;
+
+static SingeResult read_copy(const uint8_t *data, size_t size, Image *made, SingeError *why) {
     uint8_t *copy = calloc(size ? size : 1, 1);
     memcpy(copy, data, size);
-    SingeResult result = image_read("a.png", copy, size, (SingeAllocator){0}, image, error);
+    SingeResult result = image_read("a.png", copy, size, (SingeAllocator){0}, made, why);
     free(copy);
     return result;
 }
@@ -58,8 +62,6 @@ static void encode_png(Encoded *encoded, PngKind kind, const uint8_t *rows, size
 }
 
 static void expect_pixels(const Encoded *encoded, int width, int height, const uint8_t *rgb) {
-    Image image;
-    SingeError error;
     if (read_copy(encoded->bytes, encoded->size, &image, &error)) fail_msg("%s", error.message);
     assert_int_equal(image.width, width);
     assert_int_equal(image.height, height);
@@ -120,10 +122,8 @@ TEST(png_write_reads_back) {
     enum { WIDTH = 33, HEIGHT = 17 };
     uint8_t rgb[WIDTH * HEIGHT * 3];
     for (size_t i = 0; i < sizeof rgb; i++) rgb[i] = (uint8_t)(i * i >> 3);
-    SingeError error;
     if (png_write(path, WIDTH, HEIGHT, rgb, &error)) fail_msg("%s", error.message);
     Bytes bytes = take_file(path);
-    Image image;
     assert_int_equal(read_copy(bytes.data, bytes.size, &image, &error), SINGE_OK);
     assert_int_equal(image.width, WIDTH);
     assert_int_equal(image.height, HEIGHT);
@@ -176,8 +176,6 @@ TEST(reads_jpeg) {
     for (int i = 0; i < WIDTH * HEIGHT; i++) rgb[3 * i] = 200, rgb[3 * i + 1] = 100, rgb[3 * i + 2] = 50;
     for (int progressive = 0; progressive < 2; progressive++) {
         encode_jpeg(&encoded, WIDTH, HEIGHT, 3, JCS_RGB, rgb, progressive);
-        Image image;
-        SingeError error;
         if (read_copy(encoded.bytes, encoded.size, &image, &error)) fail_msg("%s", error.message);
         assert_int_equal(image.width, WIDTH);
         assert_int_equal(image.height, HEIGHT);
@@ -193,7 +191,6 @@ TEST(reads_grey_and_ink) {
     uint8_t grey[8 * 8], ink[8 * 8 * 4];
     memset(grey, 77, sizeof grey);
     encode_jpeg(&encoded, 8, 8, 1, JCS_GRAYSCALE, grey, false);
-    Image image;
     assert_int_equal(read_copy(encoded.bytes, encoded.size, &image, NULL), SINGE_OK);
     for (int i = 0; i < 8 * 8 * 3; i++) assert_in_range(image.rgb[i], 75, 79);
     image_free(&image);
@@ -235,8 +232,6 @@ static void claim_png(Encoded *encoded, uint32_t width, uint32_t height) {
 
 TEST(files_that_are_not_pictures_are_refused) {
     static Encoded encoded;
-    Image image;
-    SingeError error;
     assert_int_equal(read_copy((const uint8_t *)"", 0, &image, &error), SINGE_ERROR_FORMAT);
     assert_message(&error, "empty");
     assert_int_equal(read_copy((const uint8_t *)"GIF89a..", 8, &image, &error), SINGE_ERROR_FORMAT);
@@ -300,11 +295,10 @@ TEST(a_size_is_known_beforehand) {
 
 TEST(luminance_is_exact_at_the_ends) {
     uint8_t rgb[] = {0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 51, 51};
-    Image image = {.width = 3, .height = 2, .rgb = rgb};
+    Image ends = {.width = 3, .height = 2, .rgb = rgb};
     SingeTexture picture;
     TestAllocator counter = {0};
-    SingeError error;
-    assert_int_equal(image_luminance(&image, test_allocator(&counter), &picture, &error), SINGE_OK);
+    assert_int_equal(image_luminance(&ends, test_allocator(&counter), &picture, &error), SINGE_OK);
     assert_int_equal(picture.width, 3);
     assert_int_equal(picture.height, 2);
     static const float expected[] = {0, 1, 0.2126f, 0.7152f, 0.0722f, 0.2f};
@@ -313,7 +307,7 @@ TEST(luminance_is_exact_at_the_ends) {
     test_allocator(&counter).resize(&counter, (void *)picture.values, 6 * sizeof(float), 0);
     test_allocator_check(&counter);
     TestAllocator failing = {.fail_at = 1, .once = true};
-    assert_int_equal(image_luminance(&image, test_allocator(&failing), &picture, &error), SINGE_ERROR_MEMORY);
+    assert_int_equal(image_luminance(&ends, test_allocator(&failing), &picture, &error), SINGE_ERROR_MEMORY);
 }
 
 TEST(allocation_failure_is_clean) {
@@ -321,8 +315,6 @@ TEST(allocation_failure_is_clean) {
     static const uint8_t rgba[16] = {1, 2, 3, 4}, ink[8 * 8 * 4] = {0};
     encode_png(&encoded[0], (PngKind){2, 2, 8, PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_ADAM7, 0}, rgba, 8);
     encode_jpeg(&encoded[1], 8, 8, 4, JCS_CMYK, ink, false);
-    Image image;
-    SingeError error;
     for (int i = 0; i < 2; i++)
         test_allocations_fail(2, image_read("a", encoded[i].bytes, encoded[i].size, allocator, &image, &error),
                               image_free(&image));

@@ -2,8 +2,12 @@
 
 #include <math.h>
 
-static SingeResult parse(const char *text, Polygons *mesh, SingeError *error) {
-    return read_mesh("a.obj", text, strlen(text), mesh, error);
+// what a case works on
+static Polygons mesh;
+static SingeError error;
+
+static SingeResult parse(const char *text, Polygons *made, SingeError *why) {
+    return read_mesh("a.obj", text, strlen(text), made, why);
 }
 
 static void expect_error(const char *text, SingeResult code, int64_t line, const char *part) {
@@ -13,8 +17,6 @@ static void expect_error(const char *text, SingeResult code, int64_t line, const
 #define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
 static void expect_mesh(const char *text, uint32_t vertices, const uint32_t *cells, uint32_t cell_count) {
-    Polygons mesh;
-    SingeError error;
     if (parse(text, &mesh, &error)) fail_msg("%s", error.message);
     assert_int_equal(mesh.vertex_count, vertices);
     assert_int_equal(mesh.face_count, cell_count);
@@ -24,7 +26,6 @@ static void expect_mesh(const char *text, uint32_t vertices, const uint32_t *cel
 }
 
 TEST(keeps_order_and_positions) {
-    Polygons mesh;
     const char *text = "# a comment\n"
                        "mtllib a.mtl\no thing\ng group\ns off\nusemtl paper\n"
                        "v 0.1 -0.2 3e-1\nv 1.25e2 0 .5\nv 1 1. 0 0.5 0.25 1\nv -0 1 0.30000001192092896\n"
@@ -107,7 +108,6 @@ TEST(refuses_bad_meshes) {
 }
 
 TEST(faces_have_any_number_of_corners) {
-    Polygons mesh;
     assert_int_equal(parse(SQUARE "v 2 0 0\nf 1 2 3\nf 1 3 4\nf 2 5 3\nf 1 2 5 3 4\nf 1 1 2\n", &mesh, NULL), SINGE_OK);
     static const uint32_t first[] = {0, 3, 6, 9, 14, 17}, lines[] = {6, 7, 8, 9, 10};
     static const uint32_t corners[] = {0, 1, 2, 0, 2, 3, 1, 4, 2, 0, 1, 4, 2, 3, 0, 0, 1};
@@ -122,7 +122,6 @@ TEST(faces_have_any_number_of_corners) {
 
 // A vertex may have another uv in each face: a seam.
 TEST(corners_keep_their_uv) {
-    Polygons mesh;
     assert_int_equal(parse(SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\nf 1/2 3/1 4/3\n", &mesh, NULL), SINGE_OK);
     static const float uv[] = {0, 0, 1, 0, 1, 1, 1, 0, 0, 0, 1, 1};
     assert_memory_equal(mesh.uv, uv, sizeof uv);
@@ -130,8 +129,6 @@ TEST(corners_keep_their_uv) {
 }
 
 TEST(readers_are_chosen_by_extension) {
-    Polygons mesh;
-    SingeError error;
     static const char text[] = SQUARE "f 1 2 3 4\n";
     const uint8_t *bytes = (const uint8_t *)text;
 
@@ -151,20 +148,19 @@ static const char sample[] = SQUARE "v 2 0 0\nv 2 1 0\nvt 0 0\nvt .5 0\nvt .5 1\
 
 // A cut file may only be read where the cut leaves whole faces.
 TEST(every_cut_is_an_error) {
-    Polygons whole, mesh;
-    SingeError error;
+    Polygons whole, cut;
     assert_int_equal(parse(sample, &whole, &error), SINGE_OK);
     int read = 0;
     for (size_t size = 0; size < sizeof sample - 1; size++) {
         char *text = strdup(sample);
         text[size] = 0;
-        if (parse(text, &mesh, &error) == SINGE_OK) {
+        if (parse(text, &cut, &error) == SINGE_OK) {
             read++;
-            assert_true(mesh.face_count <= whole.face_count);
-            assert_int_equal(mesh.vertex_count, whole.vertex_count);
-            assert_memory_equal(mesh.positions, whole.positions, whole.vertex_count * 12);
-            assert_memory_equal(mesh.corners, whole.corners, mesh.corner_count * 4);
-            polygons_free(&mesh);
+            assert_true(cut.face_count <= whole.face_count);
+            assert_int_equal(cut.vertex_count, whole.vertex_count);
+            assert_memory_equal(cut.positions, whole.positions, whole.vertex_count * 12);
+            assert_memory_equal(cut.corners, whole.corners, cut.corner_count * 4);
+            polygons_free(&cut);
         } else {
             assert_true(error.message[0] != 0);
         }
@@ -179,8 +175,6 @@ TEST(every_cut_is_an_error) {
 }
 
 TEST(allocation_failure_is_clean) {
-    Polygons mesh;
-    SingeError error;
     test_allocations_fail(5, obj_read("a.obj", (const uint8_t *)sample, sizeof sample - 1, allocator, &mesh, &error),
                           polygons_free(&mesh));
 }
@@ -189,8 +183,6 @@ TEST(allocation_failure_is_clean) {
 // (4 + 2 + 2 + 2 a cell, fewer at the border).
 TEST(the_letter_is_a4) {
     Bytes bytes;
-    Polygons mesh;
-    SingeError error;
     SingeAllocator libc = {0};
 
     if (file_read("examples/letter/letter.obj", libc, &bytes, &error)) fail_msg("%s", error.message);

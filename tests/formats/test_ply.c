@@ -2,6 +2,10 @@
 
 #include <math.h>
 
+// what a case works on
+static Polygons mesh;
+static SingeError error;
+
 static void expect_error(const char *text, SingeResult code, int64_t line, const char *part) {
     assert_mesh_refused("a.ply", text, strlen(text), code, line, part);
 }
@@ -27,8 +31,6 @@ TEST(reads_ascii) {
                                "0 0 5 6 1 1 51 -32768 0\r\n"
                                "0 0 7 8 0 0 102 0 0\r\n"
                                "9 4 3 2 1 0";
-    Polygons mesh;
-    SingeError error;
 
     if (read_mesh("a.ply", text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);
     static const float positions[] = {1, 2, 0.1f, 3, 4, -1e-3f, 5, 6, 0, 7, 8, 0};
@@ -110,8 +112,6 @@ static Maker make_binary(bool big) {
 TEST(reads_binary_of_both_orders) {
     for (int big = 0; big < 2; big++) {
         Maker maker = make_binary(big);
-        Polygons mesh;
-        SingeError error;
         if (read_mesh("a.ply", maker.bytes, maker.size, &mesh, &error)) fail_msg("%s", error.message);
         assert_int_equal(mesh.vertex_count, 4);
         assert_memory_equal(mesh.positions, corners, sizeof corners);
@@ -207,8 +207,6 @@ TEST(refuses_bad_binary_values) {
         size_t body = maker.size;
         put_double(&maker, bad[i]);
         for (int k = 0; k < 40; k++) put(&maker, 0, 1);
-        Polygons mesh;
-        SingeError error;
         assert_int_equal(read_mesh("a.ply", maker.bytes, maker.size, &mesh, &error), SINGE_ERROR_FORMAT);
         assert_true(error.element >= (int64_t)body && error.element <= (int64_t)body + 8);
     }
@@ -230,8 +228,6 @@ TEST(large_claims_take_no_memory) {
     };
     for (size_t i = 0; i < sizeof claims / sizeof *claims; i++) {
         TestAllocator counter = {0};
-        Polygons mesh;
-        SingeError error;
         assert_int_equal(
             ply_read("a.ply", (const uint8_t *)claims[i], strlen(claims[i]), test_allocator(&counter), &mesh, &error),
             SINGE_ERROR_FORMAT);
@@ -245,8 +241,6 @@ TEST(faces_have_uv_of_their_own) {
     static const char text[] =
         HEADER "element vertex 4\n" XYZ "element face 2\nproperty list uchar float texcoord\n" FACES
                "end_header\n" SQUARE "6 0 0 1 0 1 1 3 0 1 2\n8 0 0 1 1 0 1 .5 .5 4 0 2 3 1\n";
-    Polygons mesh;
-    SingeError error;
 
     if (read_mesh("a.ply", text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);
     static const float uv[] = {0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1, 0.5f, 0.5f};
@@ -263,8 +257,6 @@ TEST(faces_have_uv_of_their_own) {
 
 TEST(every_truncation_of_ascii_is_an_error) {
     static const char text[] = GOOD_HEADER SQUARE "4 0 1 2 3\n";
-    Polygons mesh;
-    SingeError error;
 
     // only the last newline may be missing
     for (size_t size = 0; size + 2 < sizeof text; size++)
@@ -275,8 +267,6 @@ TEST(every_truncation_of_ascii_is_an_error) {
 
 TEST(allocation_failure_is_clean) {
     Maker maker = make_binary(false);
-    Polygons mesh;
-    SingeError error;
     test_allocations_fail(15, ply_read("a.ply", maker.bytes, maker.size, allocator, &mesh, &error),
                           polygons_free(&mesh));
 }
@@ -301,8 +291,6 @@ TEST(counts_without_bytes_take_no_memory) {
     static const char text[] =
         "ply\nformat binary_little_endian 1.0\nelement vertex 2147483647\nelement face 1\n" FACES "end_header\n\3";
     TestAllocator counts = {0};
-    Polygons mesh;
-    SingeError error;
 
     assert_int_equal(ply_read("a.ply", (const uint8_t *)text, sizeof text - 1, test_allocator(&counts), &mesh, &error),
                      SINGE_ERROR_FORMAT);

@@ -1,10 +1,12 @@
 // STL: what is read, and what is refused with its line or byte.
 #include "format_test.h"
 
+// what a case works on
+static Polygons mesh;
+static SingeError error;
+
 static void expect_mesh(const char *name, const char *text, const float *positions, uint32_t vertices,
                         const uint32_t *corners, uint32_t corner_count, uint32_t faces) {
-    Polygons mesh;
-    SingeError error;
     if (read_mesh(name, text, strlen(text), &mesh, &error)) fail_msg("%s", error.message);
     assert_int_equal(mesh.vertex_count, vertices);
     assert_int_equal(mesh.corner_count, corner_count);
@@ -47,8 +49,6 @@ static size_t binary(uint8_t *bytes, const char *head, uint32_t count) {
 
 TEST(stl_bytes_are_read) {
     uint8_t bytes[184];
-    Polygons mesh;
-    SingeError error;
 
     static const char *const heads[] = {"a program", "solid, though it is not"};
     for (int i = 0; i < 2; i++) {
@@ -105,8 +105,6 @@ static const char good_stl[] =
 
 TEST(every_cut_is_refused) {
     uint8_t bytes[184];
-    Polygons mesh;
-    SingeError error;
     for (size_t size = 0; size < sizeof good_stl - 1; size++)
         assert_int_equal(read_mesh("a.stl", good_stl, size, &mesh, &error), SINGE_ERROR_FORMAT);
     for (size_t size = 0; size < binary(bytes, "a", 2); size++)
@@ -121,8 +119,6 @@ TEST(failing_memory_is_reported) {
         const void *data;
         size_t size;
     } files[] = {{"a.stl", good_stl, sizeof good_stl - 1}, {"b.stl", bytes, sizeof bytes}};
-    Polygons mesh;
-    SingeError error;
     for (int i = 0; i < 2; i++)
         test_allocations_fail(0, polygons_read(files[i].name, files[i].data, files[i].size, allocator, &mesh, &error),
                               polygons_free(&mesh));

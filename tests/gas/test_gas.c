@@ -13,6 +13,8 @@ typedef struct Air {
     SingeWindDef wind;
 } Air;
 
+static Air air; ///< what a case works on
+
 static GasSettings settings_default(void) {
     GasSettings settings = {.def = singe_default_gas(),
                             .gravity = {0, 0, -9.81f},
@@ -23,68 +25,67 @@ static GasSettings settings_default(void) {
     return settings;
 }
 
-static void air_open(Air *air, const GasSettings *settings) {
+static void air_open(Air *a, const GasSettings *settings) {
     RigDef def = rig_default(8, 8, 0.005f, 0.005f);
-    *air = (Air){.wind = singe_default_wind()};
-    rig_open(&air->rig, &def);
-    SingeResult result = gas_plan_create(&air->rig.memory, &air->rig.shell, settings, &air->plan, &air->rig.state.gas);
+    *a = (Air){.wind = singe_default_wind()};
+    rig_open(&a->rig, &def);
+    SingeResult result = gas_plan_create(&a->rig.memory, &a->rig.shell, settings, &a->plan, &a->rig.state.gas);
     assert_int_equal(result, SINGE_OK);
 }
 
-static void air_close(Air *air) {
-    gas_plan_free(&air->rig.memory, air->plan);
-    rig_close(&air->rig);
+static void air_close(Air *a) {
+    gas_plan_free(&a->rig.memory, a->plan);
+    rig_close(&a->rig);
 }
 
-static void air_step(Air *air) {
-    Rig *rig = &air->rig;
+static void air_step(Air *a) {
+    Rig *rig = &a->rig;
     StepContext context = {.shell = &rig->shell,
                            .state = state_input(&rig->state),
                            .colliders = &rig->colliders,
                            .sources = &rig->sources,
-                           .wind = &air->wind,
+                           .wind = &a->wind,
                            .pool = rig->pool};
 
     context.state.gas = NULL;
-    gas_step(air->plan, &context, &rig->state.gas);
+    gas_step(a->plan, &context, &rig->state.gas);
     rig->state.step++;
     rig->state.time = (double)rig->state.step / 72;
 }
 
 /// Burns as much as brings the gas `heat` J, evenly; of one layer only.
-static void air_burn(Air *air, double heat, bool corners) {
-    const Shell *shell = &air->rig.shell;
+static void air_burn(Air *a, double heat, bool corners) {
+    const Shell *shell = &a->rig.shell;
     double mass = 0;
     for (uint32_t i = 0; i < shell->particle_count; i++)
         if (shell_is_corner(shell, i) == corners)
             mass += (double)(shell->matter.mass[i] * field_at(shell->matter.gas_heat, i)) *
                     (1 - (double)field_at(shell->matter.char_yield, i));
     for (uint32_t i = 0; i < shell->particle_count; i++)
-        if (shell_is_corner(shell, i) == corners) air->rig.state.burn.fuel[i] -= (float)(heat / mass);
+        if (shell_is_corner(shell, i) == corners) a->rig.state.burn.fuel[i] -= (float)(heat / mass);
 }
 
-static const GasTurn *air_turn(const Air *air) { return &air->plan->turn[air->rig.state.gas.turn]; }
+static const GasTurn *air_turn(const Air *a) { return &a->plan->turn[a->rig.state.gas.turn]; }
 
 /// J of heat and fuel in the gas.
-static double air_heat(const Air *air) {
-    const GasGrid *grid = &air->plan->grid;
-    const GasTurn *turn = air_turn(air);
-    double sum = 0, volume = pow((double)air->plan->cell, 3);
+static double air_heat(const Air *a) {
+    const GasGrid *grid = &a->plan->grid;
+    const GasTurn *turn = air_turn(a);
+    double sum = 0, volume = pow((double)a->plan->cell, 3);
     for (size_t c = 0; c < grid->cells; c++)
         sum += (double)turn->field[GAS_FUEL][c] + (double)GAS_HEAT * (double)turn->field[GAS_LIGHTNESS][c];
     return sum * volume;
 }
 
-static double air_max(const Air *air, GasField field) {
+static double air_max(const Air *a, GasField field) {
     double max = 0;
-    for (size_t c = 0; c < air->plan->grid.cells; c++) max = fmax(max, (double)air_turn(air)->field[field][c]);
+    for (size_t c = 0; c < a->plan->grid.cells; c++) max = fmax(max, (double)air_turn(a)->field[field][c]);
     return max;
 }
 
 /// Burnt mass is in the gas, as fuel or as heat, until it reaches the border.
 TEST(heat_is_kept) {
     GasSettings settings = settings_default();
-    Air air;
     air_open(&air, &settings);
     double brought = 0;
     for (int step = 0; step < 24; step++) {
@@ -103,7 +104,6 @@ TEST(power_is_the_real_fires) {
     for (int k = 0; k < 3; k++) {
         GasSettings settings = settings_default();
         settings.def.radiated = k == 1 ? 0.25f : 0, settings.pace = k == 2 ? 4 : 1;
-        Air air;
         air_open(&air, &settings);
         air_burn(&air, 4, false);
         air_step(&air);
@@ -122,7 +122,6 @@ TEST(a_source_with_power_has_a_flame) {
     for (int pace = 1; pace <= 5; pace += 4) {
         GasSettings settings = settings_default();
         settings.def.radiated = 0.25f, settings.pace = (float)pace;
-        Air air;
         air_open(&air, &settings);
         SingeSourceDef match = singe_default_source();
         match.power = 60, match.start = 1.5f / 72, match.end = 3.5f / 72;
@@ -162,7 +161,6 @@ TEST(a_source_with_power_has_a_flame) {
 /// What a jet makes of a steady fire: J/m3 of fuel and K where there is most, and how far along x its heat is, m.
 static void blow(float speed, double found[3]) {
     GasSettings settings = settings_default();
-    Air air;
     air_open(&air, &settings);
     SingeSourceDef jet = singe_default_source();
     jet.kind = SINGE_SOURCE_JET;
@@ -205,7 +203,6 @@ TEST(jets_thin_fuel_cool_and_bend_flames) {
 static double plume_speed(double power, double height) {
     enum { FIRST = 200, LAST = 440, PLANE_MAX = 1000 };
     GasSettings settings = settings_default();
-    Air air;
     air_open(&air, &settings);
     double sum[PLANE_MAX] = {0}, max = 0;
     for (int step = 0; step < LAST; step++) {
@@ -247,7 +244,6 @@ TEST(solids_shut_cells) {
     const SingeColliderKind kinds[3] = {SINGE_COLLIDER_BOX, SINGE_COLLIDER_MESH, SINGE_COLLIDER_HEIGHTFIELD};
     for (int q = 0; q < 3; q++) {
         GasSettings settings = settings_default();
-        Air air;
         air_open(&air, &settings);
         SingePoseKey key = {.position = {0.02f, 0.02f, 0.18f}, .rotation = {0, 0, 0.3827f, 0.9239f}};
         SingeColliderDef def = singe_default_collider();
@@ -283,7 +279,6 @@ TEST(solids_shut_cells) {
 /// collider.
 TEST(flow_goes_around) {
     GasSettings settings = settings_default();
-    Air air;
     air_open(&air, &settings);
     SingePoseKey key = {.position = {0, 0, 0.18f}, .rotation = {0, 0, 0, 1}};
     Collider *ball = &air.rig.collider[0];
@@ -332,7 +327,6 @@ TEST(gas_heats_what_it_flows_past) {
         GasSettings settings = settings_default();
         settings.def.conductance = k ? 20 : 0;
         settings.gravity[2] = 0, settings.gravity[1] = -9.81f; // y is up: the sheet hangs
-        Air air;
         air_open(&air, &settings);
         const Shell *shell = &air.rig.shell;
         for (int step = 0; step < 10; step++) {
@@ -363,7 +357,6 @@ TEST(gas_heats_what_it_flows_past) {
 /// When all is over it rests, and wakes when something burns again.
 TEST(the_gas_comes_to_rest) {
     GasSettings settings = settings_default();
-    Air air;
     air_open(&air, &settings);
     assert_false(air.rig.state.gas.awake);
     air_step(&air);
@@ -386,7 +379,6 @@ TEST(the_gas_comes_to_rest) {
 TEST(copes_with_anything) {
     GasSettings settings = settings_default();
     settings.def.conductance = 20;
-    Air air;
     air_open(&air, &settings);
     air.wind.velocity[0] = 300;
     float(*x)[4] = air.rig.state.dynamics.position;
@@ -413,7 +405,6 @@ TEST(grid_suits_the_sheets) {
     for (int k = 0; k < 4; k++) {
         GasSettings settings = settings_default();
         settings.def.cell_size = cells[k];
-        Air air;
         air_open(&air, &settings);
         SingeGas gas = gas_view(air.plan);
         double count = 1;

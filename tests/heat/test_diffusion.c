@@ -3,17 +3,20 @@
 
 #include <math.h>
 
+// what a case works on
+static Rig rig;
+
 static const double PI = 3.14159265358979;
 
 // --- slab: T = 600 + 300 cos(pi x/L) decays as exp(-alpha (pi/L)^2 t), insulated at both ends -------------------
 
 /// Amplitude of the mode in one layer: its projection, with areas as weights.
-static double mode_amplitude(const Rig *rig, double length, bool centres) {
+static double mode_amplitude(const Rig *r, double length, bool centres) {
     double sum = 0, norm = 0;
-    for (uint32_t i = 0; i < rig->shell.particle_count; i++) {
-        if (shell_is_corner(&rig->shell, i) == centres) continue;
-        double c = cos(PI * (double)rig_position(rig, i)[0] / length), area = (double)rig->shell.matter.area[i];
-        sum += area * c * ((double)rig->state.heat.temperature[i] - 600);
+    for (uint32_t i = 0; i < r->shell.particle_count; i++) {
+        if (shell_is_corner(&r->shell, i) == centres) continue;
+        double c = cos(PI * (double)rig_position(r, i)[0] / length), area = (double)r->shell.matter.area[i];
+        sum += area * c * ((double)r->state.heat.temperature[i] - 600);
         norm += area * c * c;
     }
 
@@ -26,7 +29,6 @@ static double mode_error(int n, float aspect, bool centres, float exchange) {
     float dx = (float)length / (float)n;
     RigDef def = rig_default(n, 3, dx, dx * aspect);
     def.material.layer_exchange = singe_param(exchange);
-    Rig rig;
     rig_open(&rig, &def);
     int steps = 2 * n * n;
     rig.h = (float)(seconds / steps);
@@ -64,20 +66,19 @@ typedef struct Moments {
 } Moments;
 
 /// Second moments of T - 300 in a layer (0 corners, 1 centres, 2 both), or with the umbrella's capacity as weight (3).
-static Moments moments(const Rig *rig, int layer) {
+static Moments moments(const Rig *r, int layer) {
     Moments m = {0};
-    double mx = 0, my = 0, *weight = test_calloc(rig->shell.particle_count, sizeof *weight);
-    for (uint32_t i = 0; i < rig->shell.particle_count; i++)
-        weight[i] = layer == 3 ? 0 : (double)rig->shell.matter.area[i];
+    double mx = 0, my = 0, *weight = test_calloc(r->shell.particle_count, sizeof *weight);
+    for (uint32_t i = 0; i < r->shell.particle_count; i++) weight[i] = layer == 3 ? 0 : (double)r->shell.matter.area[i];
     for (int c = 0; c < SINGE_COLOUR_COUNT && layer == 3; c++)
-        for (uint32_t k = 0; k < rig->shell.springs[c].count; k++)
+        for (uint32_t k = 0; k < r->shell.springs[c].count; k++)
             for (int end = 0; end < 2; end++)
-                weight[rig->shell.springs[c].ends[k][end]] += (double)rig->shell.springs[c].rest[k] / 2;
+                weight[r->shell.springs[c].ends[k][end]] += (double)r->shell.springs[c].rest[k] / 2;
     for (int pass = 0; pass < 2; pass++)
-        for (uint32_t i = 0; i < rig->shell.particle_count; i++) {
-            if (layer < 2 && shell_is_corner(&rig->shell, i) == (layer == 1)) continue;
-            double w = weight[i] * ((double)rig->state.heat.temperature[i] - 300);
-            double x = (double)rig_position(rig, i)[0], y = (double)rig_position(rig, i)[1];
+        for (uint32_t i = 0; i < r->shell.particle_count; i++) {
+            if (layer < 2 && shell_is_corner(&r->shell, i) == (layer == 1)) continue;
+            double w = weight[i] * ((double)r->state.heat.temperature[i] - 300);
+            double x = (double)rig_position(r, i)[0], y = (double)rig_position(r, i)[1];
             if (pass == 0) m.sum += w, mx += w * x, my += w * y;
             else
                 m.x += w * (x - mx / m.sum) * (x - mx / m.sum), m.y += w * (y - my / m.sum) * (y - my / m.sum),
@@ -90,7 +91,6 @@ static Moments moments(const Rig *rig, int layer) {
 
 /// Growth of the variances over 2 t, that is the diffusivity in each direction.
 static Moments gaussian(const RigDef *def, int layer, double deviation) {
-    Rig rig;
     rig_open(&rig, def);
     double x = (double)rig_position(&rig, rig_vertex(&rig, def->nx / 2, def->ny / 2))[0];
     double y = (double)rig_position(&rig, rig_vertex(&rig, def->nx / 2, def->ny / 2))[1];
@@ -178,17 +178,17 @@ TEST(umbrella_has_its_derived_diffusivity) {
 }
 
 /// A warm spot on a crumpled sheet spreads for 20 steps; the sheet's corner is burnt away in the middle of them.
-static void spread(Rig *rig, SingeHeatOperator operator, float size, bool burns) {
+static void spread(Rig *r, SingeHeatOperator operator, float size, bool burns) {
     RigDef def = rig_default(12, 12, 0.002f, 0.002f);
     def.material.heat_operator = operator;
-    rig_open(rig, &def);
-    for (uint32_t i = 0; i < rig->shell.particle_count; i++) {
-        for (int k = 0; k < 3; k++) rig->state.dynamics.position[i][k] = size * rig_position(rig, i)[k];
-        rig->state.heat.temperature[i] = i % 7 == 0 ? 900.0f : 300.0f;
+    rig_open(r, &def);
+    for (uint32_t i = 0; i < r->shell.particle_count; i++) {
+        for (int k = 0; k < 3; k++) r->state.dynamics.position[i][k] = size * rig_position(r, i)[k];
+        r->state.heat.temperature[i] = i % 7 == 0 ? 900.0f : 300.0f;
     }
     for (int k = 0; k < 20; k++) {
-        if (burns && k == 10) rig_remove(rig, rig_vertex(rig, 5, 5)), rig_remove(rig, rig_vertex(rig, 6, 5));
-        rig_step(rig);
+        if (burns && k == 10) rig_remove(r, rig_vertex(r, 5, 5)), rig_remove(r, rig_vertex(r, 6, 5));
+        rig_step(r);
     }
 }
 
@@ -242,7 +242,6 @@ TEST(umbrella_slab_mode_decays) {
         RigDef def = rig_default(n, n, s, s);
         def.material.heat_operator = SINGE_HEAT_UMBRELLA;
         def.material.thickness = singe_param(s / 2);
-        Rig rig;
         rig_open(&rig, &def);
         rig.h = 0.01f;
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
@@ -270,7 +269,6 @@ TEST(insulated_sheet_keeps_its_heat) {
     RigDef def = rig_default(20, 20, 0.002f, 0.002f);
     def.shape = jitter;
     def.settings.tolerance = 1e-2f; // conserved however badly it is solved
-    Rig rig;
     rig_open(&rig, &def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = 300 + 900 * rig_random(i, 5);
@@ -290,7 +288,6 @@ TEST(uniform_temperature_stays_to_the_bit) {
         RigDef def = rig_default(9, 7, 0.002f, 0.002f);
         def.shape = jitter;
         def.material.heat_operator = k ? SINGE_HEAT_UMBRELLA : SINGE_HEAT_SURFACE;
-        Rig rig;
         rig_open(&rig, &def);
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.heat.temperature[i] = 517.3f;
         for (int step = 0; step < 20; step++) rig_step(&rig);
@@ -303,7 +300,6 @@ TEST(linear_temperature_is_steady_on_skewed_quads) {
     RigDef def = rig_default(16, 16, 0.002f, 0.002f);
     def.shape = jitter;
     def.material.layer_exchange = singe_param(0);
-    Rig rig;
     rig_open(&rig, &def);
     rig.h = 2e-4f; // alpha dt/s^2 = 0.005: the border is not felt four cells away
     for (uint32_t i = 0; i < rig.shell.vertex_count; i++)
@@ -326,7 +322,6 @@ TEST(linear_temperature_is_steady_on_skewed_quads) {
 TEST(iterations_have_an_end) {
     RigDef def = rig_default(600, 1, 0.002f, 0.002f);
     def.settings.tolerance = 1e-6f;
-    Rig rig;
     rig_open(&rig, &def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = rig_position(&rig, i)[0] < 0.3f ? 900 : 400;
@@ -347,7 +342,6 @@ TEST(layers_even_out_at_their_rate) {
     RigDef def = rig_default(8, 6, 0.002f, 0.003f);
     def.shape = jitter;
     def.material.thickening = 2;
-    Rig rig;
     rig_open(&rig, &def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = shell_is_corner(&rig.shell, i) ? 900 : 300;
@@ -363,7 +357,6 @@ TEST(layers_even_out_at_their_rate) {
 TEST(removed_particles_conduct_nothing) {
     RigDef def = rig_default(8, 2, 0.002f, 0.002f);
     def.shape = shear;
-    Rig rig;
     rig_open(&rig, &def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = rig_position(&rig, i)[0] < 0.008f ? 900 : 300;
@@ -403,7 +396,6 @@ TEST(heat_is_kept_where_capacity_varies) {
     def.material.specific_heat =
         singe_param_field(900, 1800, &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.01f, 2, 5}});
     def.material.reference_grammage = 0;
-    Rig rig;
     rig_open(&rig, &def);
     double sum = 0, capacity = 0;
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
@@ -430,7 +422,6 @@ TEST(layers_even_out_at_their_own_rates) {
     def.material.diffusivity = singe_param(0);
     def.material.layer_exchange =
         singe_param_field(10, 40, &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}});
-    Rig rig;
     rig_open(&rig, &def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = i < rig.shell.vertex_count ? 500 : 300;

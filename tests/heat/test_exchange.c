@@ -6,10 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+// what a case works on
+static Rig rig;
+
 static const double SIGMA = 5.670374e-8;
 
-static void fill(Rig *rig, float temperature) {
-    for (uint32_t i = 0; i < rig->shell.particle_count; i++) rig->state.heat.temperature[i] = temperature;
+static void fill(Rig *r, float temperature) {
+    for (uint32_t i = 0; i < r->shell.particle_count; i++) r->state.heat.temperature[i] = temperature;
 }
 
 static RigDef lossy(void) {
@@ -40,7 +43,6 @@ static double cooled(double seconds, double mass, double thickening) {
 static double cool(float h, float mass, float thickening) {
     RigDef def = lossy();
     def.material.thickening = thickening;
-    Rig rig;
     rig_open(&rig, &def);
     fill(&rig, 1100);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = mass;
@@ -67,7 +69,6 @@ TEST(cooling_follows_radiation_and_convection) {
 
 TEST(one_step_of_losses_matches_the_formula) {
     RigDef def = lossy();
-    Rig rig;
     rig_open(&rig, &def);
     fill(&rig, 900);
     rig_step(&rig);
@@ -86,7 +87,6 @@ TEST(combustion_is_eta_times_burnt_mass) {
     RigDef def = rig_default(3, 2, 0.002f, 0.002f);
     def.material.heat_of_combustion = singe_param(2400 * 1400), def.material.heat_share = singe_param(1);
     def.settings.pace = 4; // burn_rate is per second of scene time already
-    Rig rig;
     rig_open(&rig, &def);
     fill(&rig, 600);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
@@ -102,7 +102,6 @@ TEST(pace_is_fire_time) {
     for (int k = 0; k < 2; k++) {
         RigDef def = lossy();
         def.settings.pace = k ? 4 : 1;
-        Rig rig;
         rig_open(&rig, &def);
         fill(&rig, 900);
         rig.h = k ? 0.002f : 0.008f;
@@ -118,7 +117,6 @@ TEST(pace_is_fire_time) {
 TEST(the_peak_is_the_hottest_so_far) {
     RigDef def = lossy();
     def.material.heat_of_combustion = singe_param(2400 * 1400), def.material.heat_share = singe_param(1);
-    Rig rig;
     rig_open(&rig, &def);
     fill(&rig, 600);
     uint32_t n = rig.shell.particle_count;
@@ -168,7 +166,6 @@ TEST(heavier_halves_heat_slower) {
         def.material.diffusivity = def.material.layer_exchange = singe_param(0);
         if (which) def.material.specific_heat = from_left(1000, 3000);
         else def.material.grammage = from_left(0.05f, 0.15f);
-        Rig rig;
         rig_open(&rig, &def);
         fill(&rig, 300);
         float flux = 2e4f;
@@ -200,7 +197,6 @@ TEST(losses_are_each_particles_own) {
         const float ends[3][2] = {{5, 50}, {0.9f, 0.1f}, {0.3f, 0.9f}};
         for (int k = 0; k < 3; k++)
             *params[k] = run ? singe_param(ends[k][run - 1]) : from_left(ends[k][0], ends[k][1]);
-        Rig rig;
         rig_open(&rig, &def);
         fill(&rig, 900);
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = 0.2f;
@@ -227,7 +223,6 @@ TEST(a_bad_temperature_is_named_and_kept_out) {
         RigDef def = rig_default(3, 2, 0.002f, 0.002f);
         def.material.diffusivity = singe_param(0);
         def.material.layer_exchange = singe_param(0);
-        Rig rig;
         rig_open(&rig, &def);
         fill(&rig, 300);
         SingeSourceDef source = singe_default_source();
@@ -250,7 +245,6 @@ TEST(any_heat_ends_finite) {
         for (size_t s = 0; s < 4; s++) {
             RigDef def = lossy();
             def.material.convection = singe_param(1e5f);
-            Rig rig;
             rig_open(&rig, &def);
             fill(&rig, starts[k]);
             rig.h = steps[s];
@@ -272,7 +266,6 @@ TEST(any_heat_ends_finite) {
 TEST(conductances_beyond_floats_are_refused) {
     for (int k = 0; k < 4; k++) {
         RigDef def = rig_default(3, 2, 0.002f, 0.002f);
-        Rig rig;
         rig_open(&rig, &def); // a shell to try other materials on
         HeatPlan *plan = NULL;
         if (k < 2) rig.shell.matter.diffusivity.values[0] = k == 0 ? 1e30f : 1e15f;
@@ -288,7 +281,6 @@ TEST(conductances_beyond_floats_are_refused) {
 
 TEST(running_out_of_memory_is_clean) {
     RigDef def = rig_default(3, 2, 0.002f, 0.002f);
-    Rig rig;
     rig_open(&rig, &def);
     float pixels[] = {0, 1};
     SingeValueKey keys[] = {{0, 0}, {1, 1}};

@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+// what a case works on
+static Rig rig;
+
 static const double PER_AREA = 0.04 * 1400; // J/(m2 K), of a layer
 
 /// A sheet of cold, still particles: nothing but sources moves them.
@@ -27,7 +30,6 @@ static const SingePoseKey MIDDLE = {.position = {0.01f, 0.01f, 0}, .rotation = {
 
 TEST(relaxes_to_the_source_by_the_formula) {
     RigDef def = inert(10, 10);
-    Rig rig;
     rig_open(&rig, &def);
     SingeSourceDef source = ball(&MIDDLE, 1, 150, 1, 0);
     rig_source(&rig, &source);
@@ -40,7 +42,6 @@ TEST(relaxes_to_the_source_by_the_formula) {
 
 TEST(never_overshoots) {
     RigDef def = inert(4, 4);
-    Rig rig;
     rig_open(&rig, &def);
     SingeSourceDef source = ball(&MIDDLE, 1, 1e9f, 1, 0);
     rig_source(&rig, &source);
@@ -56,7 +57,6 @@ TEST(never_overshoots) {
 TEST(falls_off_smoothly_and_moves) {
     const SingePoseKey path[] = {{0, {0, 0.01f, 0}, {0, 0, 0, 1}}, {1, {0.02f, 0.01f, 0}, {0, 0, 0, 1}}};
     RigDef def = inert(10, 10);
-    Rig rig;
 
     rig_open(&rig, &def);
     SingeSourceDef source = ball(path, 2, 100, 0.003f, 0.004f);
@@ -84,7 +84,6 @@ TEST(falls_off_smoothly_and_moves) {
 TEST(contact_heats_the_near_layer) {
     RigDef def = inert(4, 4);
     def.material.thickness = singe_param(0.002f);
-    Rig rig;
     rig_open(&rig, &def);
     SingePoseKey pose = {.position = {0, 0, -0.0008f}, .rotation = {0, 0, 0, 1}};
     Collider *plane = &rig.collider[0];
@@ -108,7 +107,7 @@ static const uint32_t CUBE_TRIANGLES[] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0,
                                           2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
 
 /// A slab of 2 cm by 2 cm by 2 m about (2 cm, 2 cm), in contact with the flat sheet's back (from below) or front.
-static void slab(Rig *rig, SingeColliderKind kind, bool below, SingeContactSides sides, float temperature) {
+static void slab(Rig *r, SingeColliderKind kind, bool below, SingeContactSides sides, float temperature) {
     static float vertices[24];
     static const float heights[4] = {0, 0, 0, 0};
     for (int k = 0; k < 24; k++) vertices[k] = CUBE[k] * (k % 3 == 2 ? 1 : 0.01f);
@@ -124,9 +123,9 @@ static void slab(Rig *rig, SingeColliderKind kind, bool below, SingeContactSides
     def.columns = def.rows = 2, def.size[0] = def.size[1] = 0.02f, def.heights = heights;
     def.conductance = 300, def.temperature = temperature, def.contact_distance = 0.001f, def.sides = sides;
     def.path_count = 1, def.path = &pose;
-    if (collider_create(&rig->memory, &def, &rig->collider[0], &rig->error)) fail_msg("%s", rig->error.message);
-    rig->collider[0].generation = 1;
-    rig->colliders.count = 1;
+    if (collider_create(&r->memory, &def, &r->collider[0], &r->error)) fail_msg("%s", r->error.message);
+    r->collider[0].generation = 1;
+    r->colliders.count = 1;
 }
 
 /// Every kind, from either side, hot and cold: the layer that faces it or both, and nothing beside it.
@@ -136,7 +135,6 @@ TEST(contact_heats_the_given_sides) {
         bool below = k & 1, both = k & 2, cold = k & 4;
         RigDef def = inert(20, 20); // 4 cm, the front 2 mm above the back
         def.material.thickness = singe_param(0.002f);
-        Rig rig;
         rig_open(&rig, &def);
         float temperature = cold ? 250 : 700;
         slab(&rig, kinds[k / 8], below, both ? SINGE_SIDES_BOTH : SINGE_SIDES_TOUCHING, temperature);
@@ -167,7 +165,6 @@ TEST(contact_heat_goes_through_the_sheet) {
     RigDef def = inert(20, 20);
     def.material.thickness = singe_param(0.002f);
     def.material.layer_exchange = singe_param(4); // the difference of the two falls as e^-4t
-    Rig rig;
     rig_open(&rig, &def);
     slab(&rig, SINGE_COLLIDER_MESH, true, SINGE_SIDES_TOUCHING, 700);
     uint32_t near = rig_vertex(&rig, 10, 10), behind = rig_centre(&rig, 10, 10), aside = rig_centre(&rig, 1, 1);
@@ -189,7 +186,6 @@ TEST(a_texture_heats_by_its_key_frames) {
     const float pixels[] = {0, 1, 0.5f, 0.25f}; // top row 0 1, bottom row .5 .25
     const SingeValueKey keys[] = {{1, 0}, {3, 2}};
     RigDef def = inert(8, 8);
-    Rig rig;
 
     rig_open(&rig, &def);
     SingeSourceDef source = singe_default_source();
@@ -223,7 +219,6 @@ static void my_flux(void *context, const struct SingeView *view, float *flux, fl
 
 TEST(callback_adds_to_the_rest) {
     RigDef def = inert(3, 3);
-    Rig rig;
     rig_open(&rig, &def);
     int calls = 0;
     SingeSourceDef source = singe_default_source();
@@ -253,7 +248,6 @@ TEST(a_sink_stops_at_1_kelvin) {
     const float white = 1;
     for (int k = 0; k < 3; k++) {
         RigDef def = inert(3, 3);
-        Rig rig;
         rig_open(&rig, &def);
         SingeSourceDef source = singe_default_source();
         source.kind = SINGE_SOURCE_TEXTURE, source.texture = (SingeTexture){1, 1, &white}, source.flux = fluxes[k];
@@ -276,7 +270,6 @@ TEST(hot_gas_heats_up_to_itself) {
             RigDef def = inert(3, 3);
             def.material.convection = singe_param(convections[c]);
             def.material.thickening = 50;
-            Rig rig;
             rig_open(&rig, &def);
             rig.h = 0.5f;
             float conductance[25], temperature[25];
@@ -304,7 +297,6 @@ TEST(hot_gas_heats_up_to_itself) {
 
 TEST(bad_defs_are_refused) {
     RigDef def = inert(2, 2);
-    Rig rig;
     rig_open(&rig, &def);
     const float pixels[] = {0, NAN}, good_pixels[] = {0, 1};
     const SingeValueKey keys[] = {{1, 0}, {1, 2}}, strong[] = {{0, -1e4f}};

@@ -5,13 +5,15 @@
 
 #include <math.h>
 
+// what a case works on
+static uint8_t rgb[BYTES];
+static Float4 q;
+
 static const uint32_t QUAD[4] = {0, 1, 2, 3};
 
 /// Root mean square over the picture's middle of what changes from pixel to pixel along rows, of 255. The sheet leans
 /// by that angle.
 static float grain(float weave, float lean) {
-    static uint8_t rgb[BYTES];
-    Float4 q;
     quad_make(&q, lean > 0 ? 0.25f : 0.1f, 0.01f);
     for (int i = 0; i < 4 && lean > 0; i++) {
         q.position[i][2] = sinf(lean) * q.position[i][0], q.position[i][0] *= cosf(lean);
@@ -51,8 +53,6 @@ TEST(threads_are_seen_from_near_alone) {
 static float print_on_char(float weave) {
     uint8_t texels[2 * 1 * 3] = {255, 255, 255, 10, 10, 10};
     const Image image = {.width = 2, .height = 1, .rgb = texels}, *pictures[1] = {&image};
-    static uint8_t rgb[BYTES];
-    Float4 q;
     quad_make(&q, 0.1f, 0.01f);
     for (int i = 0; i < 4; i++) q.burn[i] = 0.6f, q.peak[i] = 900;
     const PreviewLook look = {.weave = weave};
@@ -78,8 +78,6 @@ TEST(dye_burns_with_its_threads) {
 /// Char of cloth whose threads of 0.4 mm no pixel of 0.9 mm resolves keeps relief and tones of its bundles: how much its light
 /// varies over 4 pixels along a row, over the mean.
 TEST(char_of_cloth_shows_its_bundles) {
-    static uint8_t rgb[BYTES];
-    Float4 q;
     quad_make(&q, 0.12f, 0);
     for (int i = 0; i < 4; i++) q.burn[i] = 0.5f, q.peak[i] = 900;
     const PreviewLook look = {.weave = 4e-4f};

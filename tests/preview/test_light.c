@@ -4,13 +4,17 @@
 
 #include <math.h>
 
+// what a case works on
+static Float4 q;
+static Ball ball;
+
 /// A sheet that stands on the table in the plane x = 0, 24 cm wide and high, printed with what is given.
-static void wall_make(Float4 *q) {
-    quad_make(q, 0.12f, 0);
+static void wall_make(Float4 *quad) {
+    quad_make(quad, 0.12f, 0);
     for (int i = 0; i < 4; i++) {
-        float across = q->position[i][0], up = q->position[i][1];
-        q->position[i][0] = 0, q->position[i][1] = across, q->position[i][2] = 0.12f + up;
-        q->normal[i][0] = 1, q->normal[i][2] = 0;
+        float across = quad->position[i][0], up = quad->position[i][1];
+        quad->position[i][0] = 0, quad->position[i][1] = across, quad->position[i][2] = 0.12f + up;
+        quad->normal[i][0] = 1, quad->normal[i][2] = 0;
     }
 }
 
@@ -30,7 +34,6 @@ static float box(float (*beauty)[3], int x, int y) {
 /// The light that a flame adds to a point.
 static float added(const PreviewDef *def, const SingeSurface *surface, int x, int y) {
     static float dark[W * H][3], lit[W * H][3];
-    static Ball ball;
     ball_make(&ball, -0.07f, 0, 0.1f, 0.03f, 4e6f, 0);
     see(def, surface, NULL, dark), see(def, surface, &ball.gas, lit);
     return box(lit, x, y) - box(dark, x, y);
@@ -47,7 +50,6 @@ static PreviewDef at_night(void) {
 /// warm. As daylight's white sees it, it was 1, 0.28, 0.01: red, and pink under the moon.
 TEST(firelight_is_warm) {
     static float dark[W * H][3], lit[W * H][3];
-    static Ball ball;
     const PreviewDef def = at_night();
     float sum[3] = {0, 0, 0};
     ball_make(&ball, -0.07f, 0, 0.1f, 0.03f, 4e6f, 0);
@@ -62,7 +64,6 @@ TEST(firelight_is_warm) {
 /// A sheet between the flame and the table: the table's light is that of the open times what comes through. An eighth
 /// of it is the bar for an opaque sheet, and a sheet that lets half through breaks it.
 TEST(a_sheet_shadows_the_light_of_a_flame) {
-    Float4 q;
     PreviewDef def = at_night();
     float share = 0, light[3], open;
     def.transmittances = &share, def.sheet_count = 1;
@@ -79,7 +80,6 @@ TEST(a_sheet_shadows_the_light_of_a_flame) {
 
 /// Seen from the other side, a sheet in front of a flame glows by transmitted light, and its print shows.
 TEST(a_sheet_before_a_flame_shines_through) {
-    Float4 q;
     uint8_t texels[2 * 1 * 3] = {255, 255, 255, 60, 60, 60};
     Image image = {.width = 2, .height = 1, .rgb = texels};
     const Image *pictures[1] = {&image};
@@ -102,7 +102,6 @@ TEST(a_sheet_before_a_flame_shines_through) {
 /// A near lamp lights what is below it, less with the square of the distance, and not what a sheet hides from it.
 TEST(a_lamp_lights_what_is_near) {
     static float beauty[W * H][3];
-    Float4 q;
     PreviewDef def = at_night();
     float share = 0, seen[4];
     const float height[4] = {0, 0.15f, 0.3f, 0.15f};
@@ -133,7 +132,6 @@ TEST(char_throws_the_light_that_is_seen) {
     const float pixel = 2 * 0.5f * tanf(0.05f) / H;
 
     for (int k = 0; k < CASES; k++) {
-        Float4 q;
         quad_make(&q, 0.02f, 0);
         for (int i = 0; i < 4; i++) {
             q.burn[i] = 0.6f, q.temperature[i] = q.peak[i] = 950, q.rate[i] = rate[k];
@@ -168,9 +166,7 @@ TEST(char_throws_the_light_that_is_seen) {
 
 /// Beside flames, which dazzle, embers throw a third of the light that they throw in the dark: all of it made rooms red.
 TEST(flames_outshine_embers) {
-    static Ball ball;
     const PreviewDef def = at_night();
-    Float4 q;
     float charred[4] = {0.4f, 0.4f, 0.4f, 0.4f}, ash[4] = {0};
     quad_make(&q, 0.02f, 0);
     for (int i = 0; i < 4; i++) q.burn[i] = 0.6f, q.temperature[i] = q.peak[i] = 950, q.rate[i] = 1;
@@ -202,10 +198,10 @@ TEST(flames_outshine_embers) {
 TEST(a_glossy_ground_mirrors_embers) {
     static float beauty[W * H][3];
     PreviewDef def = at_night();
-    PreviewShape ball = {
+    PreviewShape ember = {
         .kind = SINGE_COLLIDER_SPHERE, .position = {0, 0, 0.08f}, .radius = 0.025f, .temperature = 1450};
     float seen[3];
-    def.shapes = &ball, def.shape_count = 1;
+    def.shapes = &ember, def.shape_count = 1;
     def.camera = (PreviewCamera){.eye = {0, -0.5f, 0.1f}, .target = {0, 0, -0.08f}, .up = {0, 0, 1}, .fov = 0.6f};
     for (int k = 0; k < 3; k++) {
         def.ground_gloss = 3 * (float)k;
@@ -277,8 +273,6 @@ TEST(a_wall_meets_the_floor_without_steps) {
 /// with the sky's. It is in no picture that is taken from behind it.
 TEST(a_wall_catches_light_and_shadows) {
     static float open[W * H][3], hidden[W * H][3], behind[W * H][3], none[W * H][3];
-    static Ball ball;
-    Float4 q;
     float share = 0;
     PreviewDef def = at_night();
     ball_make(&ball, 0, -0.1f, 0.1f, 0.03f, 4e6f, 0);
@@ -303,7 +297,6 @@ TEST(a_wall_catches_light_and_shadows) {
 }
 
 static void see_shadow(int samples, float (*beauty)[3]) {
-    Float4 q;
     PreviewDef def = above();
     def.ground = PREVIEW_GROUND_PLAIN, def.samples = samples, def.sun_angle = 0.08f;
     def.sun_direction[0] = -1, def.sun_direction[1] = 0.2f, def.sun_direction[2] = 1;
@@ -340,8 +333,6 @@ TEST(the_rim_of_a_shadow_is_smooth) {
 /// no grain there. With one ray a pixel neighbours differ by 60 % in the root mean square.
 TEST(the_shadow_of_a_flame_has_no_grain_in_a_still) {
     static float beauty[W * H][3];
-    static Ball ball;
-    Float4 q;
     PreviewDef def = at_night();
     def.samples = 256;
     for (int c = 0; c < 3; c++) def.sky_colour[c] = 0;
@@ -370,7 +361,6 @@ TEST(the_shadow_of_a_flame_has_no_grain_in_a_still) {
 /// 10 %; without the water there is no difference.
 TEST(wet_sheets_are_darker) {
     static float picture[W * H][3];
-    Float4 q;
     PreviewDef def = above();
     float colour[2][3] = {{1, 1, 1}, {0.1f, 0.3f, 0.6f}}, water[4], light[2][4];
     quad_make(&q, 0.12f, 0);

@@ -4,18 +4,20 @@
 
 #include <math.h>
 
+// what a case works on
+static uint8_t rgb[BYTES];
+static Float4 q;
+
 /// Mean over the middle of the picture.
-static float middle(const uint8_t *rgb, int channel) {
+static float middle(const uint8_t *picture, int channel) {
     enum { HALF = 10 };
     float sum = 0;
     for (int y = H / 2 - HALF; y < H / 2 + HALF; y++)
-        for (int x = W / 2 - HALF; x < W / 2 + HALF; x++) sum += pixel(rgb, x, y)[channel];
+        for (int x = W / 2 - HALF; x < W / 2 + HALF; x++) sum += pixel(picture, x, y)[channel];
     return sum / (4 * HALF * HALF);
 }
 
 TEST(fresh_paper_is_white) {
-    static uint8_t rgb[BYTES];
-    Float4 q;
     quad_make(&q, 0.1f, 0.01f);
     PreviewDef def = above(); // no sheets, no pictures: white
     draw(&def, &q.surface, 0, rgb);
@@ -33,8 +35,6 @@ TEST(white_in_the_sun_is_not_clipped) {
     uint8_t texels[2 * 1 * 3] = {255, 255, 255, 20, 20, 20};
     Image image = {.width = 2, .height = 1, .rgb = texels};
     const Image *pictures[1] = {&image};
-    static uint8_t rgb[BYTES];
-    Float4 q;
 
     quad_make(&q, 0.1f, 0.01f);
     PreviewDef def = above();
@@ -46,8 +46,6 @@ TEST(white_in_the_sun_is_not_clipped) {
 }
 
 TEST(states_of_burning_differ) {
-    static uint8_t rgb[BYTES];
-    Float4 q;
     PreviewDef def = above();
     float fresh, brown, black;
 
@@ -67,8 +65,6 @@ TEST(states_of_burning_differ) {
 
 /// Paper that was hot stays brown when it is cold again, and ash is grey: paler than char, but not white.
 TEST(cold_remains_stay_brown_and_grey) {
-    static uint8_t rgb[BYTES];
-    Float4 q;
     PreviewDef def = above();
 
     quad_make(&q, 0.1f, 0.01f);
@@ -90,8 +86,6 @@ TEST(cold_remains_stay_brown_and_grey) {
 
 /// Only where it is hot *and* burning does the char glow.
 TEST(only_hot_and_burning_char_glows) {
-    static uint8_t rgb[BYTES];
-    Float4 q;
     PreviewDef def = above();
 
     quad_make(&q, 0.1f, 0.01f);
@@ -111,8 +105,6 @@ TEST(only_hot_and_burning_char_glows) {
 
 /// A scrap that burns as a whole, at 1500 K, stays orange and uneven; it was flat white.
 TEST(scraps_of_ember_stay_orange) {
-    static uint8_t rgb[BYTES];
-    Float4 q;
     PreviewDef def = above();
 
     quad_make(&q, 0.1f, 0.01f);
@@ -132,9 +124,7 @@ TEST(scraps_of_ember_stay_orange) {
 
 /// Ash pales with time.
 TEST(ash_pales_with_time) {
-    static uint8_t rgb[BYTES];
     static float ignited[4] = {1, 1, 1, 1};
-    Float4 q;
     PreviewDef def = above();
 
     quad_make(&q, 0.1f, 0.01f);
@@ -152,12 +142,10 @@ TEST(ash_pales_with_time) {
 
 /// Surfaces that face up get the same light from any sky; those that face sideways do not.
 TEST(light_on_upward_faces_is_the_same_for_any_sky) {
-    static uint8_t rgb[BYTES];
     enum { PW = 16, PH = 8 };
     uint8_t texels[PW * PH * 3];
     for (int i = 0; i < PW * PH; i++) memset(texels + 3 * i, i % PW < PW / 2 ? 250 : 60, 3); // bright towards -x
     Image image = {.width = PW, .height = PH, .rgb = texels};
-    Float4 q;
     PreviewDef def = above();
     quad_make(&q, 0.1f, 0.01f);
     def.sun_colour[0] = def.sun_colour[1] = def.sun_colour[2] = 0;
@@ -192,19 +180,19 @@ TEST(light_on_upward_faces_is_the_same_for_any_sky) {
 
 /// Each ground has its own look and about the brightness of its colour.
 TEST(each_ground_has_its_look) {
-    static uint8_t rgb[3][BYTES];
+    static uint8_t looks[3][BYTES];
     PreviewDef def = above();
 
     for (int kind = 0; kind < 3; kind++) {
         def.ground = (PreviewGround)kind;
-        draw(&def, &nothing, 0, rgb[kind]);
+        draw(&def, &nothing, 0, looks[kind]);
     }
-    float plain = mean(rgb[PREVIEW_GROUND_PLAIN], 1);
-    assert_float_equal(mean(rgb[PREVIEW_GROUND_WOOD], 1), plain, 20);
-    assert_float_equal(mean(rgb[PREVIEW_GROUND_STONE], 1), plain, 20);
+    float plain = mean(looks[PREVIEW_GROUND_PLAIN], 1);
+    assert_float_equal(mean(looks[PREVIEW_GROUND_WOOD], 1), plain, 20);
+    assert_float_equal(mean(looks[PREVIEW_GROUND_STONE], 1), plain, 20);
     for (int kind = 0; kind < 3; kind++) {
         float spread = 0;
-        for (int i = 0; i < W * H; i++) spread += fabsf(rgb[kind][3 * i + 1] - mean(rgb[kind], 1));
+        for (int i = 0; i < W * H; i++) spread += fabsf(looks[kind][3 * i + 1] - mean(looks[kind], 1));
         spread /= W * H;
         assert_true(kind == PREVIEW_GROUND_PLAIN ? spread < 4 : spread > 4);
     }
@@ -212,29 +200,27 @@ TEST(each_ground_has_its_look) {
 
 /// So have walls; a brick has a hue of its own.
 TEST(each_wall_has_its_look) {
-    static uint8_t rgb[3][BYTES];
+    static uint8_t looks[3][BYTES];
     PreviewDef def = small();
     def.wall_distance = 0.3f, def.sun_direction[1] = -0.45f;
     def.camera = (PreviewCamera){.eye = {0, -0.4f, 0.5f}, .target = {0, 0.3f, 0.5f}, .up = {0, 0, 1}, .fov = 0.6f};
     float spread[3];
     for (int kind = 0; kind < 3; kind++) {
         def.wall = (PreviewWall)kind;
-        draw(&def, &nothing, 0, rgb[kind]);
+        draw(&def, &nothing, 0, looks[kind]);
         spread[kind] = 0;
-        for (int i = 0; i < W * H; i++) spread[kind] += fabsf(rgb[kind][3 * i + 1] - mean(rgb[kind], 1)) / (W * H);
+        for (int i = 0; i < W * H; i++) spread[kind] += fabsf(looks[kind][3 * i + 1] - mean(looks[kind], 1)) / (W * H);
     }
     print_message("walls: plaster %.1f, brick %.1f, plain %.1f levels\n", (double)spread[0], (double)spread[1],
                   (double)spread[2]);
-    assert_float_equal(mean(rgb[PREVIEW_WALL_PLASTER], 1), mean(rgb[PREVIEW_WALL_PLAIN], 1), 20);
+    assert_float_equal(mean(looks[PREVIEW_WALL_PLASTER], 1), mean(looks[PREVIEW_WALL_PLAIN], 1), 20);
     assert_true(spread[PREVIEW_WALL_PLASTER] > 2 * spread[PREVIEW_WALL_PLAIN] && spread[PREVIEW_WALL_BRICK] > 5);
 }
 
 /// The ground is stained where a sheet lay that has burnt away, and not where it is whole, beside it, below one that
 /// hung, or if it is to stay clean. The stain is darker than a tenth; without one the table is the same to a level.
 TEST(burning_sheets_stain_the_ground) {
-    static uint8_t rgb[BYTES];
     static const uint32_t cells[4] = {0, 1, 2, 3};
-    Float4 q;
     PreviewStart start = {4, 1, &q.position[0][0], cells, NULL, NULL};
     PreviewDef def = above();
     quad_make(&q, 0.09f, 0.001f);
@@ -271,9 +257,8 @@ static int compare_bytes(const void *a, const void *b) { return *(const uint8_t 
 /// Crumbs of ash touch the table: it is darker around them. They looked like confetti.
 TEST(crumbs_of_ash_have_a_shadow) {
     enum { NEAR = 1, RING = 3 };
-    static uint8_t rgb[BYTES], sorted[W * H];
+    static uint8_t sorted[W * H];
     static const uint32_t cells[4] = {0, 1, 2, 3};
-    Float4 q;
     PreviewStart start = {4, 1, &q.position[0][0], cells, NULL, NULL};
     quad_make(&q, 0.09f, 0.001f);
     PreviewDef def = above();
@@ -309,9 +294,8 @@ TEST(crumbs_of_ash_have_a_shadow) {
 /// strewn evenly looked like snow.
 TEST(ash_lies_in_drifts) {
     enum { SIDE = 8, ACROSS = W / SIDE, DOWN = H / SIDE };
-    static uint8_t clean[BYTES], rgb[BYTES];
+    static uint8_t clean[BYTES];
     static const uint32_t cells[4] = {0, 1, 2, 3};
-    Float4 q;
     PreviewStart start = {4, 1, &q.position[0][0], cells, NULL, NULL};
     quad_make(&q, 0.3f, 0.001f);
     PreviewDef def = above();
@@ -340,9 +324,7 @@ TEST(ash_lies_in_drifts) {
 /// Pyrolysis leaves a black leaf, however little its mass, which greys as it glows away. It glows where char burns: not
 /// where a hot leaf no longer burns, and less where it still has fuel, which burns in the flame.
 TEST(char_is_black_and_greys) {
-    static uint8_t rgb[BYTES];
     float mass[4], charred[4], ash[4], green[3], red[4];
-    Float4 q;
     PreviewDef def = above();
 
     quad_make(&q, 0.1f, 0.01f);
@@ -380,9 +362,7 @@ TEST(char_is_black_and_greys) {
 /// A leaf of char glows in threads and specks, not as a whole: few of its pixels are as bright as half of the brightest.
 /// Char that still feeds a flame, which takes the air, has fewer; it was black.
 TEST(a_leaf_glows_in_threads) {
-    static uint8_t rgb[BYTES];
     static float mass[4], charred[4] = {0.2f, 0.2f, 0.2f, 0.2f}, none[4];
-    Float4 q;
     quad_make(&q, 0.03f, 0);
     q.surface.mass = mass, q.surface.char_fraction = charred, q.surface.ash_fraction = none;
     for (int i = 0; i < 4; i++) q.burn[i] = 0.8f, q.temperature[i] = q.peak[i] = 1000, q.rate[i] = 0.5f;
@@ -411,7 +391,6 @@ TEST(a_leaf_glows_in_threads) {
 
 /// Change from pixel to pixel of the bare table over its mean, along the planks and across them, seen from `height` m.
 static void table_grain(float height, float change[2]) {
-    static uint8_t rgb[BYTES];
     PreviewDef def = above();
     def.camera.eye[0] = def.camera.target[0] = 0.3f, def.camera.eye[1] = def.camera.target[1] = 0.06f;
     def.camera.eye[2] = height, def.camera.fov = 0.3f;
@@ -441,13 +420,13 @@ TEST(wood_has_a_grain) {
 }
 
 /// How much pixels of the sheet's middle differ from their mean, over it.
-static float unevenness(const uint8_t *rgb) {
+static float unevenness(const uint8_t *picture) {
     enum { HALF = 10 };
-    const float whole = middle(rgb, 1);
+    const float whole = middle(picture, 1);
     float sum = 0;
     for (int y = H / 2 - HALF; y < H / 2 + HALF; y++)
         for (int x = W / 2 - HALF; x < W / 2 + HALF; x++) {
-            const float off = (float)pixel(rgb, x, y)[1] - whole;
+            const float off = (float)pixel(picture, x, y)[1] - whole;
             sum += off * off;
         }
     return sqrtf(sum) / (2 * HALF) / whole;
@@ -455,11 +434,9 @@ static float unevenness(const uint8_t *rgb) {
 
 /// A coated print mirrors the light; in heat that only browns paper its coating blisters.
 TEST(coatings_mirror_and_blister) {
-    static uint8_t rgb[BYTES];
     float bright[2], uneven[2];
     for (int coated = 0; coated < 2; coated++) {
         const PreviewLook look = {.coating = (float)coated};
-        Float4 q;
         quad_make(&q, 0.008f, 0.45f);
         PreviewDef def = above();
         def.looks = &look, def.sheet_count = 1;
@@ -484,12 +461,10 @@ TEST(coatings_mirror_and_blister) {
 /// How much lighter print is than what is around it, of 255, on a cold sheet that is burnt so far and was ignited so long
 /// ago.
 static float print_on(float burnt, float age) {
-    static uint8_t rgb[BYTES];
     uint8_t texels[2 * 1 * 3] = {255, 255, 255, 20, 20, 20};
     Image image = {.width = 2, .height = 1, .rgb = texels};
     const Image *pictures[1] = {&image};
     float ignited[4] = {0, 0, 0, 0};
-    Float4 q;
     quad_make(&q, 0.1f, 0.01f);
     for (int i = 0; i < 4; i++) q.burn[i] = burnt, q.peak[i] = 900;
     q.surface.time_ignited = ignited;
@@ -567,7 +542,7 @@ static PreviewDef close_above(float high) {
 }
 
 /// Mean of a channel over what is within 0.6 mm of the borders of a plate 12 mm wide, and over its middle.
-static void border_and_middle(const uint8_t *rgb, int channel, float mean[2]) {
+static void border_and_middle(const uint8_t *picture, int channel, float mean[2]) {
     const float millimetres = 16.0f / H;
     float sum[2] = {0, 0}, count[2] = {0, 0};
     for (int y = 0; y < H; y++)
@@ -575,8 +550,8 @@ static void border_and_middle(const uint8_t *rgb, int channel, float mean[2]) {
             const float across = fabsf((float)x + 0.5f - W / 2) * millimetres;
             const float along = fabsf((float)y + 0.5f - H / 2) * millimetres, from = 6 - fmaxf(across, along);
             const int part = from > 0 && from < 0.6f ? 0 : from > 2 ? 1 : 2;
-            if (part == 2 || pixel(rgb, x, y)[0] == 0) continue; // beyond the plate, or bitten off
-            sum[part] += pixel(rgb, x, y)[channel];
+            if (part == 2 || pixel(picture, x, y)[0] == 0) continue; // beyond the plate, or bitten off
+            sum[part] += pixel(picture, x, y)[channel];
             count[part]++;
         }
     for (int k = 0; k < 2; k++) mean[k] = sum[k] / fmaxf(count[k], 1);
@@ -584,7 +559,6 @@ static void border_and_middle(const uint8_t *rgb, int channel, float mean[2]) {
 
 /// A loose plate of char is pale at its borders, which glow on while it is warm, for some seconds.
 TEST(plates_have_pale_borders_that_glow_for_a_while) {
-    static uint8_t rgb[BYTES];
     static Plate plate;
     float pale[2], young[2], old[2];
     plate_make(&plate, 0.012f);
@@ -608,7 +582,6 @@ TEST(plates_have_pale_borders_that_glow_for_a_while) {
 
 /// Between cream and brown, scorched paper has a band of tan, whose border is uneven.
 TEST(scorch_has_a_tan_band_with_an_uneven_border) {
-    static uint8_t rgb[BYTES];
     static Plate plate;
     const float pixel_size = 24.0f / W; // mm
     plate_make(&plate, 0.024f);
@@ -639,7 +612,6 @@ TEST(scorch_has_a_tan_band_with_an_uneven_border) {
 
 /// Ahead of a front the band is wide, as vapour condenses there; paper that is evenly warm remains white.
 TEST(scorch_is_wide_ahead_of_a_front_and_nowhere_else) {
-    static uint8_t rgb[BYTES];
     static Plate plate;
     plate_make(&plate, 0.024f);
     PreviewDef def = close_above(0.016f);

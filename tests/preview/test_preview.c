@@ -8,6 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+// what a case works on
+static uint8_t rgb[BYTES];
+static Float4 q;
+
 TEST(pictures_do_not_depend_on_threads) {
     SingeSurface surface;
     assert_true(synthetic_make(SYNTHETIC_FLAT, 30, 0.05f, &surface));
@@ -78,7 +82,6 @@ TEST(kept_state_does_not_affect_the_picture) {
 }
 
 TEST(an_empty_surface_is_drawn) {
-    static uint8_t rgb[BYTES];
     PreviewDef def = above();
 
     draw(&def, &nothing, 0, rgb);
@@ -97,8 +100,6 @@ TEST(uv_and_rows_are_the_right_way_round) {
     uint8_t texels[2 * 2 * 3] = {255, 0, 0, 0, 0, 255, 60, 0, 0, 0, 0, 60};
     Image image = {.width = 2, .height = 2, .rgb = texels};
     const Image *pictures[2] = {&image, NULL};
-    static uint8_t rgb[BYTES];
-    Float4 q;
 
     quad_make(&q, 0.1f, 0.01f);
     PreviewDef def = above();
@@ -119,7 +120,6 @@ TEST(uv_and_rows_are_the_right_way_round) {
 }
 
 TEST(shapes_are_drawn) {
-    static uint8_t rgb[BYTES];
     PreviewDef def = above();
     PreviewShape shape = {.position = {0.1f, 0, 0.05f},
                           .rotation = {0, 0, 0, 1},
@@ -222,7 +222,6 @@ TEST(a_hot_ball_glows) {
 /// In the dark, exposed for what it lights, a hot ball is no white disc: its limb is darker than its middle, and what faces
 /// down is darker than what faces up.
 TEST(a_hot_ball_is_graded) {
-    static uint8_t rgb[BYTES];
     PreviewDef def = small();
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .radius = 0.1f, .temperature = 1300};
     def.shapes = &ball, def.shape_count = 1;
@@ -247,7 +246,6 @@ TEST(a_hot_ball_is_graded) {
 /// A sheet over the table darkens it, softly.
 TEST(a_sheet_darkens_the_table) {
     static uint8_t with[BYTES], without[BYTES];
-    Float4 q;
     PreviewDef def = above();
     def.sun_direction[0] = -1, def.sun_direction[1] = 0, def.sun_direction[2] = 1; // the shadow falls to +x
     quad_make(&q, 0.03f, 0.08f);
@@ -259,12 +257,10 @@ TEST(a_sheet_darkens_the_table) {
 }
 
 TEST(bad_vertices_are_refused) {
-    static uint8_t rgb[BYTES];
     PreviewDef def = above();
     const float bad[] = {NAN, INFINITY, -INFINITY, 1e30f};
 
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
-        Float4 q;
         quad_make(&q, 0.1f, 0.01f);
         q.position[3][1] = bad[k]; // the second triangle goes, the first stays
         q.rest[1][0] = bad[k], q.normal[1][2] = bad[k], q.uv[1][0] = bad[k];
@@ -275,7 +271,6 @@ TEST(bad_vertices_are_refused) {
         assert_true(pixel(rgb, W / 2 - 8, H / 2 - 5)[1] < 190);
     }
 
-    Float4 q;
     quad_make(&q, 0.1f, 0.01f);
     q.triangles[1][2] = 0; // degenerate
     memset(q.normal, 0, sizeof q.normal);
@@ -285,7 +280,6 @@ TEST(bad_vertices_are_refused) {
 }
 
 static SingeResult draw_result(const SingeSurface *surface, double time, SingeError *error) {
-    static uint8_t rgb[BYTES];
     PreviewDef def = above();
     Preview *preview = NULL;
     assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, error), SINGE_OK);
@@ -295,7 +289,6 @@ static SingeResult draw_result(const SingeSurface *surface, double time, SingeEr
 }
 
 TEST(bad_surfaces_are_refused) {
-    Float4 q;
     SingeError error = {0};
     quad_make(&q, 0.1f, 0.01f);
     q.triangles[1][1] = 4;
@@ -391,12 +384,12 @@ TEST(odd_sizes_are_drawn) {
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
         PreviewDef def = small();
         def.width = sizes[k][0], def.height = sizes[k][1], def.samples = sizes[k][2], def.thread_count = 2;
-        uint8_t *rgb = malloc((size_t)(def.width * def.height * 3));
-        assert_non_null(rgb);
-        draw(&def, &surface, 1, rgb);
+        uint8_t *picture = malloc((size_t)(def.width * def.height * 3));
+        assert_non_null(picture);
+        draw(&def, &surface, 1, picture);
         def.camera = (PreviewCamera){.eye = {0, 0, 0.9f}, .target = {0, 0, 0}, .up = {0, 0, 1}, .fov = 0.5f};
-        draw(&def, &surface, 1, rgb);
-        free(rgb);
+        draw(&def, &surface, 1, picture);
+        free(picture);
     }
 
     synthetic_free(&surface);
@@ -404,7 +397,6 @@ TEST(odd_sizes_are_drawn) {
 
 /// Every allocation fails once: the right result, nothing left behind, and a failed frame can be drawn again.
 TEST(every_allocation_fails_once) {
-    static uint8_t rgb[BYTES];
     uint8_t texels[4 * 4 * 3] = {0};
     Image image = {.width = 4, .height = 4, .rgb = texels};
     const Image *pictures[1] = {&image};
@@ -413,7 +405,6 @@ TEST(every_allocation_fails_once) {
     PreviewDef def = small();
     def.samples = 1, def.shutter = 0.01f, def.pictures = pictures, def.sheet_count = 1, def.shapes = shapes,
     def.shape_count = 2;
-    Float4 q;
     quad_make(&q, 0.1f, 0.01f);
     bool succeeded = false;
     for (int n = 0; n < 60 && !succeeded; n++) {
@@ -437,7 +428,6 @@ TEST(every_allocation_fails_once) {
 }
 
 TEST(shapes_can_be_set_anew) {
-    static uint8_t rgb[BYTES];
     PreviewDef def = above();
     Preview *preview = NULL;
     SingeError error = {0};
