@@ -5,6 +5,10 @@
 #include "synthetic_gas.h"
 #include "support/support.h"
 
+// what a case works on
+static Line line;
+static Burning paper;
+
 /// No gas, a gas of size 0 and still air give the same picture, bit by bit.
 TEST(still_air_changes_no_pixel) {
     static uint8_t plain[BYTES], rgb[BYTES];
@@ -29,8 +33,6 @@ TEST(still_air_changes_no_pixel) {
 /// tongues.
 TEST(a_flame_has_a_blue_base_and_tongues) {
     static float fire[W * H][4], mean[H][4];
-    static Line line;
-    static Burning paper;
 
     line_make(&line, 0.003f), burning_make(&paper);
     see_line(&paper.surface, &line.gas, 0.3, fire, mean, H);
@@ -54,8 +56,6 @@ TEST(a_flame_has_a_blue_base_and_tongues) {
 /// The lower edge of a line of flames follows paper that burns on slopes of 8 mm, cells' size, up and down.
 TEST(flames_begin_where_paper_burns) {
     static float fire[W * H][4], mean[H][4];
-    static Line line;
-    static Burning paper;
     line_make(&line, 0.003f), burning_make(&paper);
     for (int v = 0; v < 4 * WIDE; v++)
         paper.position[v][2] += 0.004f - 0.004f * cosf(3.1415927f * paper.position[v][0] / 0.024f);
@@ -79,8 +79,6 @@ TEST(flames_begin_where_paper_burns) {
 TEST(tongues_narrow_and_rise) {
     enum { FRAMES = 8, LOW = 12, TOP = 60 };
     static float fire[2][W * H][4], mean[H][4];
-    static Line line;
-    static Burning paper;
     float wide[2] = {0, 0}, overlap[H / 2] = {0};
 
     line_make(&line, 0.003f), burning_make(&paper);
@@ -119,8 +117,6 @@ TEST(tongues_narrow_and_rise) {
 TEST(tongues_lean) {
     enum { FRAMES = 6, LOW = 24, SIDE = 16 };
     static float fire[W * H][4], mean[H][4];
-    static Line line;
-    static Burning paper;
     float lean = 0, weight = 1e-6f;
 
     line_make(&line, 0.003f), burning_make(&paper);
@@ -148,8 +144,6 @@ TEST(tongues_lean) {
 TEST(tongues_are_fed_unevenly) {
     enum { FRAMES = 8, LOW = 32, SIDE = 32, SQUARES = FRAMES * (W / SIDE) };
     static float fire[W * H][4], mean[H][4];
-    static Line line;
-    static Burning paper;
     float sum = 0, squares = 0;
 
     line_make(&line, 0.003f), burning_make(&paper);
@@ -172,8 +166,6 @@ TEST(tongues_are_fed_unevenly) {
 /// the squares' corners were looked at, tongues ended in steps and had gaps.
 TEST(thin_tongues_are_not_cut) {
     static float fire[2][W * H][4];
-    static Line line;
-    static Burning paper;
     const float far = 8, pixel_side = 1e-3f * far, aside_by = 2 * pixel_side;
 
     line_make(&line, 0.003f), burning_make(&paper);
@@ -203,8 +195,6 @@ TEST(thin_tongues_are_not_cut) {
 TEST(a_foot_is_clear_between_streaks) {
     enum { FRAMES = 4, LOW = 5, HIGH = 12 };
     static float fire[W * H][4], mean[H][4];
-    static Line line;
-    static Burning paper;
     const float each = 1.0f / (FRAMES * (HIGH - LOW) * W);
     float clear = 0, hidden = 0, sum = 0, squares = 0;
 
@@ -234,8 +224,6 @@ static int ascending(const void *a, const void *b) {
 TEST(tongues_join_and_differ_in_height) {
     enum { FRAMES = 12, SIDE = 16, SQUARES = W / SIDE, COUNT = FRAMES * SQUARES, LOW = 40, HIGH = 50 };
     static float fire[W * H][4], mean[H][4];
-    static Line line;
-    static Burning paper;
     float heights[COUNT] = {0}, lit = 0, flames = 0;
 
     line_make(&line, 0.003f), burning_make(&paper);
@@ -263,8 +251,6 @@ TEST(tongues_join_and_differ_in_height) {
 TEST(the_rim_is_seen_through_the_flames) {
     enum { LOW = 4 };
     static float fire[W * H][4], mean[H][4];
-    static Line line;
-    static Burning paper;
 
     burning_make(&paper);
     for (int wrong = 0; wrong < 2; wrong++) {

@@ -2,6 +2,9 @@
 
 #include "burning.h"
 
+// what a case works on
+static Ball ball;
+
 static float area(const uint8_t *rgb, int x0, int y0, int x1, int y1, int channel) {
     float sum = 0;
     for (int y = y0; y < y1; y++)
@@ -18,7 +21,6 @@ static float corner(const uint8_t *rgb, int channel) { return area(rgb, 0, 0, 8,
 /// In front of dark and of bright, a flame glows orange to yellow, not white.
 TEST(a_flame_glows_orange) {
     static uint8_t rgb[BYTES], plain[BYTES];
-    static Ball ball;
 
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 0);
     for (int k = 0; k < 2; k++) {
@@ -48,7 +50,6 @@ TEST(a_flame_glows_orange) {
 /// or two sheets that no others lie behind, as over examples/macro. Little of it is at the display's limit: 21 % was.
 TEST(a_bright_flame_is_pale_in_its_centre) {
     static uint8_t rgb[BYTES];
-    static Ball ball;
     for (int small = 0; small < 2; small++) {
         PreviewDef def = aside(0.02f);
         def.exposure = small ? 1.8f : 1.6f;
@@ -74,7 +75,6 @@ TEST(a_bright_flame_is_pale_in_its_centre) {
 TEST(a_body_of_flame_has_folds) {
     enum { APART = 6 };
     static uint8_t rgb[BYTES];
-    static Ball ball;
     PreviewDef def = aside(0.02f);
     def.exposure = 1.6f;
     ball_make(&ball, 0, 0, 0.2f, 0.05f, 1e7f, 0);
@@ -99,7 +99,6 @@ TEST(a_body_of_flame_has_folds) {
 /// A sheet hides a flame behind it, not one in front of it.
 TEST(a_sheet_hides_the_flame_behind_it) {
     static uint8_t before[BYTES], behind[BYTES], plain[BYTES];
-    static Ball ball;
     Float4 q;
 
     quad_make(&q, 0.1f, 0.2f);
@@ -120,7 +119,6 @@ TEST(a_sheet_hides_the_flame_behind_it) {
 /// The edge of a dark sheet that a lens blurs before a flame has no grain.
 TEST(a_blurred_edge_before_a_flame_is_smooth) {
     static uint8_t exact[BYTES], few[BYTES];
-    static Ball ball;
     Float4 q;
 
     quad_make(&q, 0.02f, 0.3f);
@@ -153,7 +151,6 @@ TEST(a_blurred_edge_before_a_flame_is_smooth) {
 /// Flames light the paper beside them, warmly.
 TEST(flames_light_the_paper_beside_them) {
     static uint8_t dark[BYTES], lit[BYTES];
-    static Ball ball;
     Float4 q;
 
     quad_make(&q, 0.15f, 0.02f);
@@ -170,7 +167,6 @@ TEST(flames_light_the_paper_beside_them) {
 /// Firelight is spread: paper beside and below a flame has no hot spot, as below a point.
 TEST(firelight_has_no_hot_spot) {
     static float beauty[W * H][3], fire[W * H][4];
-    static Ball ball;
     Float4 q;
     quad_make(&q, 0.15f, 0.02f), ball_make(&ball, -0.05f, 0, 0.04f, 0.03f, 4e6f, 0);
     PreviewDef def = above();
@@ -191,7 +187,6 @@ TEST(firelight_has_no_hot_spot) {
 static float firelight_deviation(float day) {
     enum { FRAMES = 12 };
     static float beauty[W * H][3];
-    static Ball ball;
     Float4 q;
     quad_make(&q, 0.15f, 0.02f);
     PreviewDef def = above();
@@ -226,7 +221,6 @@ TEST(firelight_flickers) {
 /// Smoke dims a bright background and is visible against a dark one.
 TEST(smoke_dims_what_is_bright) {
     static uint8_t rgb[BYTES], plain[BYTES];
-    static Ball ball;
 
     ball_make(&ball, 0, 0, 0.2f, 0.035f, 0, 2e-3f);
     for (int k = 0; k < 2; k++) {
@@ -242,7 +236,6 @@ TEST(smoke_dims_what_is_bright) {
 /// The thin smoke over a flame, a tenth of a gramme in a cubic metre, is seen before a dark wall, and is no fog.
 TEST(thin_smoke_is_seen) {
     static uint8_t rgb[BYTES], plain[BYTES];
-    static Ball ball;
     PreviewDef def = aside(0.0f);
     ball_make(&ball, 0, 0, 0.2f, 0.045f, 0, 1e-4f);
 
@@ -262,7 +255,6 @@ TEST(thin_smoke_is_seen) {
 /// Smoke rises in streaks: inside of an even cloud the picture changes more from side to side than from below to above.
 TEST(smoke_has_streaks) {
     static uint8_t rgb[BYTES];
-    static Ball ball;
     PreviewDef def = aside(0.75f);
     float across = 0, up = 0;
 
@@ -283,7 +275,6 @@ TEST(smoke_has_streaks) {
 /// The layer of the fire is what it adds to the picture and what it hides of it.
 TEST(the_fire_layer_is_what_fire_adds) {
     static float with[W * H][3], without[W * H][3], fire[W * H][4];
-    static Ball ball;
     PreviewDef def = aside(0.3f);
 
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 5e-4f);
@@ -310,7 +301,6 @@ TEST(the_fire_layer_is_what_fire_adds) {
 /// From kilometres away, and from inside of the flame: rays come to an end.
 TEST(rays_end_far_away_and_inside_the_flame) {
     static uint8_t rgb[BYTES];
-    static Ball ball;
 
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 1e-3f);
     static const float eyes[4][3] = {{0, -0.01f, 0.2f}, {0, -90, 0.2f}, {0, -9000, 0.2f}, {7000, 6000, 8000}};
