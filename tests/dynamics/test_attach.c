@@ -9,6 +9,9 @@
 #include "dynamics/dynamics_plan.h"
 #include "sim/scenes.h"
 
+// what a case works on
+static Bench bench;
+
 enum { SIDE = 20, ROW = SIDE + 1 };
 static const float cell = 0.01f;
 static const SingeSheetId the_sheet = {0, 1}; // of test_sim
@@ -16,47 +19,45 @@ static const SingeSheetId the_sheet = {0, 1}; // of test_sim
 static uint32_t vertex(uint32_t i, uint32_t j) { return j * ROW + i; }
 
 /// A sheet of 20 cm, flat, held at `count` vertices and ready for a projection.
-static void hold(Bench *bench, const SingeMaterialDef *material, int count, const uint32_t *held) {
-    bench_open(bench, quads_grid(SIDE, SIDE, cell, cell, false), material, 1);
-    for (int k = 0; k < count; k++) bench->state.dynamics.pinned[held[k]] = 1;
-    dynamics_plan_hold(bench->plan, &bench->shell, &bench->state);
-    bench_prepare(bench);
+static void hold(Bench *b, const SingeMaterialDef *material, int count, const uint32_t *held) {
+    bench_open(b, quads_grid(SIDE, SIDE, cell, cell, false), material, 1);
+    for (int k = 0; k < count; k++) b->state.dynamics.pinned[held[k]] = 1;
+    dynamics_plan_hold(b->plan, &b->shell, &b->state);
+    bench_prepare(b);
 }
 
 /// Throws what is free about, up to 10 cm.
-static void scatter(Bench *bench) {
-    for (uint32_t i = 0; i < bench->shell.particle_count; i++)
+static void scatter(Bench *b) {
+    for (uint32_t i = 0; i < b->shell.particle_count; i++)
         for (int k = 0; k < 3; k++)
-            if (!bench->state.dynamics.pinned[i])
-                bench->state.dynamics.position[i][k] += 0.2f * (random_unit(random_hash(i, (uint32_t)k, 1, 2)) - 0.5f);
+            if (!b->state.dynamics.pinned[i])
+                b->state.dynamics.position[i][k] += 0.2f * (random_unit(random_hash(i, (uint32_t)k, 1, 2)) - 0.5f);
 }
 
-static void project(Bench *bench) {
-    attach_project(&bench->plan->attachments, &bench->shell, bench->plan->kernels->hold, bench->pool,
-                   &bench->state.dynamics);
+static void project(Bench *b) {
+    attach_project(&b->plan->attachments, &b->shell, b->plan->kernels->hold, b->pool, &b->state.dynamics);
 }
 
 /// How much farther than it may be a vertex is from a source, at most.
-static double excess(const Bench *bench, int source) {
-    const Attachments *attachments = &bench->plan->attachments;
-    const float *anchor = bench->state.dynamics.position[attachments->source[0][source]];
+static double excess(const Bench *b, int source) {
+    const Attachments *attachments = &b->plan->attachments;
+    const float *anchor = b->state.dynamics.position[attachments->source[0][source]];
     double max = 0;
-    for (uint32_t v = 0; v < bench->shell.vertex_count; v++) {
-        Float3 away = float3_sub(float3_load(bench->state.dynamics.position[v]), float3_load(anchor));
+    for (uint32_t v = 0; v < b->shell.vertex_count; v++) {
+        Float3 away = float3_sub(float3_load(b->state.dynamics.position[v]), float3_load(anchor));
         max = fmax(max, (double)(float3_length(away) - attachments->length[v][source]));
     }
     return max;
 }
 
-static double far_from_start(const Bench *bench, uint32_t i) {
+static double far_from_start(const Bench *b, uint32_t i) {
     return (double)float3_length(
-        float3_sub(float3_load(bench->state.dynamics.position[i]), float3_load(bench->shell.rest_position[i])));
+        float3_sub(float3_load(b->state.dynamics.position[i]), float3_load(b->shell.rest_position[i])));
 }
 
 TEST(no_vertex_is_too_far_from_a_pin) {
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0)};
     for (int count = 1; count <= 2; count++) {
-        Bench bench;
         hold(&bench, NULL, count, corners);
         scatter(&bench);
         float(*before)[4] = malloc(bench.shell.particle_count * sizeof *before);
@@ -81,7 +82,6 @@ TEST(no_vertex_is_too_far_from_a_pin) {
 /// Vertices within reach keep their position to the bit.
 TEST(slack_is_left_alone) {
     const uint32_t corner = vertex(0, 0);
-    Bench bench;
     hold(&bench, NULL, 1, &corner);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         if (i != corner)
@@ -98,7 +98,6 @@ TEST(slack_is_left_alone) {
 
 TEST(a_loose_piece_is_free) {
     const uint32_t corner = vertex(0, 0);
-    Bench bench;
     hold(&bench, NULL, 1, &corner);
     for (uint32_t v = vertex(0, 10); v < bench.shell.vertex_count; v++) bench.state.ablate.piece[v] = 7;
     bench.state.ablate.topology_version++;
@@ -126,7 +125,6 @@ TEST(a_loose_piece_is_free) {
 TEST(removed_pins_and_burnt_particles_hold_nothing) {
     const uint32_t corner = vertex(0, 0);
     for (int burnt = 0; burnt < 2; burnt++) {
-        Bench bench;
         hold(&bench, NULL, 1, &corner);
         if (burnt) {
             bench.state.ablate.particle_flags[corner] = 0, bench.state.ablate.piece[corner] = -1;
@@ -150,7 +148,6 @@ TEST(removed_pins_and_burnt_particles_hold_nothing) {
 TEST(up_to_four_sources_are_far_apart) {
     uint32_t edge[ROW];
     for (uint32_t i = 0; i < ROW; i++) edge[i] = vertex(i, SIDE);
-    Bench bench;
     hold(&bench, NULL, ROW, edge);
     const uint32_t *source = bench.plan->attachments.source[0];
     assert_int_equal(source[0], edge[0]);
@@ -170,15 +167,14 @@ TEST(up_to_four_sources_are_far_apart) {
 }
 
 /// The end of the step before a measurement is due, or of the one in which it is.
-static void end_step(Bench *bench, uint64_t step) {
-    bench->state.step = step - 1;
-    attach_update(&bench->plan->attachments, &bench->shell, STATE_INPUT(&bench->state), false);
+static void end_step(Bench *b, uint64_t step) {
+    b->state.step = step - 1;
+    attach_update(&b->plan->attachments, &b->shell, STATE_INPUT(&b->state), false);
 }
 
 /// A fire eats a disc from its middle: distances around the hole grow at once, and none becomes shorter.
 TEST(lengths_grow_at_once) {
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0)};
-    Bench bench;
     hold(&bench, NULL, 2, corners);
     const Attachments *attachments = &bench.plan->attachments;
     float before[ROW * ROW][ATTACH_SOURCES];
@@ -209,7 +205,6 @@ TEST(lengths_grow_at_once) {
 /// Lengths that shrink to 0.8 get there in equal steps by the time of the next measurement.
 TEST(lengths_shorten_in_steps) {
     const uint32_t corner = vertex(0, 0), far = vertex(SIDE, SIDE);
-    Bench bench;
     hold(&bench, NULL, 1, &corner);
     const float *length = bench.plan->attachments.length[far];
     const float start = *length;
@@ -226,10 +221,10 @@ TEST(lengths_shorten_in_steps) {
     bench_close(&bench);
 }
 
-static double farthest_moved(const Bench *bench, float (*before)[4]) {
+static double farthest_moved(const Bench *b, float (*before)[4]) {
     double max = 0;
-    for (uint32_t v = 0; v < bench->shell.vertex_count; v++) {
-        Float3 displacement = float3_sub(float3_load(bench->state.dynamics.position[v]), float3_load(before[v]));
+    for (uint32_t v = 0; v < b->shell.vertex_count; v++) {
+        Float3 displacement = float3_sub(float3_load(b->state.dynamics.position[v]), float3_load(before[v]));
         max = fmax(max, (double)float3_length(displacement));
     }
     return max;
@@ -239,7 +234,6 @@ static double farthest_moved(const Bench *bench, float (*before)[4]) {
 /// that are too far away return gradually, without a jerk.
 TEST(rest_ends_without_a_jerk) {
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0), vertex(0, SIDE)};
-    Bench bench;
     static float before[ROW * ROW][4];
 
     hold(&bench, NULL, 3, corners);

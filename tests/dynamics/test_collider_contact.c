@@ -13,26 +13,28 @@
 
 #include "support/test.h"
 
+// what a case works on
+static Bench bench;
+
 static const float STEP = 1.0f / 480;
 
-static Float3 centroid(const Bench *bench) {
+static Float3 centroid(const Bench *b) {
     Float3 sum = {0, 0, 0};
-    for (uint32_t i = 0; i < bench->shell.vertex_count; i++)
-        sum = float3_add(sum, float3_load(bench->state.dynamics.position[i]));
-    return float3_scale(sum, 1 / (float)bench->shell.vertex_count);
+    for (uint32_t i = 0; i < b->shell.vertex_count; i++)
+        sum = float3_add(sum, float3_load(b->state.dynamics.position[i]));
+    return float3_scale(sum, 1 / (float)b->shell.vertex_count);
 }
 
-static void position(Bench *bench, const float rotation[4], Float3 at) {
-    for (uint32_t i = 0; i < bench->shell.particle_count; i++)
-        float3_store(bench->state.dynamics.position[i],
-                     float3_add(at, quat_rotate(rotation, float3_load(bench->shell.rest_position[i]))));
+static void position(Bench *b, const float rotation[4], Float3 at) {
+    for (uint32_t i = 0; i < b->shell.particle_count; i++)
+        float3_store(b->state.dynamics.position[i],
+                     float3_add(at, quat_rotate(rotation, float3_load(b->shell.rest_position[i]))));
 }
 
 // ---- thin things
 
 /// A sheet of 2 mm cells thrown at a plate of 6 cm: how many particles are behind it at last.
 static int passed(SingeColliderDef plate, float sheet_speed, float plate_speed, const float rotation[4]) {
-    Bench bench;
     bench_open_plain(&bench, quads_grid(16, 16, 0.002f, 0.002f, false));
     SingePoseKey keys[2] = {{0, {0, 0, 0}, {0, 0, 0, 1}}, {1, {0, 0, plate_speed}, {0, 0, 0, 1}}};
     for (int k = 0; k < 4; k++) keys[0].rotation[k] = keys[1].rotation[k] = rotation[k];
@@ -87,7 +89,6 @@ static SingeColliderDef slab(SingeColliderKind kind, Triangles *triangles, const
 
 /// m that a sheet of 4 cm slides in 0.5 s on a slab of that slope, and in the second half of it.
 static double slide(SingeColliderDef def, float slope, double *late) {
-    Bench bench;
     bench_open_plain(&bench, quads_grid(8, 8, 0.005f, 0.005f, false));
     SingePoseKey key = {0, {0, 0, 0}, {0, sinf(slope / 2), 0, cosf(slope / 2)}};
     float top = def.kind == SINGE_COLLIDER_BOX || def.kind == SINGE_COLLIDER_MESH ? 0.05f : 0;
@@ -143,7 +144,6 @@ TEST(resting_sheets_do_not_creep) {
 /// m that a sheet stays behind a belt in 0.4 s, which starts from rest with this acceleration.
 static double behind_belt(SingeColliderDef def, float acceleration) {
     enum { KEYS = 100 };
-    Bench bench;
     bench_open_plain(&bench, quads_grid(8, 8, 0.005f, 0.005f, false));
     SingePoseKey keys[KEYS];
     for (int k = 0; k < KEYS; k++) {
@@ -172,14 +172,14 @@ TEST(a_belt_carries_what_friction_allows) {
 // ---- at rest
 
 /// How deep the sheet's cells are in the collider at the worst, over a grid of points on each; and how fast it moves.
-static double deepest(const Bench *bench, double *speed) {
-    const float(*x)[4] = (const float(*)[4])bench->state.dynamics.position;
-    const Collider *collider = bench->colliders.items;
-    Pose pose = path_pose(&collider->path, bench->state.time);
+static double deepest(const Bench *held, double *speed) {
+    const float(*x)[4] = (const float(*)[4])held->state.dynamics.position;
+    const Collider *collider = held->colliders.items;
+    Pose pose = path_pose(&collider->path, held->state.time);
     double worst = -INFINITY, sum = 0;
 
-    for (uint32_t c = 0; c < bench->shell.cell_count; c++) {
-        const uint32_t *corner = bench->shell.cells[c];
+    for (uint32_t c = 0; c < held->shell.cell_count; c++) {
+        const uint32_t *corner = held->shell.cells[c];
         for (int k = 0; k < 25; k++) {
             float u = (float)(k % 5) / 4, v = (float)(k / 5) / 4; // on the two triangles that are drawn
             const float *a = x[corner[0]], *b = x[corner[u > v ? 1 : 3]], *d = x[corner[2]];
@@ -191,16 +191,15 @@ static double deepest(const Bench *bench, double *speed) {
         }
     }
 
-    for (uint32_t i = 0; i < bench->shell.particle_count; i++)
-        sum += (double)float3_length(float3_load(bench->state.dynamics.velocity[i]));
-    *speed = sum / bench->shell.particle_count;
+    for (uint32_t i = 0; i < held->shell.particle_count; i++)
+        sum += (double)float3_length(float3_load(held->state.dynamics.velocity[i]));
+    *speed = sum / held->shell.particle_count;
     return worst;
 }
 
 static double rests(SingeColliderDef def, const char *name, float height) {
     enum { CELLS = 40 };
     const float cell = 0.002f;
-    Bench bench;
     SingeMaterialDef material = singe_default_material();
     bench_open(&bench, quads_grid(CELLS, CELLS, cell, cell, false), &material, 2);
     SingePoseKey key = {0, {0, 0, 0}, {0, 0, 0, 1}};
@@ -233,7 +232,6 @@ TEST(sheets_rest_on_meshes_and_heights) {
 /// Spheres of several sizes under a sheet: how deep the smallest that still hold reach in.
 TEST(small_spheres_hold) {
     for (float radius = 8e-3f; radius > 0.4e-3f; radius /= 2) {
-        Bench bench;
         SingeMaterialDef material = singe_default_material();
         bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
         SingeColliderDef def = singe_default_collider();
@@ -254,12 +252,12 @@ TEST(small_spheres_hold) {
 // ---- presses and swats
 
 /// m/s that the particles move at most, and how many are under the plane z = 0.
-static double fastest(const Bench *bench, int *under) {
+static double fastest(const Bench *b, int *under) {
     double max = 0;
     *under = 0;
-    for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
-        max = fmax(max, (double)float3_length(float3_load(bench->state.dynamics.velocity[i])));
-        *under += bench->state.dynamics.position[i][2] < -1e-5f;
+    for (uint32_t i = 0; i < b->shell.particle_count; i++) {
+        max = fmax(max, (double)float3_length(float3_load(b->state.dynamics.velocity[i])));
+        *under += b->state.dynamics.position[i][2] < -1e-5f;
     }
     return max;
 }
@@ -267,7 +265,6 @@ static double fastest(const Bench *bench, int *under) {
 /// A block comes down on a sheet that lies on a plate, nearer than sheet and offsets are thick, and is lifted again.
 TEST(pressed_sheets_stay_and_rest) {
     for (float gap = 2e-3f; gap > 0.2e-3f; gap /= 2) {
-        Bench bench;
         SingeMaterialDef material = singe_default_material();
         bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
         Triangles triangles = triangles_box(4, 0.02f, 0.02f, 0.01f);
@@ -310,7 +307,6 @@ TEST(pressed_sheets_stay_and_rest) {
 
 /// A plate that turns about its edge hits a sheet in flight: nothing gets through.
 TEST(swung_plates_let_nothing_through) {
-    Bench bench;
     bench_open_plain(&bench, quads_grid(16, 16, 0.002f, 0.002f, false));
     Triangles triangles = triangles_box(6, 0.1f, 0.1f, 0.0005f);
     for (uint32_t v = 0; v < triangles.vertex_count; v++) triangles.vertices[3 * (size_t)v] += 0.06f; // about its edge
@@ -353,7 +349,6 @@ TEST(particles_move_in_lanes_as_one_by_one) {
 
     for (int trial = 0; trial < 12; trial++) {
         // at rest as it is, at rest but turned, moving
-        Bench bench;
         bench_open_plain(&bench, quads_grid(29, 31, 0.002f, 0.002f, false)); // 1859 particles: lanes leave some
         SingeColliderDef def = singe_default_collider();
         def.kind = kinds[trial % 4];
@@ -409,7 +404,6 @@ TEST(of_many_colliders_none_is_missed) {
     const float h = STEP / 3, none[4] = {0, 0, 0, 1};
     for (int trial = 0; trial < 6; trial++) {
         const uint32_t near = trial < 3 ? 40 : 400, count = near + 200;
-        Bench bench;
         bench_open_plain(&bench, quads_grid(40, 40, 0.002f, 0.002f, false));
         assert_true(dynamics_plan_reserve(&bench.memory, bench.plan, MOST));
         Collider *colliders = calloc(MOST, sizeof *colliders);
@@ -465,29 +459,28 @@ TEST(of_many_colliders_none_is_missed) {
 // ---- cost
 
 /// ns a particle for one look at the collider, with the sheet there.
-static double look(Bench *bench, Float3 at, uint64_t *contacts) {
+static double look(Bench *b, Float3 at, uint64_t *contacts) {
     const float none[4] = {0, 0, 0, 1};
-    DynamicsPlan *plan = bench->plan;
+    DynamicsPlan *plan = b->plan;
     double best = INFINITY;
 
     for (int repeat = 0; repeat < 7; repeat++) {
-        position(bench, none, at);
-        for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
-            bench->state.dynamics.position[i][3] = 1;
-            memcpy(plan->predicted[i], bench->state.dynamics.position[i], sizeof plan->predicted[i]);
+        position(b, none, at);
+        for (uint32_t i = 0; i < b->shell.particle_count; i++) {
+            b->state.dynamics.position[i][3] = 1;
+            memcpy(plan->predicted[i], b->state.dynamics.position[i], sizeof plan->predicted[i]);
         }
-        plan->colliders[0] = contact_collider(bench->colliders.items, 0, (double)STEP / 3);
+        plan->colliders[0] = contact_collider(b->colliders.items, 0, (double)STEP / 3);
         double start = test_seconds();
-        *contacts = contact_project(plan, 1, NULL, STEP / 3, &bench->state.dynamics);
+        *contacts = contact_project(plan, 1, NULL, STEP / 3, &b->state.dynamics);
         best = fmin(best, test_seconds() - start);
     }
 
-    return 1e9 * best / bench->shell.particle_count;
+    return 1e9 * best / b->shell.particle_count;
 }
 
 /// A mesh of 10,000 triangles: a sheet that is far from it, above it, and one of which all particles touch it.
 TEST(far_colliders_cost_almost_nothing) {
-    Bench bench;
     SingeMaterialDef material = bench_plain_material();
     material.thickness = singe_param(0.0004f); // both layers in reach
     bench_open(&bench, quads_grid(70, 70, 0.001f, 0.001f, false), &material, 1);

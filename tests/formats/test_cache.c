@@ -5,6 +5,9 @@
 
 TEST_IN_FOLDER("a.0001.ply")
 
+// what a case works on
+static SingeError error;
+
 enum { VERTICES = 5, TRIANGLES = 3 };
 
 static void fill(void *values, size_t count, uint32_t seed) {
@@ -58,7 +61,6 @@ static SingeSurface make_sample(void) {
 }
 
 static Bytes written(const SingeSurface *surface, double time) {
-    SingeError error;
     if (ply_write_surface(path, surface, time, &error)) fail_msg("%s", error.message);
     return take_file(path);
 }
@@ -67,7 +69,6 @@ TEST(round_trip_is_bitwise) {
     SingeSurface sample = make_sample();
     Bytes bytes = written(&sample, 1 / 24.0 + 7);
     SingeSurface read;
-    SingeError error;
     double time = 0;
     if (ply_read_surface("a.ply", bytes.data, bytes.size, (SingeAllocator){0}, &read, &time, &error))
         fail_msg("%s", error.message);
@@ -128,7 +129,6 @@ TEST(the_old_name_of_burnt_is_read) {
     memcpy(at, old, strlen(old));
     memmove(at + strlen(old), at + strlen(name), after);
     SingeSurface read;
-    SingeError error;
     assert_int_equal(ply_read_surface("a.ply", bytes.data, bytes.size - 1, (SingeAllocator){0}, &read, NULL, &error),
                      SINGE_OK);
     assert_memory_equal(read.burn, sample.burn, VERTICES * sizeof *read.burn);
@@ -152,11 +152,11 @@ TEST(nothing_left_is_a_surface_too) {
     bytes_free(&bytes);
 }
 
-static SingeResult read_copy(const uint8_t *data, size_t size, SingeError *error) {
+static SingeResult read_copy(const uint8_t *data, size_t size, SingeError *why) {
     uint8_t *copy = calloc(size ? size : 1, 1);
     SingeSurface read;
     memcpy(copy, data, size);
-    SingeResult result = ply_read_surface("a.ply", copy, size, (SingeAllocator){0}, &read, NULL, error);
+    SingeResult result = ply_read_surface("a.ply", copy, size, (SingeAllocator){0}, &read, NULL, why);
     free(copy);
     if (result) assert_null(read.position);
     singe_surface_free(&read);
@@ -166,7 +166,6 @@ static SingeResult read_copy(const uint8_t *data, size_t size, SingeError *error
 TEST(damage_is_noticed) {
     SingeSurface sample = make_sample();
     Bytes bytes = written(&sample, 3);
-    SingeError error;
     for (size_t size = 0; size < bytes.size; size++)
         if (read_copy(bytes.data, size, &error) == SINGE_OK) fail_msg("cut to %d bytes", (int)size);
     assert_int_equal(read_copy(bytes.data, bytes.size, &error), SINGE_OK);
@@ -197,7 +196,6 @@ TEST(damage_is_noticed) {
 
 TEST(refuses_to_write_nonsense) {
     SingeSurface sample = make_sample();
-    SingeError error;
     assert_int_equal(ply_write_surface(path, &sample, NAN, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(ply_write_surface("/proc/nowhere/a.ply", &sample, 0, &error), SINGE_ERROR_FILE);
     assert_int_equal(access(path, F_OK), -1);
@@ -208,7 +206,6 @@ TEST(allocation_failure_is_clean) {
     SingeSurface sample = make_sample();
     Bytes bytes = written(&sample, 3);
     SingeSurface read;
-    SingeError error;
     test_allocations_fail(14, ply_read_surface("a.ply", bytes.data, bytes.size, allocator, &read, NULL, &error),
                           singe_surface_free(&read));
     bytes_free(&bytes);

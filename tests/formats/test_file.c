@@ -7,6 +7,9 @@
 #include <unistd.h>
 
 TEST_IN_FOLDER("any")
+// what a case works on
+static SingeError error;
+
 static const SingeAllocator libc_allocator = {0};
 
 static const char *inside(const char *name) {
@@ -74,7 +77,6 @@ TEST(taken_names_are_no_obstacle) {
 }
 
 TEST(reading_says_why) {
-    SingeError error;
     Bytes bytes;
     assert_int_equal(file_read(inside("missing"), libc_allocator, &bytes, &error), SINGE_ERROR_FILE);
     assert_message(&error, "missing: cannot read: No such file");
@@ -96,7 +98,6 @@ TEST(reading_says_why) {
 }
 
 TEST(writing_says_why) {
-    SingeError error;
     assert_int_equal(file_write(inside("no/where"), "x", 1, &error), SINGE_ERROR_FILE);
     assert_message(&error, "No such file");
     assert_int_equal(file_write(folder, "x", 1, &error), SINGE_ERROR_FILE);
@@ -142,7 +143,6 @@ TEST(links_are_replaced) {
 }
 
 TEST(drafts_take_the_place_later) {
-    SingeError error;
     const char *target = inside("film");
     char *first, *second;
     assert_int_equal(file_write(target, "old", 3, &error), SINGE_OK);
@@ -170,7 +170,6 @@ TEST(drafts_take_the_place_later) {
 
 // The limit on a file's size makes the write fail in the middle, as a full disk does.
 TEST(failed_write_keeps_the_old_file) {
-    SingeError error;
     const char *target = inside("old.txt");
     enum { LARGE = 1 << 20 };
     char *data = calloc(1, LARGE);
@@ -192,7 +191,6 @@ TEST(failed_write_keeps_the_old_file) {
 }
 
 TEST(allocation_failure_is_clean) {
-    SingeError error;
     assert_int_equal(file_write(inside("a"), "abc", 3, &error), SINGE_OK);
     TestAllocator counter = {.fail_at = 1, .once = true};
     Bytes bytes;

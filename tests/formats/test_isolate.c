@@ -13,6 +13,10 @@
 
 static const IsolateLimits few = {64 << 20, 1};
 
+// what a case is answered
+static Bytes got;
+static SingeError why;
+
 static SingeResult run(IsolateWork *work, void *context, Bytes *answer, SingeError *error) {
     SingeResult result = isolate_run("a.mesh", work, context, few, (SingeAllocator){0}, answer, error);
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1); // none is left behind
@@ -51,17 +55,15 @@ static uint8_t *many(void) {
 
 TEST(answers_arrive_complete) {
     uint8_t *bytes = many();
-    Bytes answer;
-    SingeError error;
 
-    if (run(put_many, bytes, &answer, &error)) fail_msg("%s", error.message);
-    assert_int_equal(answer.size, MANY);
-    assert_memory_equal(answer.data, bytes, MANY);
-    assert_int_equal(answer.data[MANY], 0);
-    bytes_free(&answer);
-    if (run(put_nothing, NULL, &answer, &error)) fail_msg("%s", error.message);
-    assert_int_equal(answer.size, 0);
-    bytes_free(&answer);
+    if (run(put_many, bytes, &got, &why)) fail_msg("%s", why.message);
+    assert_int_equal(got.size, MANY);
+    assert_memory_equal(got.data, bytes, MANY);
+    assert_int_equal(got.data[MANY], 0);
+    bytes_free(&got);
+    if (run(put_nothing, NULL, &got, &why)) fail_msg("%s", why.message);
+    assert_int_equal(got.size, 0);
+    bytes_free(&got);
     free(bytes);
 }
 
@@ -75,22 +77,16 @@ static SingeResult refuse_work(void *context, IsolateAnswer *answer, SingeError 
 }
 
 TEST(errors_come_as_they_were) {
-    Bytes answer;
-    SingeError error;
-    assert_int_equal(run(refuse_work, NULL, &answer, &error), SINGE_ERROR_MESH);
-    assert_string_equal(error.message, "a.mesh:17: no good");
-    assert_string_equal(error.stage, "mesh");
-    assert_int_equal(error.element, 17);
-    assert_int_equal(isolate_run("a.mesh", refuse_work, NULL, few, (SingeAllocator){0}, &answer, NULL),
-                     SINGE_ERROR_MESH);
+    assert_int_equal(run(refuse_work, NULL, &got, &why), SINGE_ERROR_MESH);
+    assert_string_equal(why.message, "a.mesh:17: no good");
+    assert_string_equal(why.stage, "mesh");
+    assert_int_equal(why.element, 17);
+    assert_int_equal(isolate_run("a.mesh", refuse_work, NULL, few, (SingeAllocator){0}, &got, NULL), SINGE_ERROR_MESH);
 }
 
 TEST(failing_memory_of_the_parent_is_reported) {
     uint8_t *bytes = many();
-    Bytes answer;
-    SingeError error;
-    test_allocations_fail(0, isolate_run("a.mesh", put_many, bytes, few, allocator, &answer, &error),
-                          bytes_free(&answer));
+    test_allocations_fail(0, isolate_run("a.mesh", put_many, bytes, few, allocator, &got, &why), bytes_free(&got));
     free(bytes);
 }
 
@@ -110,20 +106,18 @@ static SingeResult stop(void *context, IsolateAnswer *answer, SingeError *error)
 
 TEST(crashes_are_reported) {
     static const int signals[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGKILL};
-    Bytes answer;
-    SingeError error;
 
     for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
         char number[24];
         snprintf(number, sizeof number, "signal %d", signals[i]);
-        assert_int_equal(run(crash, (void *)(uintptr_t)&signals[i], &answer, &error), SINGE_ERROR_FORMAT);
-        assert_message(&error, number);
+        assert_int_equal(run(crash, (void *)(uintptr_t)&signals[i], &got, &why), SINGE_ERROR_FORMAT);
+        assert_message(&why, number);
     }
 
-    // a library that ends the process gives no answer, whatever code it has
+    // a library that ends the process gives no got, whatever code it has
     for (int code = 0; code < 3; code++) {
-        assert_int_equal(run(stop, &code, &answer, &error), SINGE_ERROR_FORMAT);
-        assert_message(&error, "stopped");
+        assert_int_equal(run(stop, &code, &got, &why), SINGE_ERROR_FORMAT);
+        assert_message(&why, "stopped");
     }
 }
 
@@ -133,11 +127,9 @@ static void note(int number) { noted = number; }
 TEST(interrupts_stop_the_child) {
     struct sigaction before, own = {.sa_handler = note};
     int number = SIGINT;
-    Bytes answer;
-    SingeError error;
     sigaction(SIGINT, &own, &before); // is not the child's
-    assert_int_equal(run(crash, &number, &answer, &error), SINGE_ERROR_STATE);
-    assert_message(&error, "interrupted");
+    assert_int_equal(run(crash, &number, &got, &why), SINGE_ERROR_STATE);
+    assert_message(&why, "interrupted");
     sigaction(SIGINT, &before, NULL);
     assert_int_equal(noted, 0);
 }
@@ -158,16 +150,14 @@ static SingeResult wait_long(void *context, IsolateAnswer *answer, SingeError *e
 }
 
 TEST(time_is_limited) {
-    Bytes answer;
-    SingeError error;
     double start = clock_seconds();
 
-    assert_int_equal(run(spin, NULL, &answer, &error), SINGE_ERROR_LIMIT);
-    assert_message(&error, "more than 1 s");
+    assert_int_equal(run(spin, NULL, &got, &why), SINGE_ERROR_LIMIT);
+    assert_message(&why, "more than 1 s");
     IsolateLimits short_time = {64 << 20, 0.1};
-    assert_int_equal(isolate_run("a.mesh", wait_long, NULL, short_time, (SingeAllocator){0}, &answer, &error),
+    assert_int_equal(isolate_run("a.mesh", wait_long, NULL, short_time, (SingeAllocator){0}, &got, &why),
                      SINGE_ERROR_LIMIT);
-    assert_message(&error, "more than 0.1 s");
+    assert_message(&why, "more than 0.1 s");
     assert_true(clock_seconds() - start < 8);
 }
 
@@ -197,23 +187,21 @@ static SingeResult answer_too_much(void *context, IsolateAnswer *answer, SingeEr
 }
 
 TEST(memory_is_limited) {
-    Bytes answer;
-    SingeError error;
     IsolateLimits slow = {64 << 20, 20};
-    assert_int_equal(isolate_run("a.mesh", take_slowly, NULL, slow, (SingeAllocator){0}, &answer, &error),
+    assert_int_equal(isolate_run("a.mesh", take_slowly, NULL, slow, (SingeAllocator){0}, &got, &why),
                      SINGE_ERROR_LIMIT);
-    assert_message(&error, "more than 67 MB of memory");
+    assert_message(&why, "more than 67 MB of memory");
     static char block[1 << 16];
-    assert_int_equal(run(answer_too_much, block, &answer, &error), SINGE_ERROR_LIMIT);
-    assert_message(&error, "more than 67 MB of memory");
+    assert_int_equal(run(answer_too_much, block, &got, &why), SINGE_ERROR_LIMIT);
+    assert_message(&why, "more than 67 MB of memory");
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     size_t size = (size_t)1 << 33;
-    assert_int_equal(run(take_at_once, &size, &answer, &error), SINGE_ERROR_LIMIT);
-    assert_message(&error, "more than 67 MB of memory");
+    assert_int_equal(run(take_at_once, &size, &got, &why), SINGE_ERROR_LIMIT);
+    assert_message(&why, "more than 67 MB of memory");
 #endif
     size_t little = 1 << 20;
-    assert_int_equal(run(take_at_once, &little, &answer, &error), SINGE_OK);
-    bytes_free(&answer);
+    assert_int_equal(run(take_at_once, &little, &got, &why), SINGE_OK);
+    bytes_free(&got);
 }
 
 // ---- what is the parent's
@@ -229,9 +217,8 @@ TEST(files_of_the_parent_stay_as_they_are) {
     FILE *file = tmpfile();
     assert_non_null(file);
     fputs("once", file); // still in the buffer, of which the child has a copy
-    Bytes answer;
-    assert_int_equal(run(print, file, &answer, NULL), SINGE_OK);
-    bytes_free(&answer);
+    assert_int_equal(run(print, file, &got, NULL), SINGE_OK);
+    bytes_free(&got);
     fflush(file);
     assert_int_equal(ftell(file), 4);
     assert_int_equal(lseek(fileno(file), 0, SEEK_END), 4);
@@ -259,32 +246,28 @@ TEST(signals_do_not_cut_the_wait) {
     struct sigaction before, own = {.sa_handler = note}; // without SA_RESTART
     struct itimerval often = {{0, 500}, {0, 500}}, never = {{0, 0}, {0, 0}};
     uint8_t *bytes = many();
-    Bytes answer;
-    SingeError error;
     sigaction(SIGALRM, &own, &before);
     setitimer(ITIMER_REAL, &often, NULL);
-    SingeResult result = run(put_many, bytes, &answer, &error);
+    SingeResult result = run(put_many, bytes, &got, &why);
     setitimer(ITIMER_REAL, &never, NULL);
     sigaction(SIGALRM, &before, NULL);
-    if (result) fail_msg("%s", error.message);
+    if (result) fail_msg("%s", why.message);
     assert_int_equal(noted, SIGALRM);
     noted = 0;
-    assert_memory_equal(answer.data, bytes, MANY);
-    bytes_free(&answer);
+    assert_memory_equal(got.data, bytes, MANY);
+    bytes_free(&got);
     free(bytes);
 }
 
 TEST(a_parent_that_ignores_its_children_gets_answers) {
     uint8_t *bytes = many();
-    Bytes answer;
-    SingeError error;
 
     signal(SIGCHLD, SIG_IGN);
-    SingeResult result = run(put_many, bytes, &answer, &error);
+    SingeResult result = run(put_many, bytes, &got, &why);
     signal(SIGCHLD, SIG_DFL);
-    if (result) fail_msg("%s", error.message);
-    assert_int_equal(answer.size, MANY);
-    bytes_free(&answer);
+    if (result) fail_msg("%s", why.message);
+    assert_int_equal(got.size, MANY);
+    bytes_free(&got);
     free(bytes);
 }
 
@@ -301,9 +284,8 @@ TEST(the_child_ends_with_its_parent) {
     assert_int_equal(pipe(ends), 0);
     pid_t parent = fork();
     if (parent == 0) {
-        Bytes answer;
         IsolateLimits limits = {64 << 20, 1000};
-        (void)!isolate_run("a.mesh", say_and_wait, &ends[1], limits, (SingeAllocator){0}, &answer, NULL);
+        (void)!isolate_run("a.mesh", say_and_wait, &ends[1], limits, (SingeAllocator){0}, &got, NULL);
         _exit(0);
     }
 
@@ -327,12 +309,10 @@ TEST(other_threads_are_refused) {
 #endif
     int ends[2];
     pthread_t thread;
-    Bytes answer;
-    SingeError error;
     assert_int_equal(pipe(ends), 0);
     assert_int_equal(pthread_create(&thread, NULL, sleep_on, &ends[0]), 0);
-    assert_int_equal(run(put_nothing, NULL, &answer, &error), SINGE_ERROR_STATE);
-    assert_message(&error, "threads");
+    assert_int_equal(run(put_nothing, NULL, &got, &why), SINGE_ERROR_STATE);
+    assert_message(&why, "threads");
     close(ends[1]);
     pthread_join(thread, NULL);
     close(ends[0]);

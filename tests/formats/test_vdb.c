@@ -8,15 +8,16 @@
 
 TEST_IN_FOLDER("a.vdb")
 
+// what a case works on
+static SingeError error;
+
 static Bytes written(const Gas *gas, double time) {
-    SingeError error;
     if (vdb_write_gas(path, gas, time, &error)) fail_msg("%s", error.message);
     return take_file(path);
 }
 
 static void make(uint32_t nx, uint32_t ny, uint32_t nz, Gas *gas) {
     GasSample sample;
-    SingeError error;
     assert_true(gas_sample_make(&sample, nx, ny, nz));
     if (gas_copy(&sample.gas, (SingeAllocator){0}, gas, &error)) fail_msg("%s", error.message);
     gas_sample_free(&sample);
@@ -37,7 +38,6 @@ TEST(round_trip_is_bitwise) {
     static const uint32_t sizes[][3] = {{1, 1, 1}, {8, 8, 8}, {37, 21, 60}, {9, 140, 17}, {130, 3, 129}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         Gas gas, read;
-        SingeError error;
         double time = 0;
         make(sizes[i][0], sizes[i][1], sizes[i][2], &gas);
         Bytes bytes = written(&gas, 1 / 24.0 + 7);
@@ -82,7 +82,6 @@ TEST(empty_is_small) {
 TEST(bad_gas_is_refused) {
     GasSample sample;
     Gas gas, none = {0};
-    SingeError error;
 
     assert_true(gas_sample_make(&sample, 4, 5, 6));
     sample.velocity[7][1] = INFINITY;
@@ -103,7 +102,6 @@ TEST(bad_gas_is_refused) {
 /// Cut off anywhere, and with any byte of the head changed: refused or read, and nothing is leaked.
 TEST(bad_bytes_are_refused) {
     Gas gas, read;
-    SingeError error;
     make(12, 9, 20, &gas);
     Bytes bytes = written(&gas, 0.25);
     TestAllocator counter = {0};
@@ -141,7 +139,6 @@ TEST(bad_bytes_are_refused) {
 
 TEST(no_memory_is_reported) {
     GasSample sample;
-    SingeError error;
     Gas gas, read;
 
     assert_true(gas_sample_make(&sample, 12, 9, 20));
