@@ -31,19 +31,6 @@ const ArgCommand replay_command = {
     "singe replay letter.replay --threads 1",
     .operand_field = offsetof(ReplayOptions, path)};
 
-/// Prints what a replay has shown, and returns the exit code.
-static ExitCode replay_report(const SingeReplay *replay, Console *console) {
-    if (strcmp(replay->version, singe_version()) != 0)
-        console_note(console, "recorded by singe %s; this is %s", shown(replay->version).text, singe_version());
-    if (!replay->complete) console_note(console, "the recording is truncated, perhaps by a crash");
-    if (!replay->same) {
-        printf("differs first: %s\n", replay->what);
-        return EXIT_FAILED;
-    }
-    printf("the same: %" PRIu64 " steps, %" PRIu64 " calls\n", replay->steps, replay->calls);
-    return EXIT_GOOD;
-}
-
 int command_replay(int argc, char **argv) {
     ReplayOptions options = {.threads = job_threads()};
     ExitCode code;
@@ -67,7 +54,12 @@ int command_replay(int argc, char **argv) {
         console_result(&console, &error);
         code = result == SINGE_ERROR_FILE ? EXIT_INPUT : job_exit(result);
     } else {
-        code = replay_report(&replay, &console);
+        if (strcmp(replay.version, singe_version()) != 0)
+            console_note(&console, "recorded by singe %s; this is %s", shown(replay.version).text, singe_version());
+        if (!replay.complete) console_note(&console, "the recording is truncated, perhaps by a crash");
+        if (replay.same) printf("the same: %" PRIu64 " steps, %" PRIu64 " calls\n", replay.steps, replay.calls);
+        else printf("differs first: %s\n", replay.what);
+        code = replay.same ? EXIT_GOOD : EXIT_FAILED;
     }
     bytes_free(&bytes);
     return code;

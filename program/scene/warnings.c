@@ -30,8 +30,14 @@ const char *source_heats_nothing(const Scene *scene, const SceneSource *source) 
     return scene->frames > 1 && (double)def->start >= end ? "it starts after the last frame" : NULL;
 }
 
-/// Files that most likely are in cm or mm.
-static void warn_of_units(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
+void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
+    if (!log->write) return;
+    for (uint32_t i = 0; i < scene->source_count; i++) {
+        const char *why = source_heats_nothing(scene, &scene->sources[i]);
+        if (why) message_warn(log, scene->text, scene->sources[i].location, "the source heats nothing: %s", why);
+    }
+
+    // files that most likely are in cm or mm
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         const SceneSheet *sheet = &scene->sheets[i];
         Box box = BOX_EMPTY;
@@ -42,15 +48,7 @@ static void warn_of_units(const Scene *scene, const SceneAssets *assets, const S
             message_warn(log, scene->text, sheet->mesh.location,
                          "the mesh is %.3g x %.3g x %.3g m large: are its numbers cm or mm? (units: cm)", x, y, z);
     }
-}
 
-void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
-    if (!log->write) return;
-    for (uint32_t i = 0; i < scene->source_count; i++) {
-        const char *why = source_heats_nothing(scene, &scene->sources[i]);
-        if (why) message_warn(log, scene->text, scene->sources[i].location, "the source heats nothing: %s", why);
-    }
-    warn_of_units(scene, assets, log);
     scene_warn_of_fires(scene, assets, log);
     for (uint32_t i = 0; i < scene->collider_count; i++)
         warn_of_motion(scene, &scene->colliders[i].motion, &assets->collider_motions[i], log);

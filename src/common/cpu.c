@@ -37,19 +37,6 @@ typedef struct CpuFlags {
     unsigned basic, extended, more, kept;
 } CpuFlags;
 
-static CpuFlags cpu_read(void) {
-    CpuFlags flags = {0};
-    unsigned a, b, c, d;
-    if (__get_cpuid(1, &a, &b, &c, &d)) flags.basic = c;
-    if (__get_cpuid_count(7, 0, &a, &b, &c, &d)) flags.extended = b;
-    if (__get_cpuid(0x80000001u, &a, &b, &c, &d)) flags.more = c;
-    if (flags.basic & CPU_OSXSAVE) {
-        __asm__ volatile("xgetbv" : "=a"(a), "=d"(d) : "c"(0));
-        flags.kept = a;
-    }
-    return flags;
-}
-
 static bool cpu_all(unsigned flags, unsigned wanted) { return (flags & wanted) == wanted; }
 
 static bool cpu_v2(const CpuFlags *f) {
@@ -63,7 +50,16 @@ static bool cpu_v3(const CpuFlags *f) {
 }
 
 bool cpu_has(SingeInstructions set) {
-    CpuFlags flags = cpu_read();
+    CpuFlags flags = {0};
+    unsigned a, b, c, d;
+    if (__get_cpuid(1, &a, &b, &c, &d)) flags.basic = c;
+    if (__get_cpuid_count(7, 0, &a, &b, &c, &d)) flags.extended = b;
+    if (__get_cpuid(0x80000001u, &a, &b, &c, &d)) flags.more = c;
+    if (flags.basic & CPU_OSXSAVE) {
+        __asm__ volatile("xgetbv" : "=a"(a), "=d"(d) : "c"(0));
+        flags.kept = a;
+    }
+
     switch (set) {
     case SINGE_INSTRUCTIONS_PLAIN: return true;
     case SINGE_INSTRUCTIONS_X86_V2: return cpu_v2(&flags);
