@@ -94,7 +94,7 @@ typedef struct Fire {
 #define FIRE_SWAY 0.018f
 #define FIRE_WARP_WIDE 0.0055f
 #define FIRE_WARP_FINE 0.0018f
-#define SMOKE_WARP 0.018f
+#define SMOKE_WARP 0.0234f
 
 enum { FIRE_FLAME = 1, FIRE_SMOKE = 2 };
 

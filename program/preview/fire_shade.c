@@ -363,16 +363,17 @@ FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
     return point;
 }
 
-/// Smoke rises in folds: eddies of two sizes, three times as tall as wide and as large as the flames', move it and thin it.
+/// Smoke rises in folds: eddies of two sizes, up to twice as tall as wide and as large as the flames', move it and thin
+/// it, so that it curls. Taller ones drew curtains.
 Matter fire_smoke_at(const Fire *fire, Float3 p) {
     const float eddy = fire->scale * SMOKE_EDDY, warp = fire->scale * SMOKE_WARP;
     const float passed = (SMOKE_SPEED * fire->moment - p.z) / eddy;
-    const Noise wide = eddies(fire, p, passed, eddy, 0.35f);
+    const Noise wide = eddies(fire, p, passed, eddy, 0.5f);
     Float3 moved = float3_mad(p, float3(wide.a, wide.b, wide.c), warp);
-    const Noise small = eddies(fire, moved, passed + 0.4f * wide.c, eddy / 2.6f, 0.9f);
+    const Noise small = eddies(fire, moved, passed + 0.4f * wide.c, eddy / 1.8f, 0.7f);
     moved = float3_mad(moved, float3(small.a, small.b, small.c), 0.5f * warp);
     const FireCell cell = cell_at(fire, moved);
-    const float fold = maxf(1.15f - 2.1f * fabsf(wide.d + 0.5f * small.d) + 0.3f * small.a, 0);
+    const float fold = maxf(1.15f - 2.1f * fabsf(0.5f * wide.d + 0.8f * small.d) + 0.3f * small.a, 0);
     const float dense = cell.smoke * SMOKE_SEEN_AS * fold * fold * fold;
 
     // soot and tar scatter about a third, in all directions

@@ -282,7 +282,7 @@ const float FLAME_END = 0.3;
 const float FIRE_SWAY = 0.018;
 const float FIRE_WARP_WIDE = 0.0055;
 const float FIRE_WARP_FINE = 0.0018;
-const float SMOKE_WARP = 0.018;
+const float SMOKE_WARP = 0.0234;
 const float FIRE_OUTSIDE = -0.006;
 const float BASE_SPEED = 0.25;
 const float BUOYANCY = 3.0;
@@ -401,12 +401,12 @@ void fire_between(FirePoint a, FirePoint b, float step_, inout Matter matter) {
 Matter fire_smoke_at(vec3 p) {
     float eddy = fireScale * SMOKE_EDDY, warp = fireScale * SMOKE_WARP;
     float passed = (SMOKE_SPEED * fireMoment - p.z) / eddy;
-    Noise wide = eddies(p, passed, eddy, 0.35);
+    Noise wide = eddies(p, passed, eddy, 0.5);
     vec3 moved = float3_mad(p, vec3(wide.a, wide.b, wide.c), warp);
-    Noise small = eddies(moved, passed + 0.4 * wide.c, eddy / 2.6, 0.9);
+    Noise small = eddies(moved, passed + 0.4 * wide.c, eddy / 1.8, 0.7);
     moved = float3_mad(moved, vec3(small.a, small.b, small.c), 0.5 * warp);
     FireCell cell = cell_at(moved);
-    float fold = max(1.15 - 2.1 * abs(wide.d + 0.5 * small.d) + 0.3 * small.a, 0.0);
+    float fold = max(1.15 - 2.1 * abs(0.5 * wide.d + 0.8 * small.d) + 0.3 * small.a, 0.0);
     float dense = cell.smoke * SMOKE_SEEN_AS * fold * fold * fold;
     vec3 lit = float3_mad(float3_scale(fireDaylight, 0.35), vec3(1.0, 0.58, 0.26), 0.45 * cell.glow);
     return Matter(float3_scale(lit, dense), dense);
