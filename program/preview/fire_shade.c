@@ -31,8 +31,9 @@
 // sheets has a pale core, too.
 //
 // Soot is clear and hot in threads, the creases of a noise, and denser and cooler in the folds between them. So a sheet in
-// front hides much of what burns behind it, and a body of many sheets does not add up to one flat yellow. Soot thins out
-// towards the tips.
+// front hides much of what burns behind it, and a body of many sheets does not add up to one flat yellow. Above the foot
+// filaments run along the flow, hotter and denser, finer than threads, with gaps between them. Soot cools with height and
+// thins out towards the tips.
 
 #include "common/float4.h"
 #include "preview/internal.h"
@@ -48,11 +49,12 @@
 #define FINE_OFTEN 1.6f
 #define EDDY_THREAD 0.0085f ///< of the soot's threads
 #define THREAD_BLUR 0.0016f ///< m, blur from which on they are wider
-#define THREAD_WARP 0.01f   ///< m, by which wide eddies bend them
-#define SWAY_WIDE 0.1f      ///< m, of the eddies that bend whole tongues
-#define SWAY_SLOPE 0.35f    ///< m aside per m above the paper
-#define LICK_WIDE 0.045f    ///< m, of the eddies that feed and starve whole tongues
-#define LICK_FULL 0.05f     ///< m above the paper, where they do so fully
+#define EDDY_FILAMENT 0.007f
+#define THREAD_WARP 0.01f ///< m, by which wide eddies bend them
+#define SWAY_WIDE 0.1f    ///< m, of the eddies that bend whole tongues
+#define SWAY_SLOPE 0.35f  ///< m aside per m above the paper
+#define LICK_WIDE 0.045f  ///< m, of the eddies that feed and starve whole tongues
+#define LICK_FULL 0.05f   ///< m above the paper, where they do so fully
 #define LICK 0.6f
 #define UNLIKE 1.2f       ///< octaves, by which the heights of tongues differ
 #define JOIN 0.5f         ///< of a full flame: what they join into where the creases of those eddies are
@@ -83,6 +85,8 @@
 #define FOOT_COOL 0.03f         ///< of the range of temperatures: soot begins orange
 #define FOOT_HOT 0.55f          ///< of that range: streaks in the foot are hot
 #define JOINED_HOT 0.15f
+#define FILAMENT_HOT 0.35f
+#define HIGH_COOL 0.2f
 #define FOOT_CLEAR 0.004f   ///< m above the paper, from where on soot fills the gaps between streaks
 #define FOOT_FULL 0.03f     ///< m, where it has
 #define FOOT_HAZE 0.19f     ///< of the soot, in those gaps
@@ -228,22 +232,31 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
     const Float3 bent =
         float3_mad(p, float3(wide.b + 0.2f * fine.b, wide.a + 0.2f * fine.a, 0), fire->scale * THREAD_WARP);
     Noise thread = {0, 0, 0, 0};
-    if (soot > 0) thread = eddies(fire, bent, passed, sqrtf(fire->scale) * EDDY_THREAD, 3.4f * sqrtf(fire->scale));
+    if (soot > 0) thread = eddies(fire, bent, passed, sqrtf(fire->scale) * EDDY_THREAD, 3 * sqrtf(fire->scale));
     const float sharp = maxf(3 * minf(THREAD_BLUR / maxf(blur, 1e-6f), 1), 2.2f); // thin ones would look like combs
     float clear =
         stepf(-0.5f, 0.6f, 0.15f * (wide.d + fine.d) + torn * (0.57f - 0.17f * (3 - sharp) - sharp * fabsf(thread.a)));
 
+    // filaments along the flow, and gaps between them, through which what is behind is seen
+    float filament = 0;
+    if (above > 0) {
+        const Noise n = eddies(fire, p, passed, sqrtf(fire->scale) * EDDY_FILAMENT, 1.3f * sqrtf(fire->scale));
+        filament = above * minf(1.5f * THREAD_BLUR / maxf(blur, 1e-6f), 1) *
+                   clampf(0.45f - 2.6f * fabsf(n.a) + 0.9f * n.b, -1, 1);
+    }
+
     float core = stepf(0.35f, 0.7f, flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
-    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.21f;
+    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.23f;
+    hot += FILAMENT_HOT * filament - HIGH_COOL * stepf(0.1f, 1.5f, tall);
     hot += JOINED_HOT * stepf(0.95f, 1.35f, flame); // where tongues have joined
     hot += FOOT_HOT * streak * (1 - above) - FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));
 
     soot *= dense * soot * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);
     float root =
         clampf((rise + STAND_OFF) / (8 * STAND_OFF), 0, 1) * (1 - soot) * (1 - stepf(BLUE_ENDS / 2, BLUE_ENDS, rise));
-    soot *= 0.2f + 3.7f * (1 - clear) * (1 - clear) + 1.2f * clear * clear;
-    soot *= (0.6f + 0.9f * torn * maxf(thread.b, -0.5f)) * (1 - 0.5f * tip);
+    soot *= 0.2f + 3.7f * (1 - clear) * (1 - clear) + 1.5f * clear * clear;
+    soot *= (0.6f + 0.9f * torn * maxf(thread.b, -0.5f)) * (1 - 0.75f * tip) * (1 + 0.8f * filament);
     point->opaque = SOOT_DENSE * soot;
     point->soot = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * soot);
     point->root = float3_scale(float3(0.12f, 0.42f, 1.25f), BLUE_DENSE * root);

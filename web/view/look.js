@@ -293,6 +293,7 @@ const float EDDY_FINE = 0.006;
 const float FINE_OFTEN = 1.6;
 const float EDDY_THREAD = 0.0085;
 const float THREAD_BLUR = 0.0016;
+const float EDDY_FILAMENT = 0.007;
 const float THREAD_WARP = 0.01;
 const float SWAY_WIDE = 0.1;
 const float SWAY_SLOPE = 0.35;
@@ -312,6 +313,8 @@ const float SOOT_FULL = 0.0075;
 const float FOOT_COOL = 0.03;
 const float FOOT_HOT = 0.55;
 const float JOINED_HOT = 0.15;
+const float FILAMENT_HOT = 0.35;
+const float HIGH_COOL = 0.2;
 const float FOOT_CLEAR = 0.004;
 const float FOOT_FULL = 0.03;
 const float FOOT_HAZE = 0.19;
@@ -370,20 +373,27 @@ void shade_flame(FireCell cell, vec3 p, float rise, float passed, float slope,
     vec3 bent =
         float3_mad(p, vec3(wide.b + 0.2 * fine.b, wide.a + 0.2 * fine.a, 0.0), fireScale * THREAD_WARP);
     Noise thread = Noise(0.0, 0.0, 0.0, 0.0);
-    if (soot > 0.0) thread = eddies(bent, passed, sqrt(fireScale) * EDDY_THREAD, 3.4 * sqrt(fireScale));
+    if (soot > 0.0) thread = eddies(bent, passed, sqrt(fireScale) * EDDY_THREAD, 3.0 * sqrt(fireScale));
     float sharp = max(3.0 * min(THREAD_BLUR / max(blur, 1e-6), 1.0), 2.2);
     float clear =
         stepf(-0.5, 0.6, 0.15 * (wide.d + fine.d) + torn * (0.57 - 0.17 * (3.0 - sharp) - sharp * abs(thread.a)));
+    float filament = 0.0;
+    if (above > 0.0) {
+        Noise n = eddies(p, passed, sqrt(fireScale) * EDDY_FILAMENT, 1.3 * sqrt(fireScale));
+        filament = above * min(1.5 * THREAD_BLUR / max(blur, 1e-6), 1.0) *
+                   clamp(0.45 - 2.6 * abs(n.a) + 0.9 * n.b, -1.0, 1.0);
+    }
     float core = stepf(0.35, 0.7, cell.flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0.0, 0.7, edge), low = 1.0 - stepf(0.1, 0.9, tall);
-    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.21;
+    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.23;
+    hot += FILAMENT_HOT * filament - HIGH_COOL * stepf(0.1, 1.5, tall);
     hot += JOINED_HOT * stepf(0.95, 1.35, cell.flame);
     hot += FOOT_HOT * streak * (1.0 - above) - FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
     soot *= dense * soot * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
     float root =
         clamp((rise + STAND_OFF) / (8.0 * STAND_OFF), 0.0, 1.0) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 2.0, BLUE_ENDS, rise));
-    soot *= 0.2 + 3.7 * (1.0 - clear) * (1.0 - clear) + 1.2 * clear * clear;
-    soot *= (0.6 + 0.9 * torn * max(thread.b, -0.5)) * (1.0 - 0.5 * tip);
+    soot *= 0.2 + 3.7 * (1.0 - clear) * (1.0 - clear) + 1.5 * clear * clear;
+    soot *= (0.6 + 0.9 * torn * max(thread.b, -0.5)) * (1.0 - 0.75 * tip) * (1.0 + 0.8 * filament);
     point.opaque = SOOT_DENSE * soot;
     point.soot = float3_scale(flame_colour(clamp(hot, 0.0, 1.0)), SOOT_DENSE * soot);
     point.root = float3_scale(vec3(0.12, 0.42, 1.25), BLUE_DENSE * root);
