@@ -44,9 +44,9 @@ static double sharpest(const Bench *b) {
     for (uint32_t v = 0; v < b->shell.vertex_count; v++) {
         if (v % (NX + 1) == 0 || v % (NX + 1) == NX) continue;
         const float(*x)[4] = (const float(*)[4])b->state.dynamics.position;
-        Float3 a = float3_sub(float3_load(x[v]), float3_load(x[v - 1])),
-               b = float3_sub(float3_load(x[v + 1]), float3_load(x[v]));
-        max = fmax(max, (double)float3_length(float3_sub(b, a)));
+        Float3 to = float3_sub(float3_load(x[v]), float3_load(x[v - 1])),
+               from = float3_sub(float3_load(x[v + 1]), float3_load(x[v]));
+        max = fmax(max, (double)float3_length(float3_sub(from, to)));
     }
 
     return max / (double)(2 * cell * sinf(0.5f * curvature * cell));
@@ -60,9 +60,9 @@ static void momenta(const Bench *b, const float (*start)[4], double *sums) {
         double m = (double)b->shell.matter.mass[i], d[3];
         for (int k = 0; k < 3; k++) d[k] = (double)x[k] - (double)start[i][k];
         for (int k = 0; k < 3; k++) {
-            int a = (k + 1) % 3, b = (k + 2) % 3;
+            const int next = (k + 1) % 3, last = (k + 2) % 3;
             sums[k] += m * d[k];
-            sums[3 + k] += m * ((double)start[i][a] * d[b] - (double)start[i][b] * d[a]);
+            sums[3 + k] += m * ((double)start[i][next] * d[last] - (double)start[i][last] * d[next]);
         }
     }
 }

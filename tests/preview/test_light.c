@@ -218,10 +218,9 @@ TEST(a_glossy_ground_mirrors_embers) {
 TEST(waves_of_wood_break_its_reflections) {
     static float beauty[2][W * H][3];
     PreviewDef def = at_night();
-    PreviewShape ball = {
+    PreviewShape sphere = {
         .kind = SINGE_COLLIDER_SPHERE, .position = {0, 0, 0.08f}, .radius = 0.025f, .temperature = 1450};
-    SingeSurface nothing = {0};
-    def.shapes = &ball, def.shape_count = 1;
+    def.shapes = &sphere, def.shape_count = 1;
     def.camera = (PreviewCamera){.eye = {0, -0.5f, 0.1f}, .target = {0, 0, -0.08f}, .up = {0, 0, 1}, .fov = 0.3f};
     def.ground = PREVIEW_GROUND_WOOD, def.ground_gloss = 6;
     for (int c = 0; c < 3; c++) def.ground_colour[c] = 0;

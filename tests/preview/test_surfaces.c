@@ -110,7 +110,6 @@ TEST(heated_metal_wears_temper_colours) {
 TEST(wood_is_not_smeared_along_its_grain) {
     enum { PLACES = 6, APART = 24, ACROSS = 3 };
     static uint8_t rgb[BYTES];
-    SingeSurface nothing = {0};
     float both = 0, square = 0;
     for (int k = 0; k < PLACES; k++) {
         PreviewDef def = above();
