@@ -272,8 +272,6 @@ TEST(the_rim_is_seen_through_the_flames) {
 TEST(bodies_have_filaments) {
     enum { FRAMES = 4, NEAR = 5 }; // pixels of .3 mm
     static float fire[W * H][4];
-    static Line line;
-    static Burning paper;
     int lit = 0, flat = 0;
 
     line_make(&line, 0.003f), burning_make(&paper);
