@@ -386,7 +386,7 @@ Matter fire_smoke_at(const Fire *fire, Float3 p) {
     const Noise small = eddies(fire, moved, passed + 0.4f * wide.c, eddy / 1.8f, 0.7f);
     moved = float3_mad(moved, float3(small.a, small.b, small.c), 0.5f * warp);
     const FireCell cell = cell_at(fire, moved);
-    const float fold = maxf(1.15f - 2.1f * fabsf(0.5f * wide.d + 0.8f * small.d) + 0.3f * small.a, 0);
+    const float fold = maxf(1.08f - 2.1f * fabsf(0.5f * wide.d + 0.8f * small.d) + 0.3f * small.a, 0);
     const float dense = cell.smoke * SMOKE_SEEN_AS * fold * fold * fold;
 
     // soot and tar scatter about a third, in all directions

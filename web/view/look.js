@@ -416,7 +416,7 @@ Matter fire_smoke_at(vec3 p) {
     Noise small = eddies(moved, passed + 0.4 * wide.c, eddy / 1.8, 0.7);
     moved = float3_mad(moved, vec3(small.a, small.b, small.c), 0.5 * warp);
     FireCell cell = cell_at(moved);
-    float fold = max(1.15 - 2.1 * abs(0.5 * wide.d + 0.8 * small.d) + 0.3 * small.a, 0.0);
+    float fold = max(1.08 - 2.1 * abs(0.5 * wide.d + 0.8 * small.d) + 0.3 * small.a, 0.0);
     float dense = cell.smoke * SMOKE_SEEN_AS * fold * fold * fold;
     vec3 lit = float3_mad(float3_scale(fireDaylight, 0.35), vec3(1.0, 0.58, 0.26), 0.45 * cell.glow);
     return Matter(float3_scale(lit, dense), dense);
