@@ -342,6 +342,8 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
     FeatureRange far = {looks, looks, looks, true};
     NearFeatures found[NARROW_MAX];
     NarrowCell p, q;
+    Float4 normals = {0};
+    uint32_t measured = SHELL_NONE; // the cell of p and `normals`: pairs are sorted by their first one
 
     for (uint32_t k = 0; plan->searched && k < plan->listed_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];
@@ -351,11 +353,13 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
             continue;
 
         // measure the pair, unless it is connected and cannot collide
-        narrow_cell_set(plan, shell, pair->a, x, float4_load(x[a[0]]), &p);
+        if (pair->a != measured) {
+            narrow_cell_set(plan, shell, pair->a, x, float4_load(x[a[0]]), &p);
+            normals = feature_normals(p.node);
+            measured = pair->a;
+        }
         narrow_cell_set(plan, shell, pair->b, x, float4_load(x[a[0]]), &q);
-        if (pair->bridge != SHELL_NONE &&
-            feature_is_within(feature_normals(p.node), feature_normals(q.node), FEATURE_CONE))
-            continue;
+        if (pair->bridge != SHELL_NONE && feature_is_within(normals, feature_normals(q.node), FEATURE_CONE)) continue;
         float nearest;
         if (narrow_slabs_distance(&p, &q) > looks || !narrow_features(shell, pair, &p, &q, &far, found, &nearest))
             continue;
