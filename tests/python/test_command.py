@@ -4,8 +4,10 @@ import importlib.util
 import os
 import re
 import shutil
+import signal
 import stat
 import unittest
+import unittest.mock
 
 from support import ROOT, SCENE, Case, singe
 
@@ -175,6 +177,21 @@ class Command(Case):
         cache = singe.run(scene, self.dir / "out", frames=cut + 8, preview=False, resume=True)
         whole = singe.run(scene, self.dir / "whole", frames=cut + 8, preview=False)
         self.assertEqual([frame.path.read_bytes() for frame in cache], [frame.path.read_bytes() for frame in whole])
+
+    def test_a_command_that_cannot_be_interrupted_is_ended(self):
+        """As on Windows. The exception arrives, and nobody writes into the folder any more."""
+        def refuse(child, number):
+            if number == signal.SIGINT:
+                raise ValueError("Unsupported signal: 2")
+            os.kill(child.pid, number)
+
+        def stop(done, frames):
+            raise KeyError("enough")
+
+        scene = self.scene(SCENE.replace("frames: 6", "frames: 10000").replace("steps: 2", "steps: 20"))
+        with unittest.mock.patch("subprocess.Popen.send_signal", refuse), self.assertRaisesRegex(KeyError, "enough"):
+            singe.run(scene, self.dir / "out", preview=False, progress=stop)
+        self.assertEqual(len(singe.run(scene, self.dir / "out", frames=2, preview=False)), 2)
 
     def test_ctrl_c_reaches_the_command_once(self):
         scene = self.scene(SCENE.replace("frames: 6", "frames: 400").replace("steps: 2", "steps: 20"))

@@ -88,7 +88,10 @@ class _Process:
     def _stop(self) -> None:
         """Interrupts like Ctrl-C: the command finishes its step and writes a checkpoint. A second one kills it."""
         if self.child.poll() is None:
-            self.child.send_signal(signal.SIGINT)
+            try:
+                self.child.send_signal(signal.SIGINT)
+            except ValueError:  # Windows cannot interrupt another process: its last checkpoint is what remains
+                self.child.terminate()
         try:
             self.child.wait()
         except BaseException:
