@@ -104,19 +104,13 @@ typedef struct Noise {
 
 static inline Four four_of(Float3 p) { return (Four){p.x, p.y, p.z, 0}; }
 
-/// The integer parts of x, and the rests. Positions are within some kilometres, so they fit.
-static inline Float4Mask four_split(Four x, Four *rest) {
-    Float4Mask whole = __builtin_convertvector(x, Float4Mask);
-    whole += x < __builtin_convertvector(whole, Four);
-    *rest = x - __builtin_convertvector(whole, Four);
-    return whole;
-}
-
 /// Four smooth noises from -1 to 1 at q, lattice size 1.
 static inline Noise noise_at(const Fire *fire, Four q) {
-    Four f;
-    const Float4Mask at = four_split(q, &f) & (FIRE_NOISE - 1);
+    Float4Mask whole = __builtin_convertvector(q, Float4Mask); // positions are within some kilometres, so they fit
+    whole += q < __builtin_convertvector(whole, Four);
+    Four f = q - __builtin_convertvector(whole, Four);
     f = f * f * (3 - 2 * f);
+    const Float4Mask at = whole & (FIRE_NOISE - 1);
     const float(*corner)[4] = (const float(*)[4])fire->noise + fire_noise_at(at[0], at[1], at[2]);
     Four layer[2];
 
@@ -324,21 +318,10 @@ static inline Four flame_at(const Fire *fire, Float3 p) {
     return sum;
 }
 
-/// All values of the cells at p.
-static FireCell cell_at(const Fire *fire, Float3 p) {
-    Four w[3], v[3], sum = {0, 0, 0, 0};
-    const FireCell *first = &fire->cells[spline_at(fire, p, w, v)];
-    for (int z = 0; z < 3; z++, first += (size_t)fire->size[0] * (size_t)fire->size[1]) {
-        const FireCell *row = first;
-        for (int y = 0; y < 3; y++, row += fire->size[0])
-            sum += (w[z][2] * w[y][1]) * (four_load(&row[0].flame) * w[0][0] + four_load(&row[1].flame) * w[1][0] +
-                                          four_load(&row[2].flame) * w[2][0]);
-    }
-    return (FireCell){sum[0], sum[1], sum[2], sum[3]};
-}
+FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
+    FirePoint point = {.depth = FIRE_OUTSIDE};
 
-/// How far the widest eddies move the flame at p, and its height above the paper, linear between the cells.
-static inline Four sway_at(const Fire *fire, Float3 p) {
+    // how far the widest eddies move the flame there, and its height above the paper, linear between the cells
     const size_t right = 1, back = (size_t)fire->size[0], up = back * (size_t)fire->size[1];
     const Four at = in_cells(fire, p, 0.005f);
     const Float4Mask whole = __builtin_convertvector(at, Float4Mask);
@@ -351,12 +334,7 @@ static inline Four sway_at(const Fire *fire, Float3 p) {
         b += (four_load(corner[back + right]) - b) * f[0];
         layer[k] = a + (b - a) * f[1];
     }
-    return layer[0] + (layer[1] - layer[0]) * f[2];
-}
-
-FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
-    FirePoint point = {.depth = FIRE_OUTSIDE};
-    const Four sway = sway_at(fire, p);
+    const Four sway = layer[0] + (layer[1] - layer[0]) * f[2];
     p = float3_add(p, float3(sway[0], sway[1], 0));
 
     // large eddies move it, then small ones
@@ -385,7 +363,17 @@ Matter fire_smoke_at(const Fire *fire, Float3 p) {
     Float3 moved = float3_mad(p, float3(wide.a, wide.b, wide.c), warp);
     const Noise small = eddies(fire, moved, passed + 0.4f * wide.c, eddy / 1.8f, 0.7f);
     moved = float3_mad(moved, float3(small.a, small.b, small.c), 0.5f * warp);
-    const FireCell cell = cell_at(fire, moved);
+
+    Four w[3], v[3], sum = {0, 0, 0, 0};
+    const FireCell *first = &fire->cells[spline_at(fire, moved, w, v)];
+    for (int z = 0; z < 3; z++, first += (size_t)fire->size[0] * (size_t)fire->size[1]) {
+        const FireCell *row = first;
+        for (int y = 0; y < 3; y++, row += fire->size[0])
+            sum += (w[z][2] * w[y][1]) * (four_load(&row[0].flame) * w[0][0] + four_load(&row[1].flame) * w[1][0] +
+                                          four_load(&row[2].flame) * w[2][0]);
+    }
+    const FireCell cell = {sum[0], sum[1], sum[2], sum[3]};
+
     const float fold = maxf(1.08f - 2.1f * fabsf(0.5f * wide.d + 0.8f * small.d) + 0.3f * small.a, 0);
     const float dense = cell.smoke * SMOKE_SEEN_AS * fold * fold * fold;
 

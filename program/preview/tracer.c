@@ -96,31 +96,24 @@ unsigned tracer_shape_near(const Preview *preview, const PreviewShape *shape, co
     return near;
 }
 
-/// Which of the rays a shape blocks.
-static unsigned rays_blocked(const Preview *preview, const Rays *rays, unsigned asked) {
-    unsigned blocked = 0;
-    for (uint32_t k = 0; k < preview->shape_count && asked & ~blocked; k++) {
-        const PreviewShape *shape = &preview->shapes[k];
-        Float3 normal;
-        for (unsigned near = tracer_shape_near(preview, shape, rays) & asked & ~blocked; near; near &= near - 1) {
-            const int i = __builtin_ctz(near);
-            if (shape_intersect(shape, shutter_moment(preview, rays->time[i]), rays_origin(rays, i),
-                                rays_direction(rays, i), preview->scene.epsilon, rays->far[i], &normal) > 0)
-                blocked |= 1u << i;
-        }
-    }
-    return blocked;
-}
-
 void tracer_occlude(const Preview *preview, const int *valid, Rays *rays, float clear[LANES]) {
     const PreviewScene *scene = &preview->scene;
     bool any = false;
-    unsigned asked_bits = 0;
-    for (int i = 0; i < LANES; i++) asked_bits |= (valid[i] ? 1u : 0u) << i;
-    const unsigned blocked = rays_blocked(preview, rays, asked_bits);
+    unsigned open = 0; // bits of the rays that no shape blocks
+    for (int i = 0; i < LANES; i++) open |= (valid[i] ? 1u : 0u) << i;
+    for (uint32_t k = 0; k < preview->shape_count && open; k++) {
+        const PreviewShape *shape = &preview->shapes[k];
+        for (unsigned near = tracer_shape_near(preview, shape, rays) & open; near; near &= near - 1) {
+            const int i = __builtin_ctz(near);
+            Float3 normal;
+            if (shape_intersect(shape, shutter_moment(preview, rays->time[i]), rays_origin(rays, i),
+                                rays_direction(rays, i), scene->epsilon, rays->far[i], &normal) > 0)
+                open &= ~(1u << i);
+        }
+    }
 
     for (int i = 0; i < LANES; i++) {
-        clear[i] = blocked >> i & 1 ? 0 : 1;
+        clear[i] = valid[i] && !(open >> i & 1) ? 0 : 1;
         if (!valid[i] || clear[i] <= 0 ||
             !tracer_near(scene, rays_origin(rays, i), rays_direction(rays, i), rays->far[i], 0))
             rays->far[i] = -1;
