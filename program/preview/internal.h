@@ -166,8 +166,15 @@ bool tracer_near(const PreviewScene *scene, Float3 origin, Float3 direction, flo
 /// Nearest hits of the lanes that are valid; moves their `far` there.
 void tracer_intersect(const Preview *preview, const int *valid, Rays *rays, Hits *hits);
 
-/// Bits of the rays that may meet a shape: those that come near the sphere around it.
-unsigned tracer_shape_near(const Preview *preview, const PreviewShape *shape, const Rays *rays);
+/// What rays meet first.
+typedef struct Met {
+    const PreviewShape *shape[LANES]; ///< NULL: none before the sheets
+    float distance[LANES];            ///< to the shape or the sheet
+    Float3 normal[LANES];             ///< the shape's
+} Met;
+
+/// The shapes before the hits of valid lanes.
+void tracer_meet_shapes(const Preview *preview, const int *valid, const Rays *rays, const Hits *hits, Met *met);
 
 /// clear[i] is the transmittance along the ray of a valid lane, shapes included; for other lanes, whose `far` must be
 /// -1, it is 1. Changes `far`.

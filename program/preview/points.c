@@ -88,36 +88,6 @@ static float moved_across(Float3 motion, Float3 ray) {
     return float3_length(float3_mad(motion, ray, -float3_dot(motion, ray)));
 }
 
-/// The shapes that the rays of a block meet first.
-typedef struct Met {
-    const PreviewShape *shape[LANES]; ///< NULL: none before the sheets
-    float distance[LANES];            ///< to what is met, sheets included
-    Float3 normal[LANES];
-} Met;
-
-static void meet_shapes(const Preview *preview, const Block *block, Met *met) {
-    unsigned wanted = 0;
-    for (int i = 0; i < LANES; i++) {
-        wanted |= (block->valid[i] ? 1u : 0u) << i;
-        met->shape[i] = NULL;
-        met->distance[i] = block->hits.triangle[i] != BVH_NONE ? block->rays.far[i] : INFINITY;
-    }
-
-    for (uint32_t k = 0; k < preview->shape_count; k++) {
-        const PreviewShape *shape = &preview->shapes[k];
-        for (unsigned near = wanted & tracer_shape_near(preview, shape, &block->rays); near; near &= near - 1) {
-            const int i = __builtin_ctz(near);
-            Float3 normal = {0, 0, 1};
-            const float t = shape_intersect(shape, shutter_moment(preview, block->time[i]), block->origin[i],
-                                            block->direction[i], 0, met->distance[i], &normal);
-            if (!(t > 0)) continue;
-            met->distance[i] = t;
-            met->shape[i] = shape;
-            met->normal[i] = normal;
-        }
-    }
-}
-
 /// The point that a lane's ray sees; false if it passes through a hole and must continue.
 static bool resolve(const Preview *preview, Block *block, int lane, const Met *met, bool last) {
     Float3 o = block->origin[lane], d = block->direction[lane];
@@ -182,7 +152,7 @@ void block_find_points(const Preview *preview, Block *block, const int *active) 
     for (int pass = 0; pass < HOLE_LIMIT && left; pass++) {
         Met met;
         tracer_intersect(preview, block->valid, &block->rays, &block->hits);
-        meet_shapes(preview, block, &met);
+        tracer_meet_shapes(preview, block->valid, &block->rays, &block->hits, &met);
         left = 0;
         for (int i = 0; i < LANES; i++) {
             if (!block->valid[i]) continue;

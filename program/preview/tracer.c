@@ -79,7 +79,8 @@ void tracer_intersect(const Preview *preview, const int *valid, Rays *rays, Hits
         if (hits->triangle[i] != BVH_NONE) rays->far[i] = wanted.far[i];
 }
 
-unsigned tracer_shape_near(const Preview *preview, const PreviewShape *shape, const Rays *rays) {
+/// Bits of the rays that may meet a shape: those that come near the sphere around it.
+static unsigned shape_near_rays(const Preview *preview, const PreviewShape *shape, const Rays *rays) {
     const Float3 centre = shape_centre(shape);
     const float extent = 1.001f * shape_extent(shape, preview->def.shutter) + 1e-5f; // beyond the error of a distance
     unsigned near = 0;
@@ -96,6 +97,29 @@ unsigned tracer_shape_near(const Preview *preview, const PreviewShape *shape, co
     return near;
 }
 
+void tracer_meet_shapes(const Preview *preview, const int *valid, const Rays *rays, const Hits *hits, Met *met) {
+    unsigned wanted = 0;
+    for (int i = 0; i < LANES; i++) {
+        wanted |= (valid[i] ? 1u : 0u) << i;
+        met->shape[i] = NULL;
+        met->distance[i] = hits->triangle[i] != BVH_NONE ? rays->far[i] : INFINITY;
+    }
+
+    for (uint32_t k = 0; k < preview->shape_count; k++) {
+        const PreviewShape *shape = &preview->shapes[k];
+        for (unsigned near = wanted & shape_near_rays(preview, shape, rays); near; near &= near - 1) {
+            const int i = __builtin_ctz(near);
+            Float3 normal = {0, 0, 1};
+            const float t = shape_intersect(shape, shutter_moment(preview, rays->time[i]), rays_origin(rays, i),
+                                            rays_direction(rays, i), 0, met->distance[i], &normal);
+            if (!(t > 0)) continue;
+            met->distance[i] = t;
+            met->shape[i] = shape;
+            met->normal[i] = normal;
+        }
+    }
+}
+
 void tracer_occlude(const Preview *preview, const int *valid, Rays *rays, float clear[LANES]) {
     const PreviewScene *scene = &preview->scene;
     bool any = false;
@@ -103,7 +127,7 @@ void tracer_occlude(const Preview *preview, const int *valid, Rays *rays, float 
     for (int i = 0; i < LANES; i++) open |= (valid[i] ? 1u : 0u) << i;
     for (uint32_t k = 0; k < preview->shape_count && open; k++) {
         const PreviewShape *shape = &preview->shapes[k];
-        for (unsigned near = tracer_shape_near(preview, shape, rays) & open; near; near &= near - 1) {
+        for (unsigned near = shape_near_rays(preview, shape, rays) & open; near; near &= near - 1) {
             const int i = __builtin_ctz(near);
             Float3 normal;
             if (shape_intersect(shape, shutter_moment(preview, rays->time[i]), rays_origin(rays, i),
