@@ -104,8 +104,9 @@ typedef struct Noise {
 
 static inline Four four_of(Float3 p) { return (Four){p.x, p.y, p.z, 0}; }
 
-/// Four smooth noises from -1 to 1 at q, lattice size 1.
-static inline Noise noise_at(const Fire *fire, Four q) {
+/// Four smooth noises from -1 to 1 at p, lattice size 1.
+static inline Noise noise_at(const Fire *fire, Float3 p) {
+    const Four q = four_of(p);
     Float4Mask whole = __builtin_convertvector(q, Float4Mask); // positions are within some kilometres, so they fit
     whole += q < __builtin_convertvector(whole, Four);
     Four f = q - __builtin_convertvector(whole, Four);
@@ -136,8 +137,9 @@ static inline float eddies_passed(float height, float time) {
 /// Noise of eddies `width` across, of which `often` pass where one of the largest does; rotated away from the axes.
 static inline Noise eddies(const Fire *fire, Float3 p, float passed, float width, float often) {
     const float c = 0.829f, s = 0.559f; // 34 degrees around the vertical
-    const Four turned = (Four){c, s, 0, 0} * p.x + (Four){-s, c, 0, 0} * p.y;
-    return noise_at(fire, turned * (1 / width) + (Four){0.21f, 0.17f, -often, 0} * passed);
+    float across = 1 / width;
+    return noise_at(fire, float3((c * p.x - s * p.y) * across + 0.21f * passed,
+                                 (s * p.x + c * p.y) * across + 0.17f * passed, -often * passed));
 }
 
 // ---- flame and smoke
@@ -170,7 +172,7 @@ float fire_share(const Fire *fire, size_t at) {
 }
 
 float fire_flicker(const Fire *fire, Float3 p) {
-    Noise whole = noise_at(fire, (Four){0.4f, 0.6f, 6 * fire->moment, 0});
+    Noise whole = noise_at(fire, float3(0.4f, 0.6f, 6 * fire->moment));
     Noise part = eddies(fire, p, EDDY_RATE * fire->moment / sqrtf(fire->scale), fire->scale * 0.04f, 1);
     return maxf(1 + 0.5f * whole.a + 0.8f * part.c, 0.1f);
 }
@@ -318,6 +320,19 @@ static inline Four flame_at(const Fire *fire, Float3 p) {
     return sum;
 }
 
+/// All values of the cells at p.
+static FireCell cell_at(const Fire *fire, Float3 p) {
+    Four w[3], v[3], sum = {0, 0, 0, 0};
+    const FireCell *first = &fire->cells[spline_at(fire, p, w, v)];
+    for (int z = 0; z < 3; z++, first += (size_t)fire->size[0] * (size_t)fire->size[1]) {
+        const FireCell *row = first;
+        for (int y = 0; y < 3; y++, row += fire->size[0])
+            sum += (w[z][2] * w[y][1]) * (four_load(&row[0].flame) * w[0][0] + four_load(&row[1].flame) * w[1][0] +
+                                          four_load(&row[2].flame) * w[2][0]);
+    }
+    return (FireCell){sum[0], sum[1], sum[2], sum[3]};
+}
+
 FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
     FirePoint point = {.depth = FIRE_OUTSIDE};
 
@@ -363,17 +378,7 @@ Matter fire_smoke_at(const Fire *fire, Float3 p) {
     Float3 moved = float3_mad(p, float3(wide.a, wide.b, wide.c), warp);
     const Noise small = eddies(fire, moved, passed + 0.4f * wide.c, eddy / 1.8f, 0.7f);
     moved = float3_mad(moved, float3(small.a, small.b, small.c), 0.5f * warp);
-
-    Four w[3], v[3], sum = {0, 0, 0, 0};
-    const FireCell *first = &fire->cells[spline_at(fire, moved, w, v)];
-    for (int z = 0; z < 3; z++, first += (size_t)fire->size[0] * (size_t)fire->size[1]) {
-        const FireCell *row = first;
-        for (int y = 0; y < 3; y++, row += fire->size[0])
-            sum += (w[z][2] * w[y][1]) * (four_load(&row[0].flame) * w[0][0] + four_load(&row[1].flame) * w[1][0] +
-                                          four_load(&row[2].flame) * w[2][0]);
-    }
-    const FireCell cell = {sum[0], sum[1], sum[2], sum[3]};
-
+    const FireCell cell = cell_at(fire, moved);
     const float fold = maxf(1.08f - 2.1f * fabsf(0.5f * wide.d + 0.8f * small.d) + 0.3f * small.a, 0);
     const float dense = cell.smoke * SMOKE_SEEN_AS * fold * fold * fold;
 

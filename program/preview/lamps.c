@@ -28,16 +28,6 @@ typedef struct Cluster {
 static const float EMBER_CAST = 5;
 static const float DAZZLED = 0.3f; ///< the share of it that is left beside flames that light far more
 
-/// A flame is drawn a few times as bright as white paper, so that its colour stays; in a room by day it is some thirty times
-/// as bright (a candle of 12 cd and 4 cm2 has 3e4 cd/m2, white paper at 1000 lx 3e2). At night the exposure makes up for
-/// it. By day the light that flames cast is that much nearer to a real one's, or the room would not flicker.
-static float flame_cast(const Preview *preview) {
-    const float by_day = 4, dusk = 1, noon = 1.8f; // light on white paper, on the scale of `light` and `sky`
-    const float light =
-        float3_luminance(float3_load(preview->def.sun_colour)) + float3_luminance(float3_load(preview->def.sky_colour));
-    return mixf(1, by_day, stepf(dusk, noon, light));
-}
-
 static void add_to_cluster(Cluster *clusters, Float3 low, Float3 high, Float3 position, Float3 strength, float weight) {
     Float3 size = float3_sub(high, low);
     int cell[3];
@@ -152,7 +142,16 @@ void light_gather(Preview *preview) {
     if (fire->visible) {
         Cluster flames[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
         float volume = fire->cell * fire->cell * fire->cell;
-        Float3 strength = float3_scale(fire_emission(preview), flame_cast(preview) * 0.14f * volume / PI_F);
+
+        // a flame is drawn a few times as bright as white paper, so that its colour stays; in a room by day it is some thirty
+        // times as bright (a candle of 12 cd and 4 cm2 has 3e4 cd/m2, white paper at 1000 lx 3e2). At night the exposure makes
+        // up for it. By day the light that flames cast is that much nearer to a real one's, or the room would not flicker
+        const float by_day = 4, dusk = 1, noon = 1.8f; // light on white paper, on the scale of `light` and `sky`
+        const float day = float3_luminance(float3_load(preview->def.sun_colour)) +
+                          float3_luminance(float3_load(preview->def.sky_colour));
+        const float cast = mixf(1, by_day, stepf(dusk, noon, day));
+        Float3 strength = float3_scale(fire_emission(preview), cast * 0.14f * volume / PI_F);
+
         size_t at = 0;
         for (int z = 0; z < fire->size[2]; z++)
             for (int y = 0; y < fire->size[1]; y++)

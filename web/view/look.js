@@ -348,14 +348,14 @@ void fire_sway(vec3 p, float height, inout float sway[2]) {
     sway[0] = most * n.a;
     sway[1] = most * n.b;
 }
-void shade_flame(FireCell cell, vec3 p, float rise, float passed, float slope,
-                        Noise wide, Noise fine, float blur, inout FirePoint point) {
+void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noise wide,
+                        Noise fine, float blur, inout FirePoint point) {
     float torn = stepf(0.0, 0.02, rise);
     float tall = rise / (fireScale * FLAME_HEIGHT);
     float coarse = 0.075 + 0.425 * torn, small = 0.025 + 0.225 * torn;
-    float edge = cell.flame + coarse * (0.6 - 2.4 * abs(wide.c)) + small * (0.4 - 2.0 * abs(fine.c)) - EDGE -
+    float edge = flame + coarse * (0.6 - 2.4 * abs(wide.c)) + small * (0.4 - 2.0 * abs(fine.c)) - EDGE -
                  TAPER * (1.0 - exp(-tall)) - 0.1 * (1.0 - torn);
-    edge = min(edge, 2.0 * (cell.flame - FLAME_SEEN));
+    edge = min(edge, 2.0 * (flame - FLAME_SEEN));
     float noisy = 2.0 * (coarse / EDDY_WIDE + small / EDDY_FINE) / fireScale;
     point.depth = max(edge / sqrt(slope * slope + 0.4 * noisy * noisy + 1.0), FIRE_OUTSIDE);
     if (!(point.depth > 0.0)) return;
@@ -383,11 +383,11 @@ void shade_flame(FireCell cell, vec3 p, float rise, float passed, float slope,
         filament = above * min(1.5 * THREAD_BLUR / max(blur, 1e-6), 1.0) *
                    clamp(0.45 - 2.6 * abs(n.a) + 0.9 * n.b, -1.0, 1.0);
     }
-    float core = stepf(0.35, 0.7, cell.flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
+    float core = stepf(0.35, 0.7, flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0.0, 0.7, edge), low = 1.0 - stepf(0.1, 0.9, tall);
     float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.23;
     hot += FILAMENT_HOT * filament - HIGH_COOL * stepf(0.1, 1.5, tall);
-    hot += JOINED_HOT * stepf(0.95, 1.35, cell.flame);
+    hot += JOINED_HOT * stepf(0.95, 1.35, flame);
     hot += FOOT_HOT * streak * (1.0 - above) - FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
     soot *= dense * soot * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
     float root =

@@ -343,7 +343,7 @@ FirePoint fire_at_point(vec3 p, float height, float blur) {
     p += vec3(wide.a, wide.b, 0.0) * fireScale * 0.7 * FIRE_WARP_WIDE;
     Noise fine = eddies(p, passed, root * EDDY_FINE, FINE_OFTEN * root);
     Gas c = gas(p + vec3(fine.a, fine.b, 0.0) * root * 0.7 * FIRE_WARP_FINE);
-    if (c.flame > 0.02) shade_flame(FireCell(c.flame, c.flame * c.height, 0.0, 0.0), p, height, passed, c.slope, wide, fine, blur, point);
+    if (c.flame > 0.02) shade_flame(c.flame, p, height, passed, c.slope, wide, fine, blur, point);
     return point;
 }
 
