@@ -356,23 +356,25 @@ class CrumpledBall(Example):
 
     NAME = "crumpled-ball"
 
-    def extent(self, frame):
-        """The sheet's length along x, y and z."""
-        rows = self.vertices(frame)
-        return [max(row[axis] for row in rows) - min(row[axis] for row in rows) for axis in "xyz"]
+    def size(self, frame):
+        """The sheet's length along x, y and z, and the rms distance of its vertices from their centre."""
+        axes = [[row[axis] for row in self.vertices(frame)] for axis in "xyz"]
+        return [max(a) - min(a) for a in axes], math.hypot(*(statistics.pstdev(a) for a in axes))
 
-    def test_stays_a_ball_and_burns(self):
+    def test_stays_crumpled_and_burns(self):
         self.common()
-        flat, held, lying = (self.extent(int(t * self.fps) + 1) for t in (0, 1.9, 2.65))
+        (flat, _), (held, tight), (lying, loose) = (self.size(int(t * self.fps) + 1) for t in (0, 1.9, 2.65))
         lit = next(row["time"] for row in self.rows if row["ignited"] > 0)
         sizes = ("x".join(f"{1e3 * side:.0f}" for side in size) for size in (flat, held, lying))
-        self.say["size"] = ", ".join(sizes) + " mm"
+        self.say["size"] = f"{', '.join(sizes)} mm; rms {1e3 * tight:.0f}, then {1e3 * loose:.0f} mm"
         self.say["strain"] = f"mean {max(self.column('strain_mean')):.4f} p99 {max(self.column('strain_p99')):.4f}"
-        # 21 cm long as it lay flat, less than half of that between the boxes, and not flat again when they have gone
+        # 21 cm long as it lay flat, less than a third of that between the boxes, and still crumpled when they have gone: it
+        # is 74 mm rms flat, and was 42 in cells of 2.3 mm, which cannot fold as sharp; then it sinks under its weight
         self.assertGreater(max(flat), 0.2)
-        self.assertLess(max(held), 0.1)
-        self.assertLess(max(lying), 0.17)
-        self.assertGreater(min(lying), 0.03)
+        self.assertLess(max(held), 0.07)
+        self.assertLess(max(lying), 0.14)
+        self.assertLess(loose, 0.036)
+        self.assertGreater(min(lying), 0.015)
         self.assertGreater(lit, 2.65)
         self.assertGreater(self.rows[-1]["burnt_fraction"], 0.3)
         self.assertEqual(max(self.column("inverted_cells")), 0)
