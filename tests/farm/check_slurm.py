@@ -85,8 +85,9 @@ class Slurm:
         self.processes = []
         for name in "spool", "ctld", "munge":
             os.makedirs(os.path.join(at, name), mode=0o700)
-        Path(at, "munge", "key").write_bytes(os.urandom(1024))
-        os.chmod(file.name, 0o400)
+        key = Path(at, "munge", "key")
+        key.write_bytes(os.urandom(1024))
+        key.chmod(0o400)
         host = os.uname().nodename.split(".")[0]
         os.environ["SLURM_CONF"] = os.path.join(at, "slurm.conf")
         Path(os.environ["SLURM_CONF"]).write_text(CONF.format(at=at, host=host, cpus=os.cpu_count()))
