@@ -1,6 +1,6 @@
 #!/bin/bash
-# Draws docs/gallery with the command in build/: burns every example, draws its best frame and a contact sheet, prints
-# how long it took, and stores the output of `singe measure`, also in the table of docs/gallery/README.md.
+# Draws docs/gallery with the command in build/: burns every example, draws its best frame, a contact sheet and four
+# seconds around that frame, prints how long it took, and stores the output of `singe measure`, also in the table of docs/gallery/README.md.
 # Usage: scripts/draw_gallery.sh [EXAMPLE...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -17,6 +17,7 @@ mkdir -p docs/gallery
 jpeg() { ffmpeg -loglevel error -y -i "$1" -qscale:v 3 -update 1 "$2"; }
 # half as large again as the scene's picture
 large() { ffprobe -v error -show_entries stream=width,height -of csv=p=0 "$1" | awk -F, '{ print int(1.5 * $1) "," int(1.5 * $2) }'; }
+third() { ffprobe -v error -show_entries stream=width,height -of csv=p=0 "$1" | awk -F, '{ print int($1 / 3) "," int($2 / 3) }'; }
 for name in "${order[@]}"; do
     frame=${best[$name]} out=out/gallery/$name
     begun=$EPOCHREALTIME
@@ -29,6 +30,12 @@ for name in "${order[@]}"; do
         --set "preview.size=[$(large "$out/frames/$name.$frame.png")]" --set preview.samples=64
     jpeg "$out/large/frames/$name.$frame.png" "docs/gallery/$name.jpg"
     ffmpeg -loglevel error -y -i "$out/sheet.png" -qscale:v 7 -update 1 "docs/gallery/$name-sheet.jpg"
+    last=$(ls "$out/ply" | wc -l) end=$((10#$frame + 36))
+    end=$((end < last ? end : last))
+    build/singe render "$out" --frames "$((end > 96 ? end - 95 : 1))-$end" --quiet -o "$out/clip" \
+        --set "preview.size=[$(third "$out/frames/$name.$frame.png")]" --set preview.samples=8
+    ffmpeg -loglevel error -y -f image2 -framerate 24 -pattern_type glob -i "$out/clip/frames/*.png" -vf fps=12 -c:v libwebp_anim \
+        -quality 45 -compression_level 4 -loop 0 "docs/gallery/$name-clip.webp"
     build/singe measure "$out" --frames "${measured[$name]}" > "docs/gallery/$name.txt"
     awk -v name="$name" -v a="$begun" -v b="$burnt" -v c="$drawn" -v frames="$(ls "$out/ply" | wc -l)" -v n="$(nproc)" \
         'BEGIN { printf "%-15s %3d frames in %5.1f s, a picture in %.2f s, on %d threads\n", name, frames, b - a, c - b, n }'
