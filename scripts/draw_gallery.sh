@@ -1,6 +1,7 @@
 #!/bin/bash
 # Draws docs/gallery with the command in build/: burns every example, draws its best frame, a contact sheet and four
-# seconds around that frame, prints how long it took, and stores the output of `singe measure`, also in the table of docs/gallery/README.md.
+# seconds around that frame, prints how long it took, and stores the output of `singe measure`, also in the table of
+# docs/gallery/README.md.
 # Usage: scripts/draw_gallery.sh [EXAMPLE...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -32,6 +33,7 @@ for name in "${order[@]}"; do
     ffmpeg -loglevel error -y -i "$out/sheet.png" -qscale:v 7 -update 1 "docs/gallery/$name-sheet.jpg"
     last=$(ls "$out/ply" | wc -l) end=$((10#$frame + 36))
     end=$((end < last ? end : last))
+    rm -rf "$out/clip" # no frames of an earlier one
     build/singe render "$out" --frames "$((end > 96 ? end - 95 : 1))-$end" --quiet -o "$out/clip" \
         --set "preview.size=[$(third "$out/frames/$name.$frame.png")]" --set preview.samples=8
     ffmpeg -loglevel error -y -f image2 -framerate 24 -pattern_type glob -i "$out/clip/frames/*.png" -vf fps=12 -c:v libwebp_anim \
