@@ -8,6 +8,7 @@ typedef struct LayerSum {
     Float3 normal, glow, fire;
     float fire_hides, temperature, burn, depth;
     int hits, samples;
+    bool mixed; ///< they met several sheets, or one at distances that differ
     int32_t sheet, piece;
     PreviewMatte mattes[PREVIEW_MATTES]; ///< their shares are numbers of samples
 } LayerSum;
@@ -45,7 +46,7 @@ enum { SAMPLE_CENTRE = -1 };
 
 enum {
     SAMPLES_FIRST = 4,  ///< that every pixel gets
-    SAMPLES_STILL = 64, ///< of a still: every pixel gets all of them, and nothing is smoothed
+    SAMPLES_STILL = 64, ///< of a still: every pixel gets all of them, and only what lamps and sky light is smoothed
 };
 
 static inline bool is_still(const Preview *preview) { return preview->def.samples >= SAMPLES_STILL; }

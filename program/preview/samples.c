@@ -75,8 +75,11 @@ void block_add_light(const Preview *preview, Block *block, const int *active, in
         block->sum[i] = float3_add(block->sum[i], colour);
 
         LayerSum *sum = &block->layer[i];
-        if (!sum->samples++) {
-            sum->depth = point->distance * float3_dot(block->direction[i], preview->camera.forward);
+        const float depth = point->distance * float3_dot(block->direction[i], preview->camera.forward);
+        if (sum->samples++)
+            sum->mixed = sum->mixed || point->sheet != sum->sheet || fabsf(depth - sum->depth) > 0.02f * depth;
+        else {
+            sum->depth = depth;
             sum->sheet = point->sheet;
             sum->piece = point->piece;
         }
@@ -280,6 +283,7 @@ void block_draw(Preview *preview, Block *block) {
         size_t pixel = block_pixel(preview, block, i);
         preview->picture[pixel] = float3_scale(block->sum[i], 1 / (float)taken[i]);
         layers_write(preview, pixel, &block->layer[i]);
-        seen_write(preview, pixel, block, i, taken[i], is_still(preview) || is_edge(&block->layer[i]));
+        const LayerSum *sum = &block->layer[i];
+        seen_write(preview, pixel, block, i, taken[i], is_edge(sum) || (is_still(preview) && sum->mixed));
     }
 }

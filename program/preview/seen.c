@@ -26,7 +26,7 @@ void seen_write(const Preview *preview, size_t pixel, const Block *block, int la
 
 /// Pixels that are smoothed to each side.
 static void find_reach(const Preview *preview, int reach[LIT_KINDS]) {
-    reach[LIT_SUN] = 2;
+    reach[LIT_SUN] = is_still(preview) ? 0 : 2;
     reach[LIT_SKY] = reach[LIT_LAMPS] = 2 + preview->def.height / 180;
 }
 

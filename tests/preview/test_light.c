@@ -329,11 +329,12 @@ TEST(the_rim_of_a_shadow_is_smooth) {
 }
 
 /// Far from what burns, where neither sun nor sky can be hidden, a sheet still shadows flames: a picture of many samples has
-/// no grain there. With one ray a pixel neighbours differ by 60 % in the root mean square.
+/// no grain there. With one ray a pixel neighbours differ by 60 % in the root mean square; the lattice of which ray asks for
+/// which lamp showed as dots.
 TEST(the_shadow_of_a_flame_has_no_grain_in_a_still) {
     static float beauty[W * H][3];
     PreviewDef def = at_night();
-    def.samples = 256;
+    def.samples = 64;
     for (int c = 0; c < 3; c++) def.sky_colour[c] = 0;
     def.camera = (PreviewCamera){.eye = {0.55f, 0, 0.4f}, .target = {0.55f, 0, 0}, .up = {0, 1, 0}, .fov = 0.4f};
     ball_make(&ball, -0.25f, 0, 0.15f, 0.1f, 4e6f, 0);
@@ -352,8 +353,8 @@ TEST(the_shadow_of_a_flame_has_no_grain_in_a_still) {
             sum += beauty[y * W + x][1];
         }
     const float mean = sum / (W * H), grain = sqrtf(squares / (W * H)) / mean;
-    print_message("shadow of a flame, 256 samples: mean %.4f, grain %.1f %%\n", (double)mean, 100 * (double)grain);
-    assert_true(mean > 0.001f && grain < 0.05f);
+    print_message("shadow of a flame, 64 samples: mean %.4f, grain %.1f %%\n", (double)mean, 100 * (double)grain);
+    assert_true(mean > 0.001f && grain < 0.015f);
 }
 
 /// Water darkens a sheet, a coloured one more, and what paper holds in a room does not. Bars: damp 5 %, soaked another
