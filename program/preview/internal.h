@@ -269,6 +269,9 @@ Float3 background_colour(const Preview *preview, Float3 direction);
 // shade_wall.c
 /// Distance to the wall along a ray; infinite: it is not met.
 float wall_hit(const Preview *preview, Float3 origin, Float3 direction);
+
+/// The share of the sun's disc that the wall, which has no end, leaves to the scene before it.
+float wall_clears(const Preview *preview);
 void wall_look(const Preview *preview, Float3 position, float footprint, Table *table);
 void wall_shade(const Preview *preview, const Table *table, Point *point);
 

@@ -178,6 +178,7 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
     preview->sun_light = float3_scale(float3_load(def->sun_colour), FILM_SPEED);
     preview->sun_spread = tanf(def->sun_angle);
     preview->wall_along = float3(cosf(def->wall_turn), sinf(def->wall_turn), 0);
+    preview->sun_light = float3_scale(preview->sun_light, wall_clears(preview));
     for (int i = 0; i < 256; i++) {
         float s = (float)i / 255;
         preview->linear[i] = s <= 0.04045f ? s / 12.92f : powf((s + 0.055f) / 1.055f, 2.4f);

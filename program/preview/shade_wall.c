@@ -90,6 +90,12 @@ float wall_hit(const Preview *preview, Float3 origin, Float3 direction) {
     return before / towards < 1e4f ? before / towards : INFINITY;
 }
 
+float wall_clears(const Preview *preview) {
+    if (!isfinite(preview->def.wall_distance)) return 1;
+    const float behind = preview->wall_along.x * preview->sun.y - preview->wall_along.y * preview->sun.x;
+    return 1 - stepf(-preview->sun_spread, preview->sun_spread, behind);
+}
+
 void wall_look(const Preview *preview, Float3 position, float footprint, Table *table) {
     const float u = float3_dot(position, preview->wall_along), v = position.z;
     const uint32_t seed = preview->def.seed + 377;

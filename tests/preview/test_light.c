@@ -295,6 +295,25 @@ TEST(a_wall_catches_light_and_shadows) {
     assert_memory_equal(behind, none, sizeof none);
 }
 
+/// A wall has no end: a sun behind it does not light what is before it, which one beside it does. It shone through.
+TEST(a_wall_stops_the_sun_behind_it) {
+    static float dark[W * H][3], picture[W * H][3];
+    PreviewDef def = at_night();
+    def.camera = (PreviewCamera){.eye = {0, -0.4f, 0.3f}, .target = {0, 0, 0}, .up = {0, 0, 1}, .fov = 0.6f};
+    def.wall = PREVIEW_WALL_PLAIN, def.wall_distance = 0.3f;
+    see(&def, &nothing, NULL, dark);
+    float light[2];
+    for (int before = 0; before < 2; before++) {
+        for (int c = 0; c < 3; c++) def.sun_colour[c] = 1;
+        def.sun_direction[0] = 0.5f, def.sun_direction[1] = before ? -1 : 1, def.sun_direction[2] = 0.8f;
+        see(&def, &nothing, NULL, picture);
+        light[before] = box(picture, W / 2, H / 2) - box(dark, W / 2, H / 2);
+    }
+    print_message("the sun lights the floor by %.4f behind the wall, %.4f before it\n", (double)light[0],
+                  (double)light[1]);
+    assert_true(light[1] > 0.02f && fabsf(light[0]) < 1e-3f * light[1]);
+}
+
 static void see_shadow(int samples, float (*beauty)[3]) {
     PreviewDef def = above();
     def.ground = PREVIEW_GROUND_PLAIN, def.samples = samples, def.sun_angle = 0.08f;
