@@ -1,12 +1,13 @@
 // The table and the background.
 //
-// Stone is a honed slab: clouds, grains and a few pale veins, with an uneven face. Every octave fades when a pixel no
-// longer resolves it.
+// Stone is honed slabs of cast stone, which feet have worn: clouds of several sizes, cut gravel, pits, a hairline crack, and
+// joints. Every octave fades when a pixel no longer resolves it.
 
 #include "preview/internal.h"
 
 #define PLANK_WIDTH 0.118f
 #define PLANK_LENGTH 1.3f
+#define SLAB 0.55f ///< m
 
 static Plank find_plank(uint32_t seed, float x, float y) {
     float across, along;
@@ -35,26 +36,91 @@ static float uneven(float x, float y, float millimetres, float height, uint32_t 
     return shown * n;
 }
 
+/// Grains of gravel cut through and pits, one or none in each square of a lattice `wide` m: `tone` of gravel 0 without.
+static float gravel(float x, float y, float wide, float most, uint32_t seed, float footprint) {
+    const float shown = visible(0.5f * wide, footprint);
+    if (shown <= 0) return 0;
+    float fx, fy;
+    const int i = noise_floor(x / wide, &fx), j = noise_floor(y / wide, &fy);
+    const uint32_t key = sample_key(i, j, seed);
+    if (hash_unit(key) > most) return 0;
+    const float size = mixf(0.14f, 0.36f, hash_unit(key + 1) * hash_unit(key + 2)), room = size + 0.1f;
+    const float dx = (fx - mixf(room, 1 - room, hash_unit(key + 3))) / size;
+    const float dy = (fy - mixf(room, 1 - room, hash_unit(key + 4))) / size;
+    const float turn = 2 * PI_F * hash_unit(key + 5), along = cosf(turn) * dx + sinf(turn) * dy;
+    const float ragged = 0.22f * noise2(2 * dx, 2 * dy, key & 255), soft = 0.08f + 0.5f * footprint / (wide * size);
+    const float depth = 1 - sqrtf(dx * dx + dy * dy + 0.9f * along * along) + ragged;
+    return shown * stepf(-soft, soft, depth) * (hash_unit(key + 6) - 0.5f);
+}
+
+/// A pit: its far wall catches the light and its near one lies in shadow, from whichever side.
+static float pits(float x, float y, float wide, float often, uint32_t seed, float footprint, Table *table) {
+    const float shown = visible(0.3f * wide, footprint);
+    if (shown <= 0 || often <= 0) return 0;
+    float fx, fy;
+    const int i = noise_floor(x / wide, &fx), j = noise_floor(y / wide, &fy);
+    const uint32_t key = sample_key(i, j, seed);
+    if (hash_unit(key) > often) return 0;
+    const float size = mixf(0.04f, 0.15f, hash_unit(key + 1) * hash_unit(key + 2)), room = size + 0.05f;
+    const float dx = (fx - mixf(room, 1 - room, hash_unit(key + 3))) / size;
+    const float dy = (fy - mixf(room, 1 - room, hash_unit(key + 4))) / size;
+    const float far = sqrtf(dx * dx + dy * dy) + 0.25f * noise2(2 * dx, 2 * dy, key & 255);
+    const float deep = shown * (1 - stepf(0.55f, 1.1f, far)), wall = shown * stepf(0.3f, 0.8f, far) * (far < 1.2f);
+    table->tilt[0] += 0.1f * wall * dx;
+    table->tilt[1] += 0.1f * wall * dy;
+    return deep;
+}
+
+/// How near a point is to a joint between slabs, 1 in it; chipped edges lean into it.
+static float joint(float x, float y, uint32_t seed, float footprint, Table *table) {
+    float within[2];
+    noise_floor(x / SLAB + 0.31f, &within[0]);
+    noise_floor(y / SLAB + 0.72f, &within[1]);
+    const int k = fabsf(within[0] - 0.5f) > fabsf(within[1] - 0.5f) ? 0 : 1;
+    const float far = SLAB * (0.5f - fabsf(within[k] - 0.5f)), soft = maxf(0.0008f, 0.6f * footprint);
+    if (far > 0.008f + soft) return 0;
+    const float chips = maxf(noise2(x * 70, y * 70, seed), 0) + 0.5f * noise2(x * 260, y * 260, seed + 1);
+    const float edge = far - 0.0022f - 0.0016f * chips;
+    const float bevel = (1 - stepf(0, 0.0035f, edge)) * visible(0.003f, footprint);
+    table->tilt[k] -= 0.2f * (within[k] < 0.5f ? 1.0f : -1.0f) * bevel;
+    return (1 - stepf(-soft, soft, edge)) * minf(1, 0.0045f / footprint);
+}
+
 static void stone(const Preview *preview, Float3 position, float footprint, Table *table) {
     uint32_t seed = preview->def.seed + 177;
     float x = 0.921f * position.x - 0.389f * position.y, y = 0.389f * position.x + 0.921f * position.y;
-    float warp = 0.03f * noise2(x * 9, y * 9, seed), fold = 0.012f * noise2(x * 31 + 7, y * 31, seed + 1);
-    float cloud = noise2(x * 7, y * 7, seed + 2), patch = uneven(x, y, 38, 0.010f, seed + 3, footprint, table);
+    float wide = noise2(x * 2.3f, y * 2.3f, seed), cloud = noise2(x * 7 + wide, y * 7, seed + 2);
+    float patch = noise2(x * 26, y * 26, seed + 3);
     float rough = uneven(x, y, 9, 0.022f, seed + 4, footprint, table);
     float grain = uneven(x, y, 1.6f, 0.03f, seed + 5, footprint, table);
     float speck = noise2(x * 900, y * 900, seed + 6) * visible(0.0011f, footprint);
-    float value = 0.95f + 0.13f * cloud + 0.13f * patch + 0.13f * rough + 0.13f * grain;
-    value += 0.35f * stepf(0.55f, 0.9f, speck) - 0.2f * stepf(0.5f, 0.9f, -speck);
+    float value = 0.93f + 0.16f * wide + 0.15f * cloud + 0.09f * patch + 0.07f * rough + 0.08f * grain;
+    value += 0.22f * stepf(0.55f, 0.9f, speck) - 0.2f * stepf(0.5f, 0.9f, -speck);
 
-    // pale veins of varying thickness that break off
-    float line = fabsf(noise2((x + warp + fold) * 7.5f + 3, (y + fold + warp) * 2.6f, seed + 7));
-    float width = 0.004f + 0.010f * (0.5f + 0.5f * noise2(x * 21, y * 21, seed + 8));
-    float vein = 1 - stepf(0.3f * width, width + 1.5f * footprint, line);
-    vein *= stepf(-0.45f, 0.25f, noise2(x * 3, y * 3, seed + 9));
-    value += 0.6f * vein * minf(1, 0.002f / footprint + 0.25f);
-    float warm = 0.5f * cloud - 0.3f * patch;
-    table->albedo = float3_scale(float3(1 + 0.05f * warm, 1, 1 - 0.07f * warm), maxf(value, 0.1f));
-    table->polish = 0.42f + 0.12f * patch - 0.1f * vein;
+    // gravel shows where feet have worn the skin of cement off
+    const float worn = stepf(-0.35f, 0.5f, cloud + 0.5f * patch + 0.4f * rough);
+    const float stones =
+        gravel(x, y, 0.017f, 0.75f, seed + 20, footprint) + gravel(y + 0.4f, x, 0.0075f, 0.7f, seed + 21, footprint);
+    value *= 1 + (0.12f + 0.5f * worn) * stones;
+    const float open = stepf(-0.2f, 0.6f, 0.7f * patch - cloud);
+    const float holes = maxf(pits(x, y, 0.023f, 0.22f * open, seed + 22, footprint, table),
+                             0.5f * pits(y, x, 0.0085f, 0.4f * open, seed + 23, footprint, table));
+    const float gap = joint(x, y, seed + 24, footprint, table);
+
+    // a hairline crack breaks off
+    float crack = stepf(0.1f, 0.5f, noise2(x * 3, y * 3, seed + 9)) * minf(1, 0.001f / footprint);
+    if (crack > 0) {
+        const float bend = 0.03f * noise2(x * 9, y * 9, seed + 7) + 0.012f * noise2(x * 31 + 7, y * 31, seed + 1);
+        const float line = fabsf(noise2((x + bend) * 4.5f + 3, (y + bend) * 2.6f, seed + 8));
+        crack *= 1 - stepf(0.001f, 0.004f + 2.5f * footprint, line);
+    }
+    value *= (1 - 0.75f * holes) * (1 - 0.8f * gap) * (1 - 0.45f * crack);
+
+    // trodden paths are smooth, and what lies open is dull
+    const float warm = 0.5f * cloud - 0.3f * patch + 0.8f * stones;
+    table->albedo = float3_scale(float3(1.03f + 0.05f * warm, 1, 0.95f - 0.06f * warm), maxf(value, 0.03f));
+    table->polish = 0.42f * clampf(1 + 0.7f * wide + 0.65f * patch + 0.45f * rough, 0.25f, 1.8f);
+    table->polish *= (1 - holes) * (1 - 0.9f * gap);
 }
 
 Float3 background_colour(const Preview *preview, Float3 direction) {

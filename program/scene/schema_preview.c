@@ -80,7 +80,7 @@ static const Schema schema_environment = {
 #define PREVIEW_GROUND PREVIEW_ROW
 static const SchemaRow ground_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(ScenePreview, def.ground), .names = ground_names,
-     .doc = "`wood`: planks along x; `stone`: a honed slab; `plain`: one colour"},
+     .doc = "`wood`: planks along x; `stone`: honed slabs; `plain`: one colour"},
     {"height", ROW_FLOAT, DIM_LENGTH, AT(ScenePreview, def.ground_height), .flags = ROW_NONE, WITHIN(-1e4, 1e4),
      .doc = "its z; `none`: no ground is drawn"},
 #include "preview/preview.def"

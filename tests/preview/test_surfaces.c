@@ -130,6 +130,34 @@ TEST(wood_is_not_smeared_along_its_grain) {
     assert_true(both / square < 0.3f); // was 0.58
 }
 
+/// Stone has scale: joints between its slabs are the darkest lines in it, and its tone changes over decimetres. It was noise of
+/// centimetres.
+TEST(stone_has_joints_and_large_tones) {
+    enum { PLACES = 6, BOX = 16 };
+    static uint8_t rgb[BYTES];
+    float darkest = 1, sum = 0, squares = 0, count = 0;
+    for (int k = 0; k < PLACES; k++) {
+        PreviewDef def = above();
+        def.ground = PREVIEW_GROUND_STONE, def.ground_gloss = 0;
+        def.camera.eye[0] = def.camera.target[0] = 0.27f * (float)k, def.camera.fov = 0.4f;
+        draw(&def, &nothing, 0, rgb);
+        const float whole = mean(rgb, 1);
+        for (int y = 0; y < H; y += BOX)
+            for (int x = 0; x < W; x += BOX, count++) {
+                float box = 0;
+                for (int i = 0; i < BOX * BOX; i++) {
+                    const float green = pixel(rgb, x + i % BOX, y + i / BOX)[1];
+                    darkest = fminf(darkest, green / whole);
+                    box += green / (BOX * BOX);
+                }
+                sum += box, squares += box * box;
+            }
+    }
+    const float average = sum / count, varies = sqrtf(squares / count - average * average) / average;
+    print_message("stone: darkest %.2f of its mean, varies by %.3f over decimetres\n", (double)darkest, (double)varies);
+    assert_true(darkest < 0.45f && varies > 0.05f);
+}
+
 /// A table far out of focus changes little from pixel to pixel. Its few samples, others in each pixel, left it speckled.
 TEST(a_table_out_of_focus_is_smooth) {
     static uint8_t rgb[BYTES];
