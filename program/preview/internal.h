@@ -120,6 +120,8 @@ typedef struct Point {
     Float3 position, normal, geometric, view; ///< view: unit, towards the eye
     Float3 albedo, glow;                      ///< glow: its own emission
     float transmission;                       ///< share of the light from behind that is transmitted
+    Float3 through;                           ///< and its colour, over the albedo
+    bool back;                                ///< of a sheet, where its picture is mirrored
     float gloss, shininess;                   ///< Blinn-Phong lobe of the sun
     float mirror;                             ///< reflectance for the blurred sky
     Float3 shine, brush;                      ///< of a shape: what it mirrors seen from above, and along its scratches

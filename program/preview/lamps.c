@@ -191,10 +191,12 @@ static inline Four four_max(Four a, Four b) {
 
 static inline float four_sum(Four a) { return a[0] + a[1] + (a[2] + a[3]); }
 
-/// The reflection by white paper at the point of all lights, and the luminance of each. A surface that faces away from
-/// a light is lit through the sheet.
+/// All lights at the point, over its albedo, and the luminance of each. A surface that faces away from a light is lit
+/// through the sheet.
 static Float3 lamps_gather(const EmberLights *l, const Point *point, int count, float weight[LIGHT_LIMIT]) {
     Float3 p = point->position, n = point->normal;
+    const float through = point->transmission;
+    const Float3 tint = float3_sub(point->through, float3(1, 1, 1));
     Four r = {0, 0, 0, 0}, g = r, b = r, zero = r;
     for (int k = 0; k < count; k += 4) {
         Four x = four_load(l->x + k) - p.x, y = four_load(l->y + k) - p.y, z = four_load(l->z + k) - p.z;
@@ -202,10 +204,21 @@ static Float3 lamps_gather(const EmberLights *l, const Point *point, int count, 
         for (int i = 0; i < 4; i++) cosine[i] /= sqrtf(d2[i]);
 
         // wrapped: clusters have an extent that points do not, and their own sheet must be lit, too
-        Four seen = four_max(four_max((cosine + 0.2f) * (1 / 1.2f), -point->transmission * cosine), zero) / d2;
-        r += seen * four_load(l->strength[0] + k);
-        g += seen * four_load(l->strength[1] + k);
-        b += seen * four_load(l->strength[2] + k);
+        const Four red = four_load(l->strength[0] + k), green = four_load(l->strength[1] + k),
+                   blue = four_load(l->strength[2] + k);
+        Four seen = four_max((cosine + 0.2f) * (1 / 1.2f), zero);
+        if (through > 0) {
+            const Four before = seen;
+            seen = four_max(seen, -through * cosine);
+            const Four behind = (seen - before) / d2;
+            r += tint.x * behind * red;
+            g += tint.y * behind * green;
+            b += tint.z * behind * blue;
+        }
+        seen /= d2;
+        r += seen * red;
+        g += seen * green;
+        b += seen * blue;
         seen *= four_load(l->power + k);
         memcpy(weight + k, &seen, sizeof seen);
     }

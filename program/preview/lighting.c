@@ -53,9 +53,8 @@ Float3 light_shine_of_lamps(const PreviewScene *scene, const Point *point) {
 Float3 light_reflect(const Point *point, Float3 l) {
     float cosine = float3_dot(point->normal, l), side = float3_dot(point->geometric, l);
 
-    // transmitted light has been scattered often, so it is warmer
-    const Float3 warm = {1.35f, 1.12f, 0.80f};
-    if (side <= 0) return float3_scale(float3_mul(point->albedo, warm), point->transmission * maxf(-cosine, 0));
+    if (side <= 0)
+        return float3_scale(float3_mul(point->albedo, point->through), point->transmission * maxf(-cosine, 0));
     if (cosine <= 0) return float3(0, 0, 0);
 
     Float3 out = float3_mad(light_shine(point, l, 0), point->albedo, cosine);
@@ -228,8 +227,9 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
 
         // thin paper also transmits light from its other side
         if (point->transmission > 0)
-            ambient =
-                float3_mad(ambient, sky_ambient(&preview->sky, float3_scale(point->normal, -1)), point->transmission);
+            ambient = float3_mad(
+                ambient, float3_mul(point->through, sky_ambient(&preview->sky, float3_scale(point->normal, -1))),
+                point->transmission);
         Float3 light = float3_mul(point->albedo, ambient);
 
         // dull surfaces reflect more at grazing angles (Schlick 1994), but less than smooth ones

@@ -262,6 +262,32 @@ SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError 
     return SINGE_OK;
 }
 
+void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v, PaperState *state) {
+    const uint32_t *t = scene->triangles[triangle];
+    const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
+    float w = 1 - u - v, min = minf(a->rim, minf(b->rim, c->rim));
+    *state = (PaperState){
+        .rest = float3_blend(a->rest, b->rest, c->rest, u, v),
+        .uv = {w * a->uv[0] + u * b->uv[0] + v * c->uv[0], w * a->uv[1] + u * b->uv[1] + v * c->uv[1]},
+        .temperature = w * a->temperature + u * b->temperature + v * c->temperature,
+        .peak = w * a->peak + u * b->peak + v * c->peak,
+        .burn = w * a->burn + u * b->burn + v * c->burn,
+        .burn_rate = w * a->burn_rate + u * b->burn_rate + v * c->burn_rate,
+        .glowing = w * (a->burn_rate - a->flaming) + u * (b->burn_rate - b->flaming) + v * (c->burn_rate - c->flaming),
+        .starved = w * a->starved + u * b->starved + v * c->starved,
+        .gradient = w * a->gradient + u * b->gradient + v * c->gradient,
+        .heat_gradient = w * a->heat_gradient + u * b->heat_gradient + v * c->heat_gradient,
+        .spacing = w * a->spacing + u * b->spacing + v * c->spacing,
+        .age = w * a->age + u * b->age + v * c->age,
+        // a triangle without inner corner has no distance information: a strip or a crumb, which should remain
+        .rim = min > 0.5f ? 0.25f : w * a->rim + u * b->rim + v * c->rim,
+        .sheet = a->sheet,
+        .piece = a->piece,
+        .water = w * a->water + u * b->water + v * c->water,
+        .edge = min > 0.5f ? 0.5f * a->spacing : w * a->edge + u * b->edge + v * c->edge,
+    };
+}
+
 SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error) {
     SingeResult result = mesh_load(preview, surface, error);
     return result ? result : tracer_build(preview, error);

@@ -129,6 +129,8 @@ static bool resolve(const Preview *preview, Block *block, int lane, const Met *m
     PaperState state;
     paper_state(&preview->scene, hits->triangle[lane], u, v, &state);
     if (cloth_weave(preview, state.sheet)) cloth_frame(&preview->scene, hits->triangle[lane], point);
+    const float turn = (b->uv[0] - a->uv[0]) * (c->uv[1] - a->uv[1]) - (b->uv[1] - a->uv[1]) * (c->uv[0] - a->uv[0]);
+    point->back = turn * float3_dot(geometric, point->view) < 0;
     point->hit = true;
     point->sheet = state.sheet;
     point->piece = state.piece;

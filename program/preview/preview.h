@@ -94,8 +94,8 @@ typedef enum PreviewWall {
     PREVIEW_WALL_PLAIN,
 } PreviewWall;
 
-/// Of office paper, 80 g/m2; its opacity of 85 to 92 % by ISO 2471 comes to about that.
-#define PREVIEW_TRANSMITTANCE 0.22f
+/// Of office paper, 80 g/m2: with its albedo about a sixth comes through, an opacity of 93 % by ISO 2471.
+#define PREVIEW_TRANSMITTANCE 0.19f
 
 /// The quads of a sheet at the start, in the world.
 typedef struct PreviewStart {
@@ -148,10 +148,11 @@ typedef struct PreviewDef {
     float shutter;  ///< s, exposure, centred at the frame's time; 0: no blur
     float pace;     ///< speed of the fire relative to a real one, to convert ages
     uint32_t seed;
-    const Image *const *pictures; ///< [sheet_count] picture on both sides of each sheet, NULL entries are white
-    const float (*colours)[3];    ///< [sheet_count] tint of each sheet, linear
-    const float *transmittances;  ///< [sheet_count] share of light transmitted; NULL: PREVIEW_TRANSMITTANCE
-    const PreviewLook *looks;     ///< [sheet_count]; NULL: paper
+    const Image *const
+        *pictures; ///< [sheet_count] on the side from which it reads, of cloth on both; NULL entries are white
+    const float (*colours)[3];   ///< [sheet_count] tint of each sheet, linear
+    const float *transmittances; ///< [sheet_count] share of light transmitted; NULL: PREVIEW_TRANSMITTANCE
+    const PreviewLook *looks;    ///< [sheet_count]; NULL: paper
     const PreviewStart
         *starts; ///< [sheet_count] for the stain and the threads of cloth; NULL: none of them. Read while
                  ///< the preview is created

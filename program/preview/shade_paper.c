@@ -51,32 +51,6 @@ static Float3 askew(Float3 r) {
                   -0.1905f * r.x + 0.3481f * r.y + 0.9179f * r.z);
 }
 
-void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v, PaperState *state) {
-    const uint32_t *t = scene->triangles[triangle];
-    const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
-    float w = 1 - u - v, min = minf(a->rim, minf(b->rim, c->rim));
-    *state = (PaperState){
-        .rest = float3_blend(a->rest, b->rest, c->rest, u, v),
-        .uv = {w * a->uv[0] + u * b->uv[0] + v * c->uv[0], w * a->uv[1] + u * b->uv[1] + v * c->uv[1]},
-        .temperature = w * a->temperature + u * b->temperature + v * c->temperature,
-        .peak = w * a->peak + u * b->peak + v * c->peak,
-        .burn = w * a->burn + u * b->burn + v * c->burn,
-        .burn_rate = w * a->burn_rate + u * b->burn_rate + v * c->burn_rate,
-        .glowing = w * (a->burn_rate - a->flaming) + u * (b->burn_rate - b->flaming) + v * (c->burn_rate - c->flaming),
-        .starved = w * a->starved + u * b->starved + v * c->starved,
-        .gradient = w * a->gradient + u * b->gradient + v * c->gradient,
-        .heat_gradient = w * a->heat_gradient + u * b->heat_gradient + v * c->heat_gradient,
-        .spacing = w * a->spacing + u * b->spacing + v * c->spacing,
-        .age = w * a->age + u * b->age + v * c->age,
-        // a triangle without inner corner has no distance information: a strip or a crumb, which should remain
-        .rim = min > 0.5f ? 0.25f : w * a->rim + u * b->rim + v * c->rim,
-        .sheet = a->sheet,
-        .piece = a->piece,
-        .water = w * a->water + u * b->water + v * c->water,
-        .edge = min > 0.5f ? 0.5f * a->spacing : w * a->edge + u * b->edge + v * c->edge,
-    };
-}
-
 static Bent shade_paper_bend(const PaperState *state, float footprint) {
     Bent bent = {.position = askew(state->rest)};
     bent.coarse = paper_noise(bent.position, 4.0f, footprint, 1);
@@ -368,19 +342,28 @@ float paper_transmittance(const Preview *preview, int32_t sheet) {
 }
 
 static void fresh(const Preview *preview, const PaperState *state, Point *point) {
-    Float3 white = float3(0.86f, 0.852f, 0.832f), colour = {1, 1, 1};
+    Float3 white = float3(0.86f, 0.852f, 0.832f), print = {1, 1, 1};
     if (state->sheet >= 0 && (uint32_t)state->sheet < preview->def.sheet_count) {
         const Texture *texture = preview->textures ? &preview->textures[state->sheet] : NULL;
         if (texture && texture->count)
-            colour = texture_sample(preview, texture, state->uv[0], state->uv[1],
-                                    0.45f * point->footprint * texture->texels_per_metre);
-        if (preview->def.colours) colour = float3_mul(colour, float3_load(preview->def.colours[state->sheet]));
+            print = texture_sample(preview, texture, state->uv[0], state->uv[1],
+                                   0.45f * point->footprint * texture->texels_per_metre);
+        if (preview->def.colours) white = float3_mul(white, float3_load(preview->def.colours[state->sheet]));
     }
 
-    // uneven density of the fibres
-    float cloud = 1 + 0.018f * paper_noise(askew(state->rest), 2.4f, point->footprint, 5);
-    point->albedo = float3_scale(float3_mul(white, colour), cloud);
-    point->transmission = paper_transmittance(preview, state->sheet);
+    // uneven density of the fibres: flocks that are hardly seen but against the light
+    const float flocks = paper_noise(askew(state->rest), 3.6f, point->footprint, 5);
+    const float passed = point->transmission = paper_transmittance(preview, state->sheet);
+
+    // scattered often, what comes through is warmer, and has lost the print's share on whichever side
+    point->through = float3_scale(float3(1.18f, 0.98f, 0.70f), 1 - 0.15f * flocks);
+    if (point->back && !cloth_weave(preview, state->sheet)) {
+        // of print on the far side so much is seen, T^2 / (1 - R^2) with the reflectance R of a stack, and all of it through
+        Float3 seen = float3_mix(float3(1, 1, 1), print, minf(3 * passed * passed, 0.95f));
+        point->through = float3_mul(point->through, float3(print.x / seen.x, print.y / seen.y, print.z / seen.z));
+        print = seen;
+    }
+    point->albedo = float3_scale(float3_mul(white, print), 1 + 0.02f * flocks);
 
     // Wet: a film of water throws a share p of the light that leaves the fibres back to them, so that an albedo a becomes
     // a (1 - p)/(1 - p a) (Lekner and Dorf, Why some things are darker when wet, Applied Optics 27, 1988; p is about 0.44
@@ -393,7 +376,6 @@ static void fresh(const Preview *preview, const PaperState *state, Point *point)
     Float3 dry = point->albedo;
     point->albedo =
         float3((1 - p) * dry.x / (1 - p * dry.x), (1 - p) * dry.y / (1 - p * dry.y), (1 - p) * dry.z / (1 - p * dry.z));
-    const float passed = point->transmission;
     point->transmission = mixf(passed, minf(2 * passed, 0.6f), film);
     point->albedo =
         float3_scale(point->albedo, (1 - point->transmission) / (1 - minf(passed, 0.9f))); // is not reflected

@@ -118,7 +118,7 @@ typedef struct SceneSheet {
     SceneFile mesh; ///< or grid
     SceneGrid grid;
     SceneRenderMesh render_mesh;
-    SceneFile picture;       ///< drawn on both sides, may be absent
+    SceneFile picture;       ///< drawn on the side from which it reads, may be absent
     float colour[3];         ///< linear tint
     float transmittance;     ///< share of light transmitted, in the preview
     float scale;             ///< factor, in addition to `units`

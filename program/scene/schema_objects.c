@@ -120,7 +120,7 @@ static const SchemaRow sheet_rows[] = {
     {"render_mesh", ROW_MAP, DIM_NONE, AT(SceneSheet, render_mesh), EXTRA(SceneSheet, render_mesh.given),
      .sub = &schema_render_mesh, .doc = "a mesh that is drawn in place of the sheet; the sheet itself by default"},
     {"picture", ROW_FILE, DIM_NONE, AT(SceneSheet, picture),
-     .doc = "PNG or JPEG, printed on both sides in the preview"},
+     .doc = "PNG or JPEG, in the preview printed on the side from which it reads, on cloth on both"},
     {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneSheet, colour), .length = 3, WITHIN(0, 1),
      .doc = "linear red, green, blue; tints the picture"},
     {"transmittance", ROW_FLOAT, DIM_FRACTION, AT(SceneSheet, transmittance), WITHIN(0, 1),

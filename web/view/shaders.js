@@ -55,17 +55,18 @@ float lampSeen(vec3 p) {
 }
 
 /** Light on a side with this normal, and that on its back times what comes through. */
+const vec3 THROUGH = vec3(1.18, 0.98, 0.70); // scattered often, light is warmer
 vec3 lit(vec3 p, vec3 n, float through, float seen) {
     vec3 to = lampAt - p;
     float d2 = dot(to, to);
     vec3 l = to * inversesqrt(d2);
     float cone = smoothstep(0.62, 0.97, dot(-l, normalize(lampTo - lampAt)));
     float facing = dot(n, l);
-    vec3 sum = lampColour * (cone * seen / d2) * (max(facing, 0.0) + through * max(-facing, 0.0));
+    vec3 sum = lampColour * (cone * seen / d2) * (max(facing, 0.0) + through * THROUGH * max(-facing, 0.0));
     for (int k = 0; k < 6; k++) {
         vec3 f = fireLights[k].xyz - p;
         float r2 = dot(f, f) + 0.0012, side = dot(n, f) * inversesqrt(r2);
-        sum += fireColour * (fireLights[k].w / r2) * (max(side, 0.0) + 0.12 + through * max(-side, 0.0));
+        sum += fireColour * (fireLights[k].w / r2) * (max(side, 0.0) + 0.12 + through * THROUGH * max(-side, 0.0));
     }
     return sum + nightColour * (0.6 + 0.4 * n.z);
 }

@@ -38,16 +38,18 @@ vec3 skyLight(vec3 n) {
     return max(sum, vec3(0.0));
 }
 vec3 mirrored(vec3 d) { return skyLight(d); }
+const vec3 THROUGH = vec3(1.18, 0.98, 0.70); // scattered often, light is warmer
 vec3 lit(vec3 p, vec3 n, float through, float seen) {
     float facing = dot(n, sunTo);
-    vec3 sum = sunLight * seen * (max(facing, 0.0) + through * vec3(1.35, 1.12, 0.80) * max(-facing, 0.0));
-    sum += skyLight(n) + through * skyLight(-n);
+    vec3 sum = sunLight * seen * (max(facing, 0.0) + through * THROUGH * max(-facing, 0.0));
+    sum += skyLight(n) + through * THROUGH * skyLight(-n);
     // sheets are wrapped, as flames have an extent; what lies below them is not, in place of the shadow that sheets cast
     float wrap = through > 0.0 ? 0.2 : 0.0;
     for (int k = 0; k < lampCount; k++) {
         vec3 f = lampPlace[k].xyz - p;
         float d2 = dot(f, f) + lampPlace[k].w, c = dot(n, f) * inversesqrt(d2);
-        sum += lampStrength[k].rgb * (max(max((c + wrap) / (1.0 + wrap), -through * c), 0.0) / d2);
+        float before = max((c + wrap) / (1.0 + wrap), 0.0);
+        sum += lampStrength[k].rgb * ((before + THROUGH * max(-through * c - before, 0.0)) / d2);
     }
     return sum;
 }
@@ -674,7 +676,7 @@ export class Stage {
     drawSheets(program, shared) {
         const { gl, sheets } = this, layer = LAYERS[this.layer === "gas" ? "char" : this.layer];
         for (const { sheet, first, count } of sheets.runs) {
-            const look = this.pictures[sheet] ?? { texture: this.white, colour: [1, 1, 1], transmittance: 0.22 };
+            const look = this.pictures[sheet] ?? { texture: this.white, colour: [1, 1, 1], transmittance: 0.19 };
             const more = program !== "field" ? { printMap: look.texture, tint: look.colour, transmittance: look.transmittance }
                 : { colours: this.ramps[this.layer === "gas" ? "char" : this.layer], range: [layer.index, layer.low, layer.high] };
             this.use(this.programs[program], { ...shared, ...more });
