@@ -118,7 +118,7 @@ static float choose_lights(PreviewScene *scene, Cluster *clusters, int limit, fl
 
 void light_gather(Preview *preview) {
     PreviewScene *scene = &preview->scene;
-    scene->light_count = scene->flames[0] = scene->flames[1] = 0;
+    scene->light_count = 0;
     scene->lights = (EmberLights){.x = {0}};
     for (int k = 0; k < LIGHT_LIMIT; k++) scene->lights.softness[k] = 1;
 
@@ -139,6 +139,7 @@ void light_gather(Preview *preview) {
 
     const Fire *fire = &preview->fire;
     float flaming = 0;
+    scene->flames[0] = scene->flames[1] = scene->light_count;
     if (fire->visible) {
         Cluster flames[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
         float volume = fire->cell * fire->cell * fire->cell;
@@ -165,7 +166,6 @@ void light_gather(Preview *preview) {
         float side = float3_length(float3_sub(fire->high, fire->low)) / GRID;
         // each stands for flames all around it: near to it they are not as bright as a point
         const float square = side * side;
-        scene->flames[0] = scene->light_count;
         flaming = choose_lights(scene, flames, scene->light_count + FLAME_LIGHTS, 0.4f * square + 1e-4f,
                                 1.5f * sqrtf(0.1f * square + 1e-4f));
         scene->flames[1] = scene->light_count;
@@ -183,6 +183,7 @@ void light_gather(Preview *preview) {
 // ---- their light
 
 static const float too_faint = 1e-3f;
+#define FIRE_MOST 1.3f ///< light of flames and embers on white paper that none reaches
 
 static inline Four four_max(Four a, Four b) {
     for (int k = 0; k < 4; k++) a[k] = maxf(a[k], b[k]);
@@ -193,11 +194,13 @@ static inline float four_sum(Four a) { return a[0] + a[1] + (a[2] + a[3]); }
 
 /// All lights at the point, over its albedo, and the luminance of each. A surface that faces away from a light is lit
 /// through the sheet.
-static Float3 lamps_gather(const EmberLights *l, const Point *point, int count, float weight[LIGHT_LIMIT]) {
+static Float3 lamps_gather(const PreviewScene *scene, const Point *point, float weight[LIGHT_LIMIT]) {
+    const EmberLights *l = &scene->lights;
+    const int count = scene->light_count;
     Float3 p = point->position, n = point->normal;
     const float through = point->transmission;
     const Float3 tint = float3_sub(point->through, float3(1, 1, 1));
-    Four r = {0, 0, 0, 0}, g = r, b = r, zero = r;
+    Four r = {0, 0, 0, 0}, g = r, b = r, all = r, zero = r;
     for (int k = 0; k < count; k += 4) {
         Four x = four_load(l->x + k) - p.x, y = four_load(l->y + k) - p.y, z = four_load(l->z + k) - p.z;
         Four d2 = x * x + y * y + z * z + four_load(l->softness + k), cosine = n.x * x + n.y * y + n.z * z;
@@ -220,10 +223,16 @@ static Float3 lamps_gather(const EmberLights *l, const Point *point, int count, 
         g += seen * green;
         b += seen * blue;
         seen *= four_load(l->power + k);
+        all += seen;
         memcpy(weight + k, &seen, sizeof seen);
     }
 
-    return float3(four_sum(r), four_sum(g), four_sum(b));
+    // no fire lights anything more than one that is all around it
+    const float sum = four_sum(all);
+    float fire = sum;
+    for (int k = 0; k < scene->flames[0]; k++) fire -= weight[k];
+    const float over = fire / FIRE_MOST, less = over * over < 1e-4f ? 0 : fire / sum * (1 - 1 / sqrtf(1 + over * over));
+    return float3_scale(float3(four_sum(r), four_sum(g), four_sum(b)), 1 - less);
 }
 
 /// Tests the lamps' visibility by one ray per lane, to a random point of a lamp.
@@ -288,7 +297,7 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
         if (!known) {
             block->lamp_position[i] = point->position;
             block->lamp_normal[i] = point->normal;
-            block->lamp_white[i] = lamps_gather(&scene->lights, point, scene->light_count, weight[i]);
+            block->lamp_white[i] = lamps_gather(scene, point, weight[i]);
         }
 
         Float3 light = float3_mul(block->lamp_white[i], point->albedo);

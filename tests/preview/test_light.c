@@ -152,6 +152,21 @@ TEST(print_shows_faintly_on_the_back) {
     assert_true(contrast[0] > 0.9f && contrast[1] > 0.05f * contrast[0] && contrast[1] < 0.2f * contrast[0]);
 }
 
+/// White paper beside a flame keeps its shades, however large it is: it was lit by four times the film's white.
+TEST(paper_beside_a_flame_is_not_blown_out) {
+    static float picture[W * H][3];
+    PreviewDef def = at_night();
+    quad_make(&q, 0.12f, 0);
+    ball_make(&ball, 0, 0, 0, 0.03f, 4e6f, 0);
+    ball.gas.cell *= 15;
+    for (int c = 0; c < 3; c++) ball.gas.origin[c] = -0.5f * GAS_SIDE * ball.gas.cell;
+    ball.gas.origin[0] -= 4.2f * ball.gas.cell; // beside what is seen
+    see(&def, &q.surface, &ball.gas, picture);
+    const float light = box(picture, W / 2, H / 2);
+    print_message("paper beside a flame: %.2f\n", (double)light);
+    assert_true(light > 0.5f && light < 1.2f); // was 3.2
+}
+
 /// A near lamp lights what is below it, less with the square of the distance, and not what a sheet hides from it.
 TEST(a_lamp_lights_what_is_near) {
     static float beauty[W * H][3];
