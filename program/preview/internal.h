@@ -122,6 +122,7 @@ typedef struct Point {
     float transmission;                       ///< share of the light from behind that is transmitted
     Float3 through;                           ///< and its colour, over the albedo
     bool back;                                ///< of a sheet, where its picture is mirrored
+    float bent;                               ///< 1/m, of a sheet, how much it bends
     float gloss, shininess;                   ///< Blinn-Phong lobe of the sun
     float mirror;                             ///< reflectance for the blurred sky
     Float3 shine, brush;                      ///< of a shape: what it mirrors seen from above, and along its scratches

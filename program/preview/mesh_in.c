@@ -99,15 +99,18 @@ static void bound_vertex(const float *p, Float3 *low, Float3 *high) {
     *high = float3(maxf(high->x, p[0]), maxf(high->y, p[1]), maxf(high->z, p[2]));
 }
 
-/// Adds the triangle's share of the gradients to its corners (times area into `slope` and `warming`, the area into
-/// `gradient`), and its angles to their `rim`.
+/// Adds the triangle's share of the gradients to its corners (times area into `slope`, `warming` and `bent`, the
+/// area into `gradient`), and its angles to their `rim`.
 static void add_triangle(PreviewScene *scene, const uint32_t t[3]) {
     PaperVertex *v[3] = {&scene->vertices[t[0]], &scene->vertices[t[1]], &scene->vertices[t[2]]};
+    float bent2 = 0;
     for (int k = 0; k < 3; k++) {
         Float3 corner = float3_load(v[k]->rest);
         Float3 a = float3_sub(float3_load(v[(k + 1) % 3]->rest), corner);
         Float3 b = float3_sub(float3_load(v[(k + 2) % 3]->rest), corner);
         v[k]->rim += atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
+        const Float3 turn = float3_sub(float3_load(v[(k + 1) % 3]->normal), float3_load(v[k]->normal));
+        bent2 = maxf(bent2, float3_dot(turn, turn) / maxf(float3_dot(a, a), 1e-8f));
     }
 
     Float3 origin = float3_load(v[0]->rest), e1 = float3_sub(float3_load(v[1]->rest), origin),
@@ -118,11 +121,12 @@ static void add_triangle(PreviewScene *scene, const uint32_t t[3]) {
 
     Float3 burn = gradient(e1, e2, n, v[0]->burn, v[1]->burn, v[2]->burn);
     Float3 heat = gradient(e1, e2, n, v[0]->peak, v[1]->peak, v[2]->peak);
-    float area = 0.5f * sqrtf(n2);
+    const float area = 0.5f * sqrtf(n2), bent = sqrtf(bent2);
 
     for (int k = 0; k < 3; k++) {
         add3(v[k]->slope, burn, area / n2);
         add3(v[k]->warming, heat, area / n2);
+        v[k]->bent += area * bent;
         v[k]->gradient += area;
         v[k]->spacing += 1;
     }
@@ -246,6 +250,7 @@ SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError 
 
         // a triangle of area A has edges of about sqrt(2 A)
         v->spacing = v->spacing > 0 ? sqrtf(2 * v->gradient / v->spacing) : 0;
+        v->bent = v->gradient > 0 ? v->bent / v->gradient : 0;
         v->heat_gradient = v->gradient > 0 ? float3_length(float3_load(v->warming)) / v->gradient : 0;
         v->gradient = v->gradient > 0 ? float3_length(float3_load(v->slope)) / v->gradient : 0;
         v->rim = 1 - stepf(1.6f * PI_F, 1.95f * PI_F, v->rim);

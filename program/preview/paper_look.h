@@ -33,6 +33,7 @@ typedef struct PaperVertex {
     float age;           ///< s of the fire's real time since ignition; 0: not yet
     int32_t piece;
     float water; ///< over the mass before it burns
+    float bent;  ///< 1/m, how much its normals differ from its neighbours'
     float edge;  ///< m at rest, to the nearest border of a piece, on woven sheets: at most CLOTH_EDGE threads
 } PaperVertex;
 

@@ -130,6 +130,7 @@ static bool resolve(const Preview *preview, Block *block, int lane, const Met *m
     paper_state(&preview->scene, hits->triangle[lane], u, v, &state);
     if (cloth_weave(preview, state.sheet)) cloth_frame(&preview->scene, hits->triangle[lane], point);
     const float turn = (b->uv[0] - a->uv[0]) * (c->uv[1] - a->uv[1]) - (b->uv[1] - a->uv[1]) * (c->uv[0] - a->uv[0]);
+    point->bent = (1 - u - v) * a->bent + u * b->bent + v * c->bent;
     point->back = turn * float3_dot(geometric, point->view) < 0;
     point->hit = true;
     point->sheet = state.sheet;

@@ -130,6 +130,31 @@ TEST(wood_is_not_smeared_along_its_grain) {
     assert_true(both / square < 0.3f); // was 0.58
 }
 
+/// Paper that is bent to a radius of some millimetres has creased: its shade changes along the fold too, where it was as even as
+/// a tube's. Paper that curls does not.
+TEST(paper_that_is_crumpled_has_creases) {
+    static uint8_t rgb[BYTES];
+    static Float4 q;
+    float changes[2];
+    for (int k = 0; k < 2; k++) {
+        PreviewDef def = above();
+        def.camera.fov = 0.08f, def.samples = 16;
+        quad_make(&q, 0.02f, 0);
+        for (int i = 0; i < 4; i++) { // about y; the radius is told by the rest
+            q.normal[i][0] = q.position[i][0] > 0 ? 0.6f : -0.6f, q.normal[i][2] = 0.8f;
+            q.rest[i][0] *= k ? 0.1f : 1;
+        }
+        draw(&def, &q.surface, 0, rgb);
+        changes[k] = 0;
+        for (int y = 1; y + 1 < H; y++)
+            for (int x = W / 4; x < W * 3 / 4; x++)
+                changes[k] +=
+                    fabsf((float)pixel(rgb, x, y + 1)[1] - (float)pixel(rgb, x, y - 1)[1]) / (W / 2 * (H - 2));
+    }
+    print_message("a bend's shade changes by %.2f levels, a fold's by %.2f\n", (double)changes[0], (double)changes[1]);
+    assert_true(changes[0] < 1.2f && changes[1] > 2);
+}
+
 /// Stone has scale: joints between its slabs are the darkest lines in it, and its tone changes over decimetres. It was noise of
 /// centimetres.
 TEST(stone_has_joints_and_large_tones) {
