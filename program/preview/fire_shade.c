@@ -24,8 +24,9 @@
 // and a step of a ray takes its mean between the depths of its ends, by the integral of P: the shell is thinner than
 // a step. w is SHELL_RISE, or more where rays are further apart, as edges would have steps; the light of a flame
 // stays. It begins at the paper, is faint, clear and blue in the first millimetres, where there is little soot, then
-// pale in its core, and orange at its tips. In its foot, some three centimetres tall, soot glows in hot streaks,
-// where the tongues above stand, and between these what burns is seen: soot that is even and cool there is a veil.
+// pale in its core, and orange at its tips. In its foot, some three centimetres tall, soot glows in hot streaks that
+// widen upwards into the tongues above. A thin seam roots them in what burns, and above it there is next to nothing
+// between them: soot that is even and cool there is a veil.
 // Soot glows as a black body between FLAME_COOL and FLAME_HOT, and hides as much as it glows. It is the hotter the
 // more heat is released around it (core) and the further it is from the edge (strong): so a flame of one or two
 // sheets has a pale core, too.
@@ -68,7 +69,7 @@
 #define FLAME_COOL 1200.0f ///< K
 #define FLAME_HOT 2000.0f
 #define FLAME_DIM 0.26f ///< radiance of a thick flame at its coolest and its hottest
-#define FLAME_BRIGHT 6.8f
+#define FLAME_BRIGHT 6.5f
 #define FLAME_CAST 0.875f       ///< of that range, 1900 K: the colour of the light that they cast
 #define FLAME_THROWN 384.0f     ///< 1/m, its luminance
 #define FLAME_BAKED 3.0f        ///< radiance of what is 1 where gas is baked
@@ -82,14 +83,15 @@
 #define TAPER 0.55f             ///< what is added to it above a flame's height
 #define STAND_OFF 0.0006f       ///< m above the paper, below which nothing is visible
 #define SOOT_FULL 0.0075f       ///< m
-#define FOOT_COOL 0.03f         ///< of the range of temperatures: soot begins orange
-#define FOOT_HOT 0.55f          ///< of that range: streaks in the foot are hot
+#define FOOT_COOL 0.05f         ///< of the range of temperatures: soot begins orange
+#define FOOT_HOT 0.50f          ///< of that range: streaks in the foot are hot
 #define JOINED_HOT 0.15f
 #define FILAMENT_HOT 0.35f
-#define HIGH_COOL 0.2f
+#define HIGH_COOL 0.18f
 #define FOOT_CLEAR 0.004f   ///< m above the paper, from where on soot fills the gaps between streaks
-#define FOOT_FULL 0.03f     ///< m, where it has
-#define FOOT_HAZE 0.19f     ///< of the soot, in those gaps
+#define FOOT_FULL 0.027f    ///< m, where it has
+#define FOOT_SEAM 0.58f     ///< below that, so that they are rooted in what burns
+#define FOOT_HAZE 0.08f     ///< of the soot, in those gaps
 #define STREAK 0.08f        ///< of the noise whose creases they are
 #define CORE_BEGINS 0.0030f ///< m
 #define CORE_FULL 0.0270f
@@ -221,8 +223,10 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
 
     // in the foot it glows in streaks; between them what burns is seen
     const float above = stepf(FOOT_CLEAR, FOOT_FULL, rise);
-    const float streak = 1 - stepf(STREAK, 4 * STREAK, fabsf(wide.c) + 0.5f * fabsf(fine.c));
-    const float dense = mixf(FOOT_HAZE, 1, maxf(streak, above));
+    const float narrow = mixf(0.55f * STREAK, 1.1f * STREAK, above);
+    const float streak = 1 - stepf(narrow, 4 * narrow, fabsf(wide.c) + 0.5f * fabsf(fine.c));
+    const float seam = mixf(FOOT_SEAM, FOOT_HAZE, stepf(FOOT_CLEAR, 2 * FOOT_CLEAR, rise));
+    const float dense = mixf(seam, 1, maxf(streak, above));
 
     // threads are clear and hot, what is between them is denser and cooler
     const Float3 bent =
@@ -234,24 +238,26 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
         stepf(-0.5f, 0.6f, 0.15f * (wide.d + fine.d) + torn * (0.57f - 0.17f * (3 - sharp) - sharp * fabsf(thread.a)));
 
     // filaments along the flow, and gaps between them, through which what is behind is seen
-    float filament = 0;
+    float filament = 0, pane = 0;
     if (above > 0) {
         const Noise n = eddies(fire, p, passed, sqrtf(fire->scale) * EDDY_FILAMENT, 1.3f * sqrtf(fire->scale));
         filament = above * minf(1.5f * THREAD_BLUR / maxf(blur, 1e-6f), 1) *
                    clampf(0.45f - 2.6f * fabsf(n.a) + 0.9f * n.b, -1, 1);
+        pane = above * clampf(1.6f * n.c + 0.8f * thread.c, -1, 1);
     }
 
     float core = stepf(0.35f, 0.7f, flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
-    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.23f;
-    hot += FILAMENT_HOT * filament - HIGH_COOL * stepf(0.1f, 1.5f, tall);
+    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.19f;
+    hot += FILAMENT_HOT * filament + 0.15f * pane * (1 - clear) - HIGH_COOL * stepf(0.1f, 1.5f, tall);
     hot += JOINED_HOT * stepf(0.95f, 1.35f, flame); // where tongues have joined
-    hot += FOOT_HOT * streak * (1 - above) - FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));
+    hot += FOOT_HOT * streak * soot * (1 - above) - FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));
 
     soot *= dense * soot * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);
     float root =
         clampf((rise + STAND_OFF) / (8 * STAND_OFF), 0, 1) * (1 - soot) * (1 - stepf(BLUE_ENDS / 2, BLUE_ENDS, rise));
-    soot *= 0.2f + 3.7f * (1 - clear) * (1 - clear) + 1.5f * clear * clear;
+    const float fold = (1 - clear) * (1 - clear) * mixf(0.25f, 1, above);
+    soot *= 0.35f + 3.5f * fold * (1 + 0.7f * pane) + 1.2f * clear * clear + 2.5f * streak * (1 - above);
     soot *= (0.6f + 0.9f * torn * maxf(thread.b, -0.5f)) * (1 - 0.75f * tip) * (1 + 0.8f * filament);
     point->opaque = SOOT_DENSE * soot;
     point->soot = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * soot);

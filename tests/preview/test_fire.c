@@ -29,8 +29,7 @@ TEST(still_air_changes_no_pixel) {
     synthetic_free(&surface);
 }
 
-/// A flame is faint and a little blue at the paper, orange from 3 mm above it on, yellow at 8 mm, and has gaps between its
-/// tongues.
+/// A flame is faint and a little blue at the paper, orange from 3 mm above it on, and has gaps between its tongues.
 TEST(a_flame_has_a_blue_base_and_tongues) {
     static float fire[W * H][4], mean[H][4];
 
@@ -48,7 +47,7 @@ TEST(a_flame_has_a_blue_base_and_tongues) {
     assert_true(mean[3][0] > 0.05f * mean[20][0] &&
                 mean[4][0] > 0.12f * mean[20][0]); // .001 and .02: a gap above the paper
     assert_true(mean[3][2] > 0.006f);              // .001: no blue seen
-    assert_true(mean[8][0] > 0.5f * mean[20][0] && mean[12][0] > 0.6f * mean[20][0] && // .45 with soot from 4 to 19 mm
+    assert_true(mean[8][0] > 0.15f * mean[20][0] && mean[12][0] > 0.25f * mean[20][0] && // clear between streaks
                 mean[20][0] > 3 * mean[20][2]);
     assert_in_range(dark, W / 8, W / 2);
 }
@@ -211,7 +210,7 @@ TEST(a_foot_is_clear_between_streaks) {
     const float varies = sqrtf(squares - sum * sum) / sum;
     print_message("foot: %.2f of it is clear, %.2f hidden, its light varies by %.2f of the mean\n", (double)clear,
                   (double)hidden, (double)varies);
-    assert_true(clear > 0.15f && hidden < 0.35f && varies > 0.75f); // .04, .50, .47
+    assert_true(clear > 0.45f && hidden < 0.2f && varies > 1.2f); // .21, .25, .99: a film in front of the rim
 }
 
 static int ascending(const void *a, const void *b) {
@@ -297,7 +296,7 @@ TEST(bodies_have_filaments) {
 
     preview_destroy(preview);
     print_message("of %d pixels of flame %d are flat\n", lit, flat);
-    assert_true(lit > 5000 && flat < lit / 10); // 2125 of 9365
+    assert_true(lit > 5000 && flat < lit / 16); // 2125 of 9365, and 576 of 8466 where panes were even
 }
 
 /// Flicker continues over time and stays where the gas is.

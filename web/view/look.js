@@ -1,5 +1,5 @@
 // Made by scripts/write_look.py from program/preview: do not edit.
-export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.017, FLAME_SEEN: 0.15, FLAME_END: 0.3, FIRE_SWAY: 0.018, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 6.8, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, FIRE_PASSING: 0.75 };
+export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.017, FLAME_SEEN: 0.15, FLAME_END: 0.3, FIRE_SWAY: 0.018, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 6.5, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, FIRE_PASSING: 0.75 };
 
 export const PAPER = /* glsl */ `
 const float EMBER_BURN = 0.74;
@@ -310,14 +310,15 @@ const float EDGE = 0.42;
 const float TAPER = 0.55;
 const float STAND_OFF = 0.0006;
 const float SOOT_FULL = 0.0075;
-const float FOOT_COOL = 0.03;
-const float FOOT_HOT = 0.55;
+const float FOOT_COOL = 0.05;
+const float FOOT_HOT = 0.5;
 const float JOINED_HOT = 0.15;
 const float FILAMENT_HOT = 0.35;
-const float HIGH_COOL = 0.2;
+const float HIGH_COOL = 0.18;
 const float FOOT_CLEAR = 0.004;
-const float FOOT_FULL = 0.03;
-const float FOOT_HAZE = 0.19;
+const float FOOT_FULL = 0.027;
+const float FOOT_SEAM = 0.58;
+const float FOOT_HAZE = 0.08;
 const float STREAK = 0.08;
 const float CORE_BEGINS = 0.003;
 const float CORE_FULL = 0.027;
@@ -368,8 +369,10 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     float foot = rise + 0.0012 * fine.d + 0.0016 * wide.d;
     float soot = stepf(0.0, SOOT_FULL, foot);
     float above = stepf(FOOT_CLEAR, FOOT_FULL, rise);
-    float streak = 1.0 - stepf(STREAK, 4.0 * STREAK, abs(wide.c) + 0.5 * abs(fine.c));
-    float dense = mix(FOOT_HAZE, 1.0, max(streak, above));
+    float narrow = mix(0.55 * STREAK, 1.1 * STREAK, above);
+    float streak = 1.0 - stepf(narrow, 4.0 * narrow, abs(wide.c) + 0.5 * abs(fine.c));
+    float seam = mix(FOOT_SEAM, FOOT_HAZE, stepf(FOOT_CLEAR, 2.0 * FOOT_CLEAR, rise));
+    float dense = mix(seam, 1.0, max(streak, above));
     vec3 bent =
         float3_mad(p, vec3(wide.b + 0.2 * fine.b, wide.a + 0.2 * fine.a, 0.0), fireScale * THREAD_WARP);
     Noise thread = Noise(0.0, 0.0, 0.0, 0.0);
@@ -377,22 +380,24 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     float sharp = max(3.0 * min(THREAD_BLUR / max(blur, 1e-6), 1.0), 2.2);
     float clear =
         stepf(-0.5, 0.6, 0.15 * (wide.d + fine.d) + torn * (0.57 - 0.17 * (3.0 - sharp) - sharp * abs(thread.a)));
-    float filament = 0.0;
+    float filament = 0.0, pane = 0.0;
     if (above > 0.0) {
         Noise n = eddies(p, passed, sqrt(fireScale) * EDDY_FILAMENT, 1.3 * sqrt(fireScale));
         filament = above * min(1.5 * THREAD_BLUR / max(blur, 1e-6), 1.0) *
                    clamp(0.45 - 2.6 * abs(n.a) + 0.9 * n.b, -1.0, 1.0);
+        pane = above * clamp(1.6 * n.c + 0.8 * thread.c, -1.0, 1.0);
     }
     float core = stepf(0.35, 0.7, flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0.0, 0.7, edge), low = 1.0 - stepf(0.1, 0.9, tall);
-    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.23;
-    hot += FILAMENT_HOT * filament - HIGH_COOL * stepf(0.1, 1.5, tall);
+    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.19;
+    hot += FILAMENT_HOT * filament + 0.15 * pane * (1.0 - clear) - HIGH_COOL * stepf(0.1, 1.5, tall);
     hot += JOINED_HOT * stepf(0.95, 1.35, flame);
-    hot += FOOT_HOT * streak * (1.0 - above) - FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
+    hot += FOOT_HOT * streak * soot * (1.0 - above) - FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
     soot *= dense * soot * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
     float root =
         clamp((rise + STAND_OFF) / (8.0 * STAND_OFF), 0.0, 1.0) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 2.0, BLUE_ENDS, rise));
-    soot *= 0.2 + 3.7 * (1.0 - clear) * (1.0 - clear) + 1.5 * clear * clear;
+    float fold = (1.0 - clear) * (1.0 - clear) * mix(0.25, 1.0, above);
+    soot *= 0.35 + 3.5 * fold * (1.0 + 0.7 * pane) + 1.2 * clear * clear + 2.5 * streak * (1.0 - above);
     soot *= (0.6 + 0.9 * torn * max(thread.b, -0.5)) * (1.0 - 0.75 * tip) * (1.0 + 0.8 * filament);
     point.opaque = SOOT_DENSE * soot;
     point.soot = float3_scale(flame_colour(clamp(hot, 0.0, 1.0)), SOOT_DENSE * soot);
