@@ -85,7 +85,7 @@ typedef struct Fire {
     Float3 colours[FIRE_COLOURS]; ///< radiance of a thick flame from its coolest to its hottest
 } Fire;
 
-#define FIRE_SCALE_CELL 0.017f ///< m, cells above which flames are larger, in proportion
+#define FIRE_SCALE_CELL 0.010f ///< m, cells above which flames are larger, in proportion
 #define FLAME_SEEN 0.15f       ///< a smaller value is outside of all flames
 #define FLAME_HEIGHT 0.08f     ///< m, typical height of tongues
 #define FLAME_END 0.30f        ///< m, max height of a flame
