@@ -223,7 +223,7 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
 
     // in the foot it glows in streaks; between them what burns is seen
     const float above = stepf(FOOT_CLEAR, FOOT_FULL, rise);
-    const float narrow = mixf(0.55f * STREAK, 1.1f * STREAK, above);
+    const float narrow = mixf(0.7f * STREAK, 1.1f * STREAK, above);
     const float streak = 1 - stepf(narrow, 4 * narrow, fabsf(wide.c) + 0.5f * fabsf(fine.c));
     const float seam = mixf(FOOT_SEAM, FOOT_HAZE, stepf(FOOT_CLEAR, 2 * FOOT_CLEAR, rise));
     const float dense = mixf(seam, 1, maxf(streak, above));

@@ -369,7 +369,7 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     float foot = rise + 0.0012 * fine.d + 0.0016 * wide.d;
     float soot = stepf(0.0, SOOT_FULL, foot);
     float above = stepf(FOOT_CLEAR, FOOT_FULL, rise);
-    float narrow = mix(0.55 * STREAK, 1.1 * STREAK, above);
+    float narrow = mix(0.7 * STREAK, 1.1 * STREAK, above);
     float streak = 1.0 - stepf(narrow, 4.0 * narrow, abs(wide.c) + 0.5 * abs(fine.c));
     float seam = mix(FOOT_SEAM, FOOT_HAZE, stepf(FOOT_CLEAR, 2.0 * FOOT_CLEAR, rise));
     float dense = mix(seam, 1.0, max(streak, above));
