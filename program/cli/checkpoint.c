@@ -68,6 +68,7 @@ static uint64_t hash_image(uint64_t hash, const Image *image) {
 static uint64_t hash_files(uint64_t hash, const SceneAssets *assets) {
     for (uint32_t i = 0; i < assets->sheet_count; i++) {
         const Mesh *mesh = &assets->meshes[i];
+        const Image *back = &assets->images[assets->sheet_count + i];
         hash = hash_array(hash, mesh->positions, 3 * (size_t)mesh->vertex_count, sizeof(float));
         hash = hash_array(hash, mesh->corner_uv, 8 * (size_t)mesh->cell_count, sizeof(float));
         hash = hash_array(hash, mesh->uv, 2 * (size_t)mesh->vertex_count, sizeof(float));
@@ -85,6 +86,7 @@ static uint64_t hash_files(uint64_t hash, const SceneAssets *assets) {
         }
 
         hash = hash_image(hash, &assets->images[i]);
+        if (back->rgb) hash = hash_image(hash, back); // as it was, where there is none
         for (int k = 0; k < SCENE_PARAM_SLOTS; k++) hash = hash_picture(hash, &assets->fields[i][k].texture);
     }
 

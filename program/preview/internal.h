@@ -94,7 +94,7 @@ struct Preview {
     PreviewShape *shapes;
     uint32_t shape_count;
     Facets *facets;    ///< of the solids drawn so far
-    Texture *textures; ///< [def.sheet_count]
+    Texture *textures; ///< [2 * def.sheet_count], of pictures, then of backs
     Weave *weaves;     ///< [def.sheet_count]
     float linear[256]; ///< sRGB byte to linear
     Float3 blackbody[BLACKBODY_COUNT];

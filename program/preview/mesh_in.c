@@ -150,13 +150,13 @@ static void measure(Preview *preview) {
     scene->high = float3_add(high, margin);
     if (!scene->triangle_count) scene->epsilon = 1e-4f;
 
-    for (uint32_t s = 0; s < preview->def.sheet_count; s++) {
+    for (uint32_t s = 0; s < 2 * preview->def.sheet_count; s++) {
         Texture *texture = &preview->textures[s];
         double texels = 0, area = 0;
         for (uint32_t t = 0; texture->count && t < scene->triangle_count; t++) {
             const PaperVertex *v = scene->vertices, *a = &v[scene->triangles[t][0]];
             const PaperVertex *b = &v[scene->triangles[t][1]], *c = &v[scene->triangles[t][2]];
-            if (a->sheet != (int32_t)s) continue;
+            if (a->sheet != (int32_t)(s % preview->def.sheet_count)) continue;
             float bu = b->uv[0] - a->uv[0], bv = b->uv[1] - a->uv[1];
             float cu = c->uv[0] - a->uv[0], cv = c->uv[1] - a->uv[1];
             texels += fabs((double)bu * (double)cv - (double)bv * (double)cu);

@@ -110,6 +110,9 @@ static SingeResult check_def(const PreviewDef *def, SingeError *error) {
         if (def->pictures[s] && !image_is_good(def->pictures[s]))
             result = preview_refuse(error, s, "a sheet's picture is empty or too large");
     }
+    for (uint32_t s = 0; !result && def->backs && s < def->sheet_count; s++)
+        if (def->backs[s] && !image_is_good(def->backs[s]))
+            result = preview_refuse(error, s, "the picture on a sheet's back is empty or too large");
 
     for (uint32_t s = 0; !result && def->colours && s < def->sheet_count; s++)
         if (!all_between(def->colours[s], 3, 0, 1e4f))
@@ -150,16 +153,19 @@ static SingeResult preview_allocate(Preview *preview, SingeError *error) {
 
     for (int i = 0; i < 2; i++)
         preview->glow[i] = allocator_resize(*allocator, NULL, 0, glow_count(def) * sizeof(Float3));
-    preview->textures = allocator_resize(*allocator, NULL, 0, def->sheet_count * sizeof(Texture));
-    if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
+    const size_t texture_bytes = 2 * def->sheet_count * sizeof(Texture);
+    preview->textures = allocator_resize(*allocator, NULL, 0, texture_bytes);
+    if (preview->textures) memset(preview->textures, 0, texture_bytes);
     preview->weaves = allocator_resize(*allocator, NULL, 0, def->sheet_count * sizeof(Weave));
     if (!preview->picture || !preview->lit || !preview->seen || !preview->table || !preview->veil || !preview->mask ||
         !preview->glow[0] || !preview->glow[1] || (def->sheet_count && !(preview->textures && preview->weaves)))
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture of %d x %d", def->width,
                             def->height);
     for (uint32_t s = 0; s < def->sheet_count; s++) cloth_count(def, s, &preview->weaves[s]);
-    for (uint32_t s = 0; s < def->sheet_count && def->pictures; s++) {
-        TRY(texture_create(preview, &preview->textures[s], def->pictures[s], error));
+    for (uint32_t s = 0; s < def->sheet_count; s++) {
+        Texture *back = &preview->textures[s + def->sheet_count];
+        if (def->pictures) TRY(texture_create(preview, &preview->textures[s], def->pictures[s], error));
+        if (def->backs) TRY(texture_create(preview, back, def->backs[s], error));
     }
     return SINGE_OK;
 }
@@ -248,8 +254,9 @@ void preview_destroy(Preview *preview) {
     mirror_free(preview);
     facets_free(preview);
 
-    for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);
-    allocator_resize(allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
+    for (uint32_t s = 0; preview->textures && s < 2 * def->sheet_count; s++)
+        texture_free(preview, &preview->textures[s]);
+    allocator_resize(allocator, preview->textures, 2 * def->sheet_count * sizeof(Texture), 0);
     allocator_resize(allocator, preview->weaves, preview->weaves ? def->sheet_count * sizeof(Weave) : 0, 0);
     allocator_resize(allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
     allocator_resize(allocator, preview->picture, pixel_count(def) * sizeof(Float3), 0);

@@ -150,6 +150,7 @@ typedef struct PreviewDef {
     uint32_t seed;
     const Image *const
         *pictures; ///< [sheet_count] on the side from which it reads, of cloth on both; NULL entries are white
+    const Image *const *backs;   ///< [sheet_count] on the other side; NULL: none
     const float (*colours)[3];   ///< [sheet_count] tint of each sheet, linear
     const float *transmittances; ///< [sheet_count] share of light transmitted; NULL: PREVIEW_TRANSMITTANCE
     const PreviewLook *looks;    ///< [sheet_count]; NULL: paper

@@ -341,15 +341,19 @@ float paper_transmittance(const Preview *preview, int32_t sheet) {
     return known && sheet >= 0 && (uint32_t)sheet < preview->def.sheet_count ? known[sheet] : PREVIEW_TRANSMITTANCE;
 }
 
+/// What is printed on a side of a sheet at the point, white where nothing is. From behind, u runs to the left.
+static Float3 printed(const Preview *preview, const PaperState *state, bool back, float footprint) {
+    if (state->sheet < 0 || (uint32_t)state->sheet >= preview->def.sheet_count) return float3(1, 1, 1);
+    const Texture *texture = &preview->textures[(uint32_t)state->sheet + (back ? preview->def.sheet_count : 0)];
+    if (!texture->count) return float3(1, 1, 1);
+    return texture_sample(preview, texture, back ? 1 - state->uv[0] : state->uv[0], state->uv[1],
+                          0.45f * footprint * texture->texels_per_metre);
+}
+
 static void fresh(const Preview *preview, const PaperState *state, Point *point) {
-    Float3 white = float3(0.86f, 0.852f, 0.832f), print = {1, 1, 1};
-    if (state->sheet >= 0 && (uint32_t)state->sheet < preview->def.sheet_count) {
-        const Texture *texture = preview->textures ? &preview->textures[state->sheet] : NULL;
-        if (texture && texture->count)
-            print = texture_sample(preview, texture, state->uv[0], state->uv[1],
-                                   0.45f * point->footprint * texture->texels_per_metre);
-        if (preview->def.colours) white = float3_mul(white, float3_load(preview->def.colours[state->sheet]));
-    }
+    const bool known = state->sheet >= 0 && (uint32_t)state->sheet < preview->def.sheet_count;
+    Float3 white = float3(0.86f, 0.852f, 0.832f), print = printed(preview, state, point->back, point->footprint);
+    if (known && preview->def.colours) white = float3_mul(white, float3_load(preview->def.colours[state->sheet]));
 
     // uneven density of the fibres: flocks that are hardly seen but against the light
     const float flocks = paper_noise(askew(state->rest), 3.6f, point->footprint, 5);
@@ -357,12 +361,13 @@ static void fresh(const Preview *preview, const PaperState *state, Point *point)
 
     // scattered often, what comes through is warmer, and has lost the print's share on whichever side
     point->through = float3_scale(float3(1.18f, 0.98f, 0.70f), 1 - 0.15f * flocks);
-    if (point->back && !cloth_weave(preview, state->sheet)) {
+    const Float3 far = printed(preview, state, !point->back, point->footprint);
+    if (!cloth_weave(preview, state->sheet)) {
         // of print on the far side so much is seen, T^2 / (1 - R^2) with the reflectance R of a stack, and all of it through
-        Float3 seen = float3_mix(float3(1, 1, 1), print, minf(3 * passed * passed, 0.95f));
-        point->through = float3_mul(point->through, float3(print.x / seen.x, print.y / seen.y, print.z / seen.z));
-        print = seen;
-    }
+        Float3 seen = float3_mix(float3(1, 1, 1), far, minf(3 * passed * passed, 0.95f));
+        point->through = float3_mul(point->through, float3(far.x / seen.x, far.y / seen.y, far.z / seen.z));
+        print = float3_mul(print, seen);
+    } else if (point->back && !(known && preview->def.backs && preview->def.backs[state->sheet])) print = far; // dyed
     point->albedo = float3_scale(float3_mul(white, print), 1 + 0.02f * flocks);
 
     // Wet: a film of water throws a share p of the light that leaves the fibres back to them, so that an albedo a becomes

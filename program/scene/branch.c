@@ -30,6 +30,7 @@ static const char *const changeable[] = {
     "output.texture_size",
     "gas.detail",
     "sheets.picture",
+    "sheets.back",
     "sheets.colour",
     "sheets.transmittance",
     "sheets.mesh", // compared by its contents
@@ -198,9 +199,11 @@ bool scene_looks_alike(SceneWhole scene, SceneWhole before) {
             images_equal(&scene.assets->sky, &before.assets->sky);
     for (uint32_t i = 0; alike && i < scene.scene->sheet_count; i++) {
         const SceneSheet *a = &scene.scene->sheets[i], *b = &before.scene->sheets[i];
+        const uint32_t back = scene.scene->sheet_count + i;
         alike = memcmp(a->colour, b->colour, sizeof a->colour) == 0 && a->transmittance == b->transmittance &&
                 memcmp(&a->material.look, &b->material.look, sizeof a->material.look) == 0 &&
-                images_equal(&scene.assets->images[i], &before.assets->images[i]);
+                images_equal(&scene.assets->images[i], &before.assets->images[i]) &&
+                images_equal(&scene.assets->images[back], &before.assets->images[back]);
     }
     return alike;
 }

@@ -89,7 +89,7 @@ SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
     // all pictures that are read
     double pictures = picture_bytes * pixels_of(&scene->preview.environment_picture);
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
-        pictures += picture_bytes * pixels_of(&scene->sheets[i].picture);
+        pictures += picture_bytes * (pixels_of(&scene->sheets[i].picture) + pixels_of(&scene->sheets[i].back));
         for (size_t k = 0; k < SCENE_PARAM_SLOTS; k++)
             pictures += texture_bytes * pixels_of(&scene->sheets[i].material.followed[k].texture);
     }

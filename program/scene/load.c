@@ -167,6 +167,9 @@ static void load_sheet(Loader *loader, uint32_t index) {
     assets->looks[index] = sheet->material.look;
     if (sheet->picture.name && !load_image(loader, &sheet->picture, &assets->images[index]))
         assets->pictures[index] = &assets->images[index];
+    const uint32_t back = scene->sheet_count + index;
+    if (sheet->back.name && !load_image(loader, &sheet->back, &assets->images[back]))
+        assets->pictures[back] = &assets->images[back];
 
     // what the material's parameters follow
     SingeMaterialDef material = sheet->material.def;
@@ -276,8 +279,8 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     assets->meshes = many(&loader, scene->sheet_count, sizeof *assets->meshes);
     assets->reports = many(&loader, scene->sheet_count, sizeof *assets->reports);
     assets->renders = many(&loader, scene->sheet_count, sizeof *assets->renders);
-    assets->images = many(&loader, scene->sheet_count, sizeof *assets->images);
-    assets->pictures = many(&loader, scene->sheet_count, sizeof *assets->pictures);
+    assets->images = many(&loader, 2 * (size_t)scene->sheet_count, sizeof *assets->images);
+    assets->pictures = many(&loader, 2 * (size_t)scene->sheet_count, sizeof *assets->pictures);
     assets->colours = many(&loader, scene->sheet_count, sizeof *assets->colours);
     assets->transmittances = many(&loader, scene->sheet_count, sizeof *assets->transmittances);
     assets->looks = many(&loader, scene->sheet_count, sizeof *assets->looks);
@@ -321,7 +324,7 @@ void scene_assets_free(SceneAssets *assets) {
     for (uint32_t i = 0; i < assets->sheet_count; i++) {
         if (assets->meshes) mesh_free(&assets->meshes[i]);
         if (assets->renders) render_file_free(&assets->renders[i]);
-        if (assets->images) image_free(&assets->images[i]);
+        for (int side = 0; side < 2 && assets->images; side++) image_free(&assets->images[2 * i + side]);
         for (int p = 0; p < SCENE_PARAM_SLOTS && assets->fields; p++) picture_free(&assets->fields[i][p].texture);
     }
 

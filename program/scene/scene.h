@@ -119,6 +119,7 @@ typedef struct SceneSheet {
     SceneGrid grid;
     SceneRenderMesh render_mesh;
     SceneFile picture;       ///< drawn on the side from which it reads, may be absent
+    SceneFile back;          ///< on the other side, may be absent
     float colour[3];         ///< linear tint
     float transmittance;     ///< share of light transmitted, in the preview
     float scale;             ///< factor, in addition to `units`
@@ -356,8 +357,8 @@ typedef struct SceneAssets {
     Mesh *meshes;                            ///< [sheet_count]
     MeshReport *reports;                     ///< [sheet_count] repairs of meshes from files
     RenderFile *renders;                     ///< [sheet_count], zeroed if there is none
-    Image *images;                           ///< [sheet_count], zeroed if there is none
-    const Image **pictures;                  ///< [sheet_count], for PreviewDef; NULL if there is none
+    Image *images;                           ///< [2 * sheet_count] of pictures, then of backs; zeroed if there is none
+    const Image **pictures;                  ///< the same, for PreviewDef; NULL if there is none
     float (*colours)[3];                     ///< [sheet_count], for PreviewDef
     float *transmittances;                   ///< the same
     PreviewLook *looks;                      ///< the same

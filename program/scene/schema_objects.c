@@ -121,6 +121,8 @@ static const SchemaRow sheet_rows[] = {
      .sub = &schema_render_mesh, .doc = "a mesh that is drawn in place of the sheet; the sheet itself by default"},
     {"picture", ROW_FILE, DIM_NONE, AT(SceneSheet, picture),
      .doc = "PNG or JPEG, in the preview printed on the side from which it reads, on cloth on both"},
+    {"back", ROW_FILE, DIM_NONE, AT(SceneSheet, back),
+     .doc = "the same for the other side, as it reads from there; its left is behind the right of `picture`"},
     {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneSheet, colour), .length = 3, WITHIN(0, 1),
      .doc = "linear red, green, blue; tints the picture"},
     {"transmittance", ROW_FLOAT, DIM_FRACTION, AT(SceneSheet, transmittance), WITHIN(0, 1),

@@ -19,6 +19,7 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
         def->sky_picture = &assets->sky;
     }
     def->pictures = assets->pictures;
+    def->backs = assets->pictures + assets->sheet_count;
     def->colours = (const float(*)[3])assets->colours;
     def->transmittances = assets->transmittances;
     def->looks = assets->looks;

@@ -256,11 +256,11 @@ class Resume(Case):
         self.scene = self.write_scene(frames=5, extra=extra)
         text = Path(self.scene).read_text()
         text = text.replace("    translate:",
-                            "    material: {base: ./m.yaml}\n    picture: print.png\n    translate:", 1)
+                            "    material: {base: ./m.yaml}\n    picture: print.png\n    back: back.png\n    translate:", 1)
         text = text.replace("sources:\n", "sources:\n  - {kind: texture, texture: flux.png, flux: 100}\n", 1)
         text = text.replace("samples: 1}", "samples: 1, environment: {picture: sky.png}}")
         Path(self.scene).write_text(text)
-        pictures = ["rate.png", "flux.png", "heights.png", "print.png", "sky.png"]
+        pictures = ["rate.png", "flux.png", "heights.png", "print.png", "back.png", "sky.png"]
         for name in pictures:
             self.picture(name, 100)
         self.cube("c.obj", 0.02)

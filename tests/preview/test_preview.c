@@ -119,6 +119,34 @@ TEST(uv_and_rows_are_the_right_way_round) {
     assert_in_range(pixel(rgb, W / 2 - 14, H / 2 - 14)[1], 210, 252);
 }
 
+/// What is printed on the back reads from there, and hardly changes the front: no byte where it is white.
+TEST(a_back_reads_from_behind) {
+    static uint8_t front[3][W * H * 3];
+    uint8_t texels[2 * 1 * 3] = {255, 0, 0, 0, 0, 255}, blank[1 * 1 * 3] = {255, 255, 255};
+    Image image = {.width = 2, .height = 1, .rgb = texels}, white = {.width = 1, .height = 1, .rgb = blank};
+    const Image *pictures[1] = {&image}, *whites[1] = {&white};
+    const Image *const *backs[3] = {NULL, whites, pictures};
+    int most = 0;
+
+    quad_make(&q, 0.1f, 0.01f);
+    PreviewDef def = above();
+    def.pictures = pictures, def.sheet_count = 1;
+    for (int k = 0; k < 3; k++) {
+        def.backs = backs[k];
+        draw(&def, &q.surface, 0, front[k]);
+    }
+    assert_memory_equal(front[0], front[1], sizeof front[0]);
+    for (size_t i = 0; i < sizeof front[0]; i++)
+        most = abs(front[2][i] - front[0][i]) > most ? abs(front[2][i] - front[0][i]) : most;
+
+    def.camera.eye[2] = -def.camera.eye[2], def.sun_direction[2] = -1, def.ground_height = -INFINITY;
+    draw(&def, &q.surface, 0, rgb);
+    const uint8_t *left = pixel(rgb, W / 2 - 14, H / 2), *right = pixel(rgb, W / 2 + 13, H / 2);
+    print_message("front within %d of 255; back %d %d %d, %d %d %d\n", most, left[0], left[1], left[2], right[0],
+                  right[1], right[2]);
+    assert_true(most < 24 && left[0] > 150 && left[2] < 90 && right[2] > 150 && right[0] < 90);
+}
+
 TEST(shapes_are_drawn) {
     PreviewDef def = above();
     PreviewShape shape = {.position = {0.1f, 0, 0.05f},
@@ -372,6 +400,7 @@ TEST(bad_defs_are_refused) {
     Image empty = {0};
     const Image *pictures[1] = {&empty};
     REFUSED((def.pictures = pictures, def.sheet_count = 1), "picture");
+    REFUSED((def.backs = pictures, def.sheet_count = 1), "back");
     const float colours[1][3] = {{1, NAN, 1}};
     REFUSED((def.colours = colours, def.sheet_count = 1), "colour");
 }

@@ -454,10 +454,11 @@ TEST(messages_print_with_their_line) {
 }
 
 TEST(missing_files_are_reported) {
-    static const char text[] = "sheets:\n  - {mesh: missing.obj, picture: src}\n";
+    static const char text[] = "sheets:\n  - {mesh: missing.obj, picture: src, back: none.png}\n";
     SceneMessages messages = failing(text, strlen(text), ".", NULL, 0, SINGE_ERROR_FORMAT);
     expect_message(&messages, 0, "bad.yaml:2:12", "mesh: there is no such file (./missing.obj)");
     expect_message(&messages, 1, "bad.yaml:2:34", "picture: this is a folder (./src)");
+    expect_message(&messages, 2, "bad.yaml:2:45", "back: there is no such file (./none.png)");
     scene_messages_free(&messages);
     Scene *scene;
     assert_int_equal(scene_read("tests/scene/none.yaml", NULL, 0, &scene, &messages), SINGE_ERROR_FILE);
