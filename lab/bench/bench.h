@@ -22,7 +22,6 @@ typedef struct BenchList {
 typedef enum BenchState {
     BENCH_SWING,  ///< held at corner points, released from the horizontal
     BENCH_SHRINK, ///< hangs from two corner patches; all target lengths shrink to 0.8 within a second
-    BENCH_HANG,   ///< hangs from two corner patches that move closer
 } BenchState;
 
 /// The outline of sheets.
@@ -126,4 +125,4 @@ typedef SingeResult BenchFn(const BenchOptions *options, BenchTable *table, Sing
 // What each measures: the table in bench_command.c.
 BenchFn bench_swing, bench_hang_and_shrink, bench_tear, bench_dynamics, bench_step, bench_surface, bench_heap,
     bench_collapse, bench_stack, bench_wind, bench_memory, bench_front, bench_spread, bench_output, bench_preview,
-    bench_compare, bench_stability, bench_look, bench_fold, bench_isotropy, bench_plate, bench_spectrum;
+    bench_compare, bench_stability, bench_fold, bench_isotropy, bench_plate, bench_spectrum;

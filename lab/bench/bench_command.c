@@ -55,8 +55,6 @@ static const struct {
      "The paper's solver and ours on the same trajectories: error, cost, and cost at equal error."},
     {"stability", bench_stability, " cells time threads smoothing quick " SOLVER OUTPUT,
      "Whether swinging and strongly shrinking sheets are stable at any thickness, resolution and time step."},
-    {"look", bench_look, " cells thickness time threads smoothing quick " SOLVER OUTPUT,
-     "Rest shape and sag at several time steps, substeps and resolutions."},
     {"fold", bench_fold, " substeps threads quick instructions " OUTPUT,
      "A strip is folded by 180 degrees and released: the angle that remains, by resolution and time step."},
     {"isotropy", bench_isotropy,

@@ -130,17 +130,6 @@ double geometry_reach(const SingeView *view, const float *position) {
     return max;
 }
 
-void geometry_point(const SingeView *view, int cells, double u, double v, double *point) {
-    double x = u * cells, y = v * cells;
-    int i = (int)fmin(x, cells - 1), j = (int)fmin(y, cells - 1), row = cells + 1;
-    double fx = x - i, fy = y - j, weights[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
-    const int corners[4] = {j * row + i, j * row + i + 1, (j + 1) * row + i, (j + 1) * row + i + 1};
-    for (int axis = 0; axis < 3; axis++) {
-        point[axis] = 0;
-        for (int c = 0; c < 4; c++) point[axis] += weights[c] * (double)view->position[corners[c]][axis];
-    }
-}
-
 double geometry_curvatures(const SingeView *view, double x, double y, double radius, double principal[2]) {
     double c[6], m[6][7] = {{0}};
     for (uint32_t v = 0; v < view->vertex_count; v++) {

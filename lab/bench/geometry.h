@@ -42,9 +42,6 @@ double geometry_reach(const SingeView *view, const float *position);
 /// to one side. Returns the angle to x of the direction that rolls up, rad, from 0 to pi.
 double geometry_curvatures(const SingeView *view, double x, double y, double radius, double principal[2]);
 
-/// The sheet's point at (u, v) in [0, 1] of the square, bilinear between vertices.
-void geometry_point(const SingeView *view, int cells, double u, double v, double *point);
-
 /// Removes mean and slope of a line of samples and applies a Hann window. Returns the mean square before the window.
 double geometry_window(double *line, int count);
 

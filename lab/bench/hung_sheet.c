@@ -92,7 +92,6 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
         sheet.material.shrink_front = sheet.material.shrink_back = sheet.material.fibre_shrink = singe_param(1);
     }
 
-    sheet.material.damping = singe_param(setup->damping);
     for (int c = 0; setup->rigid && c < SINGE_COLOUR_COUNT; c++) sheet.material.compliance[c] = singe_param(0);
     SingeResult result;
     if (setup->shape) {
@@ -110,8 +109,6 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
     // pins: only a corner's vertex if the sheet swings, else a patch
     const bool upright = setup->state != BENCH_SWING;
     const float high = upright ? size : 0, corners[2][3] = {{0, 0, high}, {size, 0, high}};
-    const SingePoseKey path[2] = {{0, {size, 0, high}, {0, 0, 0, 1}},
-                                  {0.5f, {size - setup->approach, 0, high}, {0, 0, 0, 1}}};
     SingePinDef pin = singe_default_pin();
     SingePinId pin_id;
     pin.sheet = id;
@@ -119,11 +116,6 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
     pin.radius = upright ? 0.05f * size : 0;
     for (int p = 0; p < setup->pins; p++) {
         pin.points = corners[p];
-        if (p == 1 && setup->approach > 0) {
-            pin.path_count = 2;
-            pin.path = path;
-        }
-
         result = singe_sim_add_pin(sim, &pin, &pin_id);
         if (result) return result;
     }

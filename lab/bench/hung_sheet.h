@@ -10,8 +10,6 @@ typedef struct BenchSetup {
     float thickness; ///< m
     float time_step; ///< s
     float shrink;    ///< final ratio of lengths in BENCH_SHRINK
-    float damping;   ///< 1/s
-    float approach;  ///< m, displacement of the second patch towards the first within half a second (BENCH_HANG)
     bool rigid;      ///< inextensible springs as in eq 16: no compliance
     int threads;
     SingeInstructions instructions;

@@ -27,7 +27,6 @@ TINY = (
     ("spectrum", ["--quick", "--time", "0.05", "--substeps", "2"], ["wavelength_mm", "base", "h_x_2", "s_div_2"]),
     ("isotropy", ["--quick", "--outline", "disc", "--cells", "12", "--time", "0.05", "--seeds", "3"],
      ["r_0", "r_45", "effect", "mean"]),
-    ("look", ["--cells", "8", "--quick", "--time", "0.2"], ["sag_m", "drop_m", "shape_mm"]),
     ("plate", ["--quick", "--cells", "12", "--substeps", "3"], ["over_D", "k1_per_m", "rolls_deg"]),
 )
 
