@@ -8,6 +8,7 @@
 
 #include "bench/machine.h"
 #include "analysis/numbers.h"
+#include "formats/formats.h"
 #include "preview/preview.h"
 
 enum { CELLS_X = 198, CELLS_Y = 280, ACROSS = CELLS_X + 1, REPEATS = 5 };
@@ -32,35 +33,9 @@ static float height_at(float x, float y) {
     return 0.0015f + fmaxf(curl, 0) + 0.0125f * preview_bench_smooth(0.12f, 0.19f, fabsf(x + 0.35f * y));
 }
 
-/// All arrays of a surface in one block, which is returned; NULL when out of memory.
-static void *preview_bench_reserve(SingeSurface *s, uint32_t vertices, uint32_t triangles) {
-    const size_t floats = 3 + 3 + 2 + 3 + 3 + 5, ints = 2;
-    float *block = calloc((size_t)vertices * (floats + ints) + 3 * (size_t)triangles, sizeof *block), *at = block;
-    if (!block) return NULL;
-    *s = (SingeSurface){.vertex_count = vertices};
-    s->position = (float(*)[3])(void *)at;
-    at += 3 * (size_t)vertices;
-    s->normal = (float(*)[3])(void *)at;
-    at += 3 * (size_t)vertices;
-    s->uv = (float(*)[2])(void *)at;
-    at += 2 * (size_t)vertices;
-    s->velocity = (float(*)[3])(void *)at;
-    at += 3 * (size_t)vertices;
-    s->rest_position = (float(*)[3])(void *)at;
-    at += 3 * (size_t)vertices;
-    float **scalars[] = {&s->temperature, &s->temperature_peak, &s->burn, &s->burn_rate, &s->time_ignited};
-    for (int i = 0; i < 5; i++, at += vertices) *scalars[i] = at;
-    s->piece = (int32_t *)(void *)at;
-    at += vertices;
-    s->sheet = (int32_t *)(void *)at;
-    at += vertices;
-    s->triangles = (uint32_t(*)[3])(void *)at;
-    return block;
-}
-
-static void *make_surface(SingeSurface *s) {
-    void *block = preview_bench_reserve(s, ACROSS * (CELLS_Y + 1), 2 * CELLS_X * CELLS_Y);
-    if (!block) return NULL;
+static bool make_surface(SingeSurface *s) {
+    if (!surface_new(s, ACROSS * (CELLS_Y + 1), 2 * CELLS_X * CELLS_Y)) return false;
+    s->triangle_count = 0;
     for (uint32_t i = 0; i < s->vertex_count; i++) {
         const float x = sheet_width * ((float)(i % ACROSS) / CELLS_X - 0.5f);
         const float y = sheet_length * ((float)(i / ACROSS) / CELLS_Y - 0.5f);
@@ -72,20 +47,17 @@ static void *make_surface(SingeSurface *s) {
         s->position[i][0] = s->rest_position[i][0] = x;
         s->position[i][1] = s->rest_position[i][1] = y;
         s->position[i][2] = z;
-        s->rest_position[i][2] = 0;
         s->normal[i][0] = -zx / length;
         s->normal[i][1] = -zy / length;
         s->normal[i][2] = 1 / length;
         s->uv[i][0] = x / sheet_width + 0.5f;
         s->uv[i][1] = y / sheet_length + 0.5f;
-        s->velocity[i][0] = 0;
         s->velocity[i][1] = 0.1f * z / 0.01f;
-        s->velocity[i][2] = 0;
         s->temperature[i] = s->temperature_peak[i] = 293 + 830 * expf(-ahead);
         s->burn[i] = burn;
+        s->mass[i] = 1;
         s->burn_rate[i] = 0.9f * expf(-powf((edge - 0.001f) / 0.005f, 2));
         s->time_ignited[i] = burn > 0 ? fmaxf(0, 1 - 40 * (front - edge)) : -1;
-        s->piece[i] = s->sheet[i] = 0;
     }
 
     for (uint32_t k = 0; k < CELLS_X * CELLS_Y; k++) {
@@ -101,7 +73,7 @@ static void *make_surface(SingeSurface *s) {
         s->triangle_count += 2;
     }
 
-    return block;
+    return true;
 }
 
 enum { GAS_X = 30, GAS_Y = 42, GAS_Z = 24, GAS_CELLS = GAS_X * GAS_Y * GAS_Z };
@@ -268,10 +240,9 @@ static SingeResult shot_measure(const BenchOptions *options, const Shot *shot, c
 
 SingeResult bench_preview(const BenchOptions *options, BenchTable *table, SingeError *error) {
     SingeSurface surface;
-    void *block = make_surface(&surface);
-    SingeResult result = block ? SINGE_OK : SINGE_ERROR_MEMORY;
+    SingeResult result = make_surface(&surface) ? SINGE_OK : SINGE_ERROR_MEMORY;
     for (size_t i = 0; i < sizeof shots / sizeof *shots && !result; i++)
         result = shot_measure(options, &shots[i], &surface, table, error);
-    free(block);
+    singe_surface_free(&surface);
     return result;
 }

@@ -7,6 +7,7 @@
 #include "bench/geometry.h"
 #include "bench/hung_sheet.h"
 #include "bench/machine.h"
+#include "bench/timing.h"
 #include "analysis/numbers.h"
 
 enum { STEPS = 20, ROOM = 4096 };
@@ -141,10 +142,8 @@ static SingeResult heap_measure(const BenchOptions *options, int cells, bool clo
         *error = *singe_sim_error(sim);
     } else {
         SingeTimers t = singe_sim_timers(sim);
-        SingeCounts counts = singe_sim_counts(sim);
         SingeStats stats = singe_sim_stats(sim);
-        double springs = 0, a_frame = 1e3 / frames, steps = (double)t.steps;
-        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += counts.springs[c];
+        double springs = timing_springs(sim), a_frame = 1e3 / frames, steps = (double)t.steps;
         double mean = numbers_mean(frame_ms, frames), median = numbers_median(frame_ms, frames);
         table_number(table, "cells", "%.0f", 5, cells);
         table_number(table, "springs", "%.0f", 8, springs);

@@ -5,6 +5,7 @@
 #include "bench/bench.h"
 #include "bench/geometry.h"
 #include "bench/machine.h"
+#include "bench/timing.h"
 
 enum { STEPS_FRAME = 20, FPS = 24 };
 static const float side = 0.35f, ball = 0.1f, lowest = 0.21f, apart = 0.01f; // m
@@ -81,14 +82,11 @@ static SingeResult stack_measure(const BenchOptions *options, uint32_t sheets, u
     if (!result) result = geometry_crossings(sim, &crossing, error);
     if (!result) {
         const SingeTimers t = singe_sim_timers(sim);
-        const SingeCounts counts = singe_sim_counts(sim);
         const SingeStats stats = singe_sim_stats(sim);
         const double a_step = 1.0 / steps;
-        double springs = 0;
-        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += counts.springs[c];
         table_number(table, "sheets", "%.0f", 6, sheets);
         table_number(table, "cells", "%.0f", 5, cells);
-        table_number(table, "springs", "%.0f", 8, springs);
+        table_number(table, "springs", "%.0f", 8, timing_springs(sim));
         table_number(table, "threads", "%.0f", 7, options->threads);
         table_number(table, "step_ms", "%.4g", 8, 1e3 * a_step * wall);
         table_number(table, "worst_ms", "%.4g", 8, 1e3 * worst);

@@ -11,63 +11,34 @@ static const float grammage = 0.1f; // kg/m2
 
 static SingeResult state_build(SingeSim *sim, PaperState state, int n) {
     SingeSheetId sheet;
-    SingeResult result = SINGE_ERROR_MEMORY;
-    float *positions = malloc(3 * sizeof *positions * (size_t)(n + 1) * (size_t)(n + 1));
-    uint32_t *cells = malloc(4 * sizeof *cells * (size_t)n * (size_t)n);
-
-    if (positions && cells) {
-        const uint32_t side = (uint32_t)n;
-        SingeSheetDef def = singe_default_sheet();
-        for (uint32_t j = 0, v = 0; j <= side; j++)
-            for (uint32_t i = 0; i <= side; i++) {
-                positions[v++] = (float)i / (float)side;
-                positions[v++] = (float)j / (float)side;
-                positions[v++] = 0;
-            }
-        for (uint32_t j = 0; j < side; j++)
-            for (uint32_t i = 0; i < side; i++) {
-                uint32_t *c = cells + 4 * (j * side + i), corner = j * (side + 1) + i;
-                c[0] = corner;
-                c[1] = corner + 1;
-                c[2] = corner + side + 2;
-                c[3] = corner + side + 1;
-            }
-        def.vertex_count = (side + 1) * (side + 1);
-        def.positions = positions;
-        def.cell_count = side * side;
-        def.cells = cells;
-        def.material.grammage = singe_param(grammage);
-        def.material.reference_grammage = 0; // rates are those of eq 4
-        def.material.thickness = singe_param(1e-3f);
-        def.material.drag = def.material.damping = singe_param(0);
-        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) def.material.compliance[c] = singe_param(0); // eq 16 has none
-        if (state == PAPER_SHRINK) {
-            // burns at one rate, down to 0.8 of its mass in half a second; lengths follow the mass, and nothing is
-            // removed
-            const float rate = 4e-3f; // 1/(K s), at 100 K above ignition
-            def.material.temperature = singe_param(600);
-            def.material.ignition_temperature = singe_param(500);
-            def.material.mass_rate = singe_param(rate);
-            def.material.rate_ceiling = singe_param(1e6f);
-            def.material.air_supply = singe_param(INFINITY);
-            def.material.ash_exponent = singe_param(0);
-            def.material.heat_share = singe_param(0);
-            def.material.mass_min = singe_param(0.8f);
-            def.material.mass_loss = singe_param(0.1f);
-            def.material.char_yield = singe_param(0);
-            def.material.ash_density = singe_param(1);
-            def.material.char_weight = singe_param(1);
-            def.material.shrink_front = def.material.shrink_back = def.material.fibre_shrink = singe_param(1);
-            def.material.convection = def.material.emissivity = singe_param(0);
-            def.material.thickening = 1;
-        }
-
-        result = singe_sim_add_sheet(sim, &def, &sheet);
-        if (!result) result = singe_sim_commit(sim);
+    SingeSheetDef def = singe_default_sheet();
+    def.material.grammage = singe_param(grammage);
+    def.material.reference_grammage = 0; // rates are those of eq 4
+    def.material.thickness = singe_param(1e-3f);
+    def.material.drag = def.material.damping = singe_param(0);
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) def.material.compliance[c] = singe_param(0); // eq 16 has none
+    if (state == PAPER_SHRINK) {
+        // burns at one rate, down to 0.8 of its mass in half a second; lengths follow the mass, and nothing is removed
+        const float rate = 4e-3f; // 1/(K s), at 100 K above ignition
+        def.material.temperature = singe_param(600);
+        def.material.ignition_temperature = singe_param(500);
+        def.material.mass_rate = singe_param(rate);
+        def.material.rate_ceiling = singe_param(1e6f);
+        def.material.air_supply = singe_param(INFINITY);
+        def.material.ash_exponent = singe_param(0);
+        def.material.heat_share = singe_param(0);
+        def.material.mass_min = singe_param(0.8f);
+        def.material.mass_loss = singe_param(0.1f);
+        def.material.char_yield = singe_param(0);
+        def.material.ash_density = singe_param(1);
+        def.material.char_weight = singe_param(1);
+        def.material.shrink_front = def.material.shrink_back = def.material.fibre_shrink = singe_param(1);
+        def.material.convection = def.material.emissivity = singe_param(0);
+        def.material.thickening = 1;
     }
 
-    free(positions);
-    free(cells);
+    SingeResult result = sheet_add(sim, &def, n, 1, false, &sheet);
+    if (!result) result = singe_sim_commit(sim);
     if (result || state != PAPER_SWING) return result;
     SingePinDef pin = singe_default_pin();
     const uint32_t corners[] = {0, (uint32_t)n};
