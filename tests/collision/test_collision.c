@@ -1,5 +1,5 @@
 // Sheets that fall on themselves and each other.
-#include "support/test.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,29 +18,20 @@ typedef struct Flat {
 
 static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float cells_thick, float wave, const float velocity[3]) {
     uint32_t n = (uint32_t)flat->n, row = n + 1;
-    float *x = malloc(3 * row * row * sizeof *x);
-    uint32_t *cells = malloc(4 * n * n * sizeof *cells);
-
+    TestMesh mesh = test_grid(n, n, 1, 1);
     for (uint32_t j = 0; j <= n; j++)
         for (uint32_t i = 0; i <= n; i++) {
             float s = (float)i / (float)n, t = (float)j / (float)n, bend = wave * sinf(9 * t) + wave / 2 * sinf(7 * s);
             for (int k = 0; k < 3; k++)
-                x[3 * (j * row + i) + (uint32_t)k] =
+                mesh.positions[3 * (j * row + i) + (uint32_t)k] =
                     flat->corner[k] + s * flat->u[k] + t * flat->v[k] + (k == 1 ? bend : 0);
         }
-    for (uint32_t j = 0; j < n; j++)
-        for (uint32_t i = 0; i < n; i++) {
-            uint32_t *c = cells + 4 * (j * n + i);
-            c[0] = j * row + i, c[1] = c[0] + 1, c[2] = c[1] + row, c[3] = c[0] + row;
-        }
-    SingeSheetDef def = singe_default_sheet();
-    def.vertex_count = row * row, def.positions = x, def.cell_count = n * n, def.cells = cells;
+    SingeSheetDef def = test_sheet(&mesh);
     def.material.thickness = singe_param(
         cells_thick * sqrtf(flat->u[0] * flat->u[0] + flat->u[1] * flat->u[1] + flat->u[2] * flat->u[2]) / (float)n);
     for (int k = 0; k < 3; k++) def.velocity[k] = velocity ? velocity[k] : 0;
-    SingeSheetId id;
-    assert_int_equal(singe_sim_add_sheet(sim, &def, &id), SINGE_OK);
-    free(x), free(cells);
+    const SingeSheetId id = test_add_sheet(sim, &def);
+    test_mesh_free(&mesh);
     return id;
 }
 
@@ -62,10 +53,6 @@ static void add_ground(SingeSim *sim) {
     assert_int_equal(singe_sim_add_collider(sim, &ground, &id), SINGE_OK);
 }
 
-static void steps(SingeSim *sim, int count) {
-    for (int i = 0; i < count; i++) assert_int_equal(singe_sim_step(sim), SINGE_OK);
-}
-
 #ifdef SINGE_THREADS_ONLY
 enum { HEAP = 16, HEAP_STEPS = 40 };
 #else
@@ -85,7 +72,7 @@ TEST(a_heap_does_not_cross) {
     SingeSim *sim = heap(2, true), *without = heap(2, false);
     long crossed = 0;
     for (int frame = 0; frame < 24; frame++) {
-        steps(sim, 20), steps(without, 20);
+        test_steps(sim, 20), test_steps(without, 20);
         assert_int_equal(crossings(sim), 0);
         crossed += crossings(without);
     }
@@ -110,7 +97,7 @@ TEST(thrown_sheets_do_not_cross) {
     add_flat(sim, &(Flat){14, {0, 0.03f, 0.97f}, {0.08f, 0.06f, 0}, {0, 0, 0.1f}}, 0.6f, 2e-3f, (float[3]){0, -6, 0});
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     for (int frame = 0; frame < 60; frame++) {
-        steps(sim, 2);
+        test_steps(sim, 2);
         assert_int_equal(crossings(sim), 0);
     }
     assert_true(singe_sim_timers(sim).contact_stops > 0);
@@ -127,7 +114,7 @@ TEST(layers_keep_their_thickness) {
             0.6f, 0, NULL);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     add_ground(sim);
-    steps(sim, 480);
+    test_steps(sim, 480);
     SingeView view = singe_sim_view(sim);
     double height[3] = {0};
     for (uint32_t v = 0; v < view.vertex_count; v++) height[v / 169] += (double)view.position[v][2] / 169;
@@ -152,7 +139,7 @@ static double slide(float friction) {
     SingeView view = singe_sim_view(sim);
     double before = 0, after = 0;
     for (uint32_t v = 441; v < view.vertex_count; v++) before += (double)view.position[v][0] / 81;
-    steps(sim, 96);
+    test_steps(sim, 96);
     for (uint32_t v = 441; v < view.vertex_count; v++) after += (double)view.position[v][0] / 81;
     singe_sim_destroy(sim);
     return after - before;
@@ -172,9 +159,9 @@ TEST(crossing_input_is_left_alone) {
     add_flat(sim, &(Flat){10, {0, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
     add_flat(sim, &(Flat){10, {0.0112f, 0.0253f, 0.98f}, {0.04f, 0, 0}, {0, 0, 0.05f}}, 0.6f, 0, NULL);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
-    steps(sim, 1);
+    test_steps(sim, 1);
     assert_true(singe_sim_stats(sim).intersecting_cells > 8);
-    steps(sim, 120);
+    test_steps(sim, 120);
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.strain_max < 0.2 && stats.speed_rms_unburnt < 4);
     singe_sim_destroy(sim);
@@ -197,9 +184,9 @@ TEST(cells_crossed_by_others_are_kept_apart) {
     }
 
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
-    steps(sim, 1);
+    test_steps(sim, 1);
     assert_int_equal(singe_sim_stats(sim).intersecting_cells, 4);
-    steps(sim, 14); // unhindered they pass each other at the fifth, and are 19 mm beyond
+    test_steps(sim, 14); // unhindered they pass each other at the fifth, and are 19 mm beyond
     SingeView view = singe_sim_view(sim);
     float lower = 0, upper = 0;
     for (uint32_t v = 0; v < 4; v++) lower += view.position[v][2] / 4, upper += view.position[8 + v][2] / 4;
@@ -221,9 +208,9 @@ TEST(cells_crossed_by_one_cell_are_kept_apart) {
     }
     add_flat(sim, &(Flat){1, {0.006f, 1e-3f, -5e-3f}, {0, side - 2e-3f, 0}, {0, 0, side}}, 0.6f, 0, NULL);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
-    steps(sim, 1);
+    test_steps(sim, 1);
     assert_int_equal(singe_sim_stats(sim).intersecting_cells, 3);
-    steps(sim, 14); // unhindered they pass each other at the fifth
+    test_steps(sim, 14); // unhindered they pass each other at the fifth
     SingeView view = singe_sim_view(sim);
     float lower = 0, upper = 0;
     for (uint32_t v = 0; v < 4; v++) lower += view.position[v][2] / 4, upper += view.position[4 + v][2] / 4;
@@ -240,36 +227,23 @@ TEST(coincident_sheets_are_left_alone) {
     // and one that lies next to them
     add_flat(sim, &(Flat){10, {0.2f, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
-    steps(sim, 1);
+    test_steps(sim, 1);
     assert_int_equal(singe_sim_stats(sim).intersecting_cells, 300);
-    steps(sim, 20);
+    test_steps(sim, 20);
     assert_int_equal(singe_sim_stats(sim).intersecting_cells, 300);
     assert_int_equal(singe_sim_timers(sim).contact_stops, 0);
     singe_sim_destroy(sim);
 }
 
 TEST(any_number_of_threads_gives_the_same_bytes) {
-    SingeSim *one = heap(1, true), *three = heap(3, true), *again;
-    uint8_t *a, *b;
-    size_t na, nb;
-
-    steps(one, HEAP_STEPS), steps(three, HEAP_STEPS);
+    SingeSim *one = heap(1, true), *three = heap(3, true);
+    test_steps(one, HEAP_STEPS), test_steps(three, HEAP_STEPS);
 
     // and from a snapshot between two searches
-    assert_int_equal(singe_sim_save(one, &a, &na), SINGE_OK);
-    SingeSimDef hooks = singe_default_sim();
-    assert_int_equal(singe_sim_load(&hooks, a, na, &again, NULL), SINGE_OK);
-    singe_sim_free_bytes(one, a, na);
-    steps(one, 61), steps(three, 61), steps(again, 61);
-    assert_int_equal(singe_sim_save(one, &a, &na), SINGE_OK);
-    assert_int_equal(singe_sim_save(three, &b, &nb), SINGE_OK);
-    assert_int_equal(na, nb);
-    assert_memory_equal(a, b, na);
-    singe_sim_free_bytes(three, b, nb);
-    assert_int_equal(singe_sim_save(again, &b, &nb), SINGE_OK);
-    assert_int_equal(na, nb);
-    assert_memory_equal(a, b, na);
-    singe_sim_free_bytes(again, b, nb), singe_sim_free_bytes(one, a, na);
+    SingeSim *again = test_reload(NULL, one);
+    test_steps(one, 61), test_steps(three, 61), test_steps(again, 61);
+    test_assert_same(one, three);
+    test_assert_same(one, again);
     singe_sim_destroy(one), singe_sim_destroy(three), singe_sim_destroy(again);
 }
 

@@ -303,10 +303,7 @@ TEST(steps_that_would_take_minutes_halt) {
 TEST(flags_in_the_wind_keep_their_shape) {
     SingeSim *sims[3] = {flag(28, 15, 1), flag(28, 15, 3)};
     test_steps(sims[0], 8), test_steps(sims[1], 8);
-    const SingeSimDef hooks = singe_default_sim();
-    TestBytes bytes = test_save(sims[0]);
-    test_ok(NULL, singe_sim_load(&hooks, bytes.data, bytes.size, &sims[2], NULL));
-    free(bytes.data);
+    sims[2] = test_reload(NULL, sims[0]);
     test_steps(sims[2], 12);
     double searches = 0;
     for (int k = 0; k < 2; k++) {

@@ -341,17 +341,12 @@ TEST(bytes_do_not_depend_on_the_thread_count) {
 TEST(a_run_resumes_between_measurements) {
     SingeSim *sim = burning(1);
     test_steps(sim, 45);
-    TestBytes bytes = test_save(sim);
-    SingeSimDef hooks = singe_default_sim();
-    SingeSim *resumed;
-    SingeError error = {0};
-    if (singe_sim_load(&hooks, bytes.data, bytes.size, &resumed, &error)) fail_msg("load: %s", error.message);
+    SingeSim *resumed = test_reload(NULL, sim);
     for (int part = 0; part < 3; part++) {
         test_steps(sim, 12), test_steps(resumed, 12);
         test_assert_same(sim, resumed);
     }
     assert_true(singe_sim_stats(sim).mass_removed > 0);
-    free(bytes.data);
     singe_sim_destroy(resumed);
     singe_sim_destroy(sim);
 }

@@ -15,22 +15,14 @@ TEST(bytes_do_not_depend_on_threads_or_saving) {
     SingeSimDef def = braced_def(1), hooks = braced_def(3);
     Scene scene = scene_make(&def, 14);
     test_steps(scene.sim, 60);
-    TestBytes bytes = test_save(scene.sim);
-    SingeSim *other = NULL;
-    SingeError error;
-    if (singe_sim_load(&hooks, bytes.data, bytes.size, &other, &error)) fail_msg("load: %s", error.message);
+    SingeSim *other = test_reload(&hooks, scene.sim);
     static float flux = 2000; // the scene's
     test_ok(other, singe_sim_set_source_callback(other, scene.callback, scene_flux, &flux));
-    for (int i = 0; i < 60; i++) {
-        const SingeResult one = singe_sim_step(scene.sim), two = singe_sim_step(other);
-        assert_int_equal(one, SINGE_OK);
-        assert_int_equal(two, SINGE_OK);
-    }
+    test_steps(scene.sim, 60), test_steps(other, 60);
     assert_true(singe_sim_stats(scene.sim).mass_burnt > 0);
     test_assert_same(scene.sim, other);
     singe_sim_destroy(other);
     singe_sim_destroy(scene.sim);
-    free(bytes.data);
 }
 
 /// A flat sheet, a tube and a torus are at rest with their braces.

@@ -104,12 +104,12 @@ TEST(particles_that_miss_the_map_are_counted) {
 
 TEST(a_map_is_saved) {
     SingeSourceId id;
-    SingeSim *sim = mapped(10, 2, 9e-3f, &id), *loaded, *copy;
+    SingeSim *sim = mapped(10, 2, 9e-3f, &id), *copy;
     test_steps(sim, 120);
     TestBytes bytes = test_save(sim);
     SingeSimDef hooks = singe_default_sim();
     hooks.thread_count = 2;
-    assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &loaded, NULL), SINGE_OK);
+    SingeSim *loaded = test_load(&hooks, &bytes);
     test_ok(sim, singe_sim_clone(sim, &copy));
     test_steps(sim, 60), test_steps(loaded, 60), test_steps(copy, 60);
     test_assert_same(sim, loaded);

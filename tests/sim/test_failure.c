@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdatomic.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,12 +34,10 @@ TEST(a_failed_step_changes_nothing) {
         assert_int_equal(events, 0);
     }
 
-    TestBytes after = test_save(sim);
-    assert_int_equal(before.size, after.size);
-    assert_memory_equal(before.data, after.data, before.size);
+    test_assert_saved(sim, &before);
     assert_int_equal(singe_sim_timers(sim).steps, timers.steps);
     assert_int_equal(singe_sim_timers(sim).contacts, timers.contacts);
-    free(before.data), free(after.data);
+    free(before.data);
 
     // without the source it continues as if nothing had happened
     test_ok(sim, singe_sim_remove_source(sim, id));
@@ -133,10 +130,7 @@ static int give_up(SingeSim *sim, Asked *asked) {
         test_refused(sim, SINGE_ERROR_CANCELLED, singe_sim_step(sim));
         const SingeTimers now = singe_sim_timers(sim);
         assert_memory_equal(&now, &timers, sizeof timers);
-        TestBytes after = test_save(sim);
-        assert_int_equal(before.size, after.size);
-        assert_memory_equal(before.data, after.data, before.size);
-        free(after.data);
+        test_assert_saved(sim, &before);
     }
     free(before.data);
     atomic_store(&asked->yes, 0);

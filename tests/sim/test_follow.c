@@ -234,7 +234,7 @@ TEST(pins_follow_and_runs_resume) {
     SingePinId pin;
     SingeColliderId body;
     Block block;
-    SingeSim *sim = cape(&def, &pin, &body, &block), *threads, *resumed;
+    SingeSim *sim = cape(&def, &pin, &body, &block), *threads;
 
     round_trip(sim, pin, body, &block, 0, 12);
 
@@ -254,7 +254,7 @@ TEST(pins_follow_and_runs_resume) {
     TestBytes bytes = test_save(sim);
     SingeSimDef hooks = singe_default_sim();
     SingeError error = {0};
-    if (singe_sim_load(&hooks, bytes.data, bytes.size, &resumed, &error)) fail_msg("%s", error.message);
+    SingeSim *resumed = test_load(NULL, &bytes);
     test_assert_same(sim, resumed);
     test_steps(sim, 6);
     test_steps(resumed, 6);

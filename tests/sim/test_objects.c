@@ -186,11 +186,8 @@ TEST(pins_end) {
 
     for (int step = 0; step < 80; step++) {
         if (step % 20 == 10) { // at 10 and 30 it holds, at 50 and 70 no more
-            TestBytes bytes = test_save(by_end);
-            const SingeSimDef hooks = singe_default_sim();
             singe_sim_destroy(loaded);
-            assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &loaded, NULL), SINGE_OK);
-            free(bytes.data);
+            loaded = test_reload(NULL, by_end);
         }
         test_steps(by_hand, 1);
         test_steps(by_end, 1);

@@ -94,14 +94,10 @@ TEST(recordings_differ_only_in_the_number_of_threads) {
 TEST(recordings_may_begin_with_a_snapshot) {
     Scene scene = scene_make(NULL, 8);
     test_steps(scene.sim, 3);
-    TestBytes bytes = test_save(scene.sim);
-    singe_sim_destroy(scene.sim);
-
     Tape tape = {0};
     SingeSimDef hooks = recorded(singe_default_sim(), &tape);
-    SingeSim *sim;
-    assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &sim, NULL), SINGE_OK);
-    free(bytes.data);
+    SingeSim *sim = test_reload(&hooks, scene.sim);
+    singe_sim_destroy(scene.sim);
     test_steps(sim, 3);
     singe_sim_destroy(sim);
     SingeReplay replay = replay_all(&tape);

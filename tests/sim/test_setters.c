@@ -5,16 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static SingeSim *reload(SingeSim *sim) {
-    TestBytes bytes = test_save(sim);
-    SingeSimDef hooks = singe_default_sim();
-    SingeSim *loaded;
-    SingeError error = {0};
-    if (singe_sim_load(&hooks, bytes.data, bytes.size, &loaded, &error)) fail_msg("load: %s", error.message);
-    free(bytes.data);
-    return loaded;
-}
-
 /// A scene without its callback, which a load does not have.
 static Scene quiet_scene(uint32_t cells) {
     Scene scene = scene_make(NULL, cells);
@@ -24,7 +14,7 @@ static Scene quiet_scene(uint32_t cells) {
 
 /// A snapshot has the values that were set: a loaded simulation makes the same steps.
 static void assert_loads_the_same(SingeSim *sim) {
-    SingeSim *loaded = reload(sim);
+    SingeSim *loaded = test_reload(NULL, sim);
     test_assert_same(sim, loaded);
     test_steps(sim, 15);
     test_steps(loaded, 15);
@@ -173,7 +163,7 @@ TEST(surfaces_have_the_displacement_since_the_last_frame_as_velocity) {
     take_vertices(sim, from);
     test_steps(sim, 2);
     assert_true(surface_differs(sim, from, 2 * h) < 1e-6f);
-    SingeSim *loaded = reload(sim);
+    SingeSim *loaded = test_reload(NULL, sim);
     assert_true(surface_differs(loaded, from, 2 * h) < 1e-6f);
     test_steps(sim, 2);
     assert_true(surface_differs(sim, from, 4 * h) < 1e-6f);
@@ -199,7 +189,7 @@ TEST(velocities_throw) {
     test_ok(sim, singe_sim_set_velocity(sim, sheet, 0, 81, up[0]));
     SingeView view = singe_sim_view(sim);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_true(fabsf(view.velocity[i][2] - 2) < 1e-5f);
-    SingeSim *loaded = reload(sim);
+    SingeSim *loaded = test_reload(NULL, sim);
     test_steps(sim, 48);
     test_steps(loaded, 48);
     test_assert_same(sim, loaded);
@@ -308,13 +298,7 @@ TEST(without_memory_nothing_changes) {
             hook.fail_at = 0;
             if (!result) break;
             assert_int_equal(result, SINGE_ERROR_MEMORY);
-            if (k == 0 && n % 7 == 0) {
-                TestBytes after = test_save(scene.sim);
-                assert_int_equal(before.size, after.size);
-                assert_memory_equal(before.data, after.data, before.size);
-                free(after.data);
-            }
-
+            if (k == 0 && n % 7 == 0) test_assert_saved(scene.sim, &before);
             refused++;
         }
     assert_true(refused > 200);
@@ -358,7 +342,7 @@ TEST(frames_may_have_any_length) {
         }
     print_message("%u steps, %u events\n", done, events);
     assert_true(events > 20);
-    SingeSim *loaded = reload(advanced.sim); // with what is left
+    SingeSim *loaded = test_reload(NULL, advanced.sim); // with what is left
     test_ok(loaded, singe_sim_advance(loaded, 0.7 * h, 0, &done));
     test_ok(advanced.sim, singe_sim_advance(advanced.sim, 0.7 * h, 0, NULL));
     assert_true(singe_sim_remainder(loaded) == singe_sim_remainder(advanced.sim) && done == 0);

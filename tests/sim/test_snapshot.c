@@ -13,21 +13,12 @@
 
 static float flux_strength = 2000;
 
-static SingeSim *load(const TestBytes *bytes) {
-    SingeSimDef hooks = singe_default_sim();
-    SingeSim *sim;
-    SingeError error = {0};
-    if (singe_sim_load(&hooks, bytes->data, bytes->size, &sim, &error)) fail_msg("load: %s", error.message);
-    return sim;
-}
-
 TEST(resumed_runs_are_the_same) {
     static const int saves[] = {0, 1, 17, 45, 80};
     for (size_t k = 0; k < sizeof saves / sizeof *saves; k++) {
         Scene scene = scene_make(NULL, 14);
         test_steps(scene.sim, saves[k]);
-        TestBytes bytes = test_save(scene.sim);
-        SingeSim *resumed = load(&bytes);
+        SingeSim *resumed = test_reload(NULL, scene.sim);
         test_assert_same(scene.sim, resumed);
         test_ok(resumed, singe_sim_set_source_callback(resumed, scene.callback, scene_flux, &flux_strength));
         for (int i = 0; i < 40; i++) {
@@ -41,7 +32,6 @@ TEST(resumed_runs_are_the_same) {
 
         test_assert_same(scene.sim, resumed);
         if (saves[k] == 80) assert_true(singe_sim_stats(resumed).burnt_fraction > 0.2);
-        free(bytes.data);
         singe_sim_destroy(resumed);
         singe_sim_destroy(scene.sim);
     }
@@ -61,14 +51,11 @@ TEST(bytes_are_the_same) {
     test_steps(a.sim, 12);
     test_steps(b.sim, 12);
     test_assert_same(a.sim, b.sim);
-    TestBytes first = test_save(a.sim), second = test_save(a.sim);
-    assert_int_equal(first.size, second.size);
-    assert_memory_equal(first.data, second.data, first.size);
-    SingeSim *loaded = load(&first);
-    TestBytes third = test_save(loaded);
-    assert_int_equal(first.size, third.size);
-    assert_memory_equal(first.data, third.data, first.size);
-    free(first.data), free(second.data), free(third.data);
+    TestBytes first = test_save(a.sim);
+    test_assert_saved(a.sim, &first);
+    SingeSim *loaded = test_load(NULL, &first);
+    test_assert_saved(loaded, &first);
+    free(first.data);
     singe_sim_destroy(loaded);
     singe_sim_destroy(a.sim);
     singe_sim_destroy(b.sim);
@@ -119,9 +106,7 @@ TEST(clones_are_independent) {
     test_assert_same(scene.sim, copy);
     TestBytes before = test_save(scene.sim);
     test_steps(copy, 30); // with its callback source: no need to set it again
-    TestBytes after = test_save(scene.sim);
-    assert_int_equal(before.size, after.size);
-    assert_memory_equal(before.data, after.data, before.size);
+    test_assert_saved(scene.sim, &before);
     test_steps(scene.sim, 30);
     test_assert_same(scene.sim, copy);
     test_ok(copy, singe_sim_remove_pin(copy, scene.points));
@@ -130,7 +115,7 @@ TEST(clones_are_independent) {
     singe_sim_destroy(scene.sim);
     test_steps(copy, 2);
     singe_sim_destroy(copy);
-    free(before.data), free(after.data);
+    free(before.data);
 }
 
 /// Damaged bytes are refused, and nothing leaks.
@@ -186,11 +171,9 @@ TEST(the_state_after_any_step_loads) {
         assert_true(result || temperatures[k % 4] <= 1e4f);
         for (int i = 0; !result && i < 3; i++) {
             (void)(singe_sim_step(sim) == SINGE_OK);
-            TestBytes bytes = test_save(sim);
-            SingeSim *copy = load(&bytes);
+            SingeSim *copy = test_reload(NULL, sim);
             assert_true(isfinite(singe_sim_stats(copy).heat_lost) && isfinite(singe_sim_stats(copy).ledger_error));
             singe_sim_destroy(copy);
-            free(bytes.data);
             loaded++;
         }
         test_mesh_free(&mesh);
@@ -228,7 +211,7 @@ TEST(flipped_bits_are_noticed) {
         bytes.data[bit / 8] ^= (uint8_t)(1 << bit % 8);
     }
 
-    SingeSim *sim = load(&bytes);
+    SingeSim *sim = test_load(NULL, &bytes);
     singe_sim_destroy(sim);
     free(bytes.data);
 }
@@ -410,14 +393,12 @@ TEST(impossible_numbers_are_refused) {
     assert_true(scene.sim->state.ablate.spring_flags[SINGE_GREEN][GREEN] && !scene.sim->state.dynamics.pinned[VERTEX]);
     TestBytes good = test_save(scene.sim);
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        SingeSim *sim = load(&good);
-        TestBytes same = test_save(sim);
-        assert_int_equal(same.size, good.size);
-        assert_memory_equal(same.data, good.data, good.size);
+        SingeSim *sim = test_load(NULL, &good);
+        test_assert_saved(sim, &good);
         rows[k].poke(sim);
         TestBytes bytes = test_save(sim);
         refuse(bytes.data, bytes.size, rows[k].what);
-        free(same.data), free(bytes.data);
+        free(bytes.data);
         singe_sim_destroy(sim);
     }
     free(good.data);
@@ -446,16 +427,13 @@ TEST(other_versions_are_refused) {
 TEST(hooks_are_only_hooks) {
     Scene scene = scene_make(NULL, 8);
     test_steps(scene.sim, 5);
-    TestBytes bytes = test_save(scene.sim);
     SingeSimDef hooks = singe_default_sim();
     hooks.time_step = 0.001f, hooks.gravity[2] = 5, hooks.pace = 3, hooks.solver.substeps = 1, hooks.thread_count = 2;
-    SingeSim *sim;
-    assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_reload(&hooks, scene.sim);
     test_ok(sim, singe_sim_set_source_callback(sim, scene.callback, scene_flux, &flux_strength));
     test_steps(sim, 5);
     test_steps(scene.sim, 5);
     test_assert_same(sim, scene.sim);
-    free(bytes.data);
     singe_sim_destroy(sim);
     singe_sim_destroy(scene.sim);
 }

@@ -104,15 +104,12 @@ TEST(rain_puts_a_fire_out) {
     assert_true(singe_sim_stats(wet).water > 2.99 * singe_sim_stats(wet).mass_initial);
 
     // saved, with the rain that still falls
-    TestBytes bytes = test_save(wet);
     SingeSimDef hooks = singe_default_sim();
-    SingeSim *loaded;
     hooks.thread_count = 2;
-    assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &loaded, NULL), SINGE_OK);
+    SingeSim *loaded = test_reload(&hooks, wet);
     test_steps(wet, 20), test_steps(loaded, 20);
     test_assert_same(wet, loaded);
     singe_sim_destroy(dry), singe_sim_destroy(wet), singe_sim_destroy(loaded);
-    free(bytes.data);
 }
 
 /// A burning sheet at which a jet blows, or onto which a plate comes down, from the 170th step on.
@@ -155,14 +152,10 @@ TEST(a_jet_blows_a_fire_out) {
     const SingeView view = singe_sim_view(blown);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_true(view.burn_rate[i] == 0);
 
-    TestBytes bytes = test_save(blown);
-    const SingeSimDef hooks = singe_default_sim();
-    SingeSim *loaded;
-    assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &loaded, NULL), SINGE_OK);
+    SingeSim *loaded = test_reload(NULL, blown);
     test_steps(blown, 20), test_steps(loaded, 20);
     test_assert_same(blown, loaded);
     singe_sim_destroy(calm), singe_sim_destroy(fanned), singe_sim_destroy(blown), singe_sim_destroy(loaded);
-    free(bytes.data);
 }
 
 TEST(a_plate_smothers_a_fire) {
@@ -238,13 +231,9 @@ TEST(a_sheet_smothers_a_fire) {
 
     // any number of threads, and saved
     test_assert_same(near, again);
-    TestBytes bytes = test_save(near);
-    const SingeSimDef hooks = singe_default_sim();
-    SingeSim *loaded;
-    assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &loaded, NULL), SINGE_OK);
+    SingeSim *loaded = test_reload(NULL, near);
     test_steps(near, 20), test_steps(loaded, 20);
     test_assert_same(near, loaded);
-    free(bytes.data);
     SingeSim *all[] = {plain, near, again, far, own, loaded};
     for (int k = 0; k < 6; k++) singe_sim_destroy(all[k]);
 }

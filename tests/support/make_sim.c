@@ -109,11 +109,9 @@ void test_assert_same(SingeSim *a, SingeSim *b) {
 #undef SAME
     SingeStats s = singe_sim_stats(a), t = singe_sim_stats(b);
     assert_same_stats(&s, &t);
-    TestBytes x = test_save(a), y = test_save(b);
-    assert_int_equal(x.size, y.size);
-    assert_memory_equal(x.data, y.data, x.size);
-    free(x.data);
-    free(y.data);
+    TestBytes bytes = test_save(a);
+    test_assert_saved(b, &bytes);
+    free(bytes.data);
 }
 
 TestBytes test_save(SingeSim *sim) {
@@ -125,4 +123,27 @@ TestBytes test_save(SingeSim *sim) {
     memcpy(copy.data, bytes, copy.size);
     singe_sim_free_bytes(sim, bytes, copy.size);
     return copy;
+}
+
+SingeSim *test_load(const SingeSimDef *hooks, const TestBytes *bytes) {
+    SingeSimDef standard = singe_default_sim();
+    SingeSim *sim;
+    SingeError error = {0};
+    if (singe_sim_load(hooks ? hooks : &standard, bytes->data, bytes->size, &sim, &error))
+        fail_msg("load: %s", error.message);
+    return sim;
+}
+
+SingeSim *test_reload(const SingeSimDef *hooks, SingeSim *sim) {
+    TestBytes bytes = test_save(sim);
+    SingeSim *loaded = test_load(hooks, &bytes);
+    free(bytes.data);
+    return loaded;
+}
+
+void test_assert_saved(SingeSim *sim, const TestBytes *bytes) {
+    TestBytes now = test_save(sim);
+    assert_int_equal(now.size, bytes->size);
+    assert_memory_equal(now.data, bytes->data, now.size);
+    free(now.data);
 }

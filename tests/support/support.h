@@ -71,6 +71,12 @@ typedef struct TestBytes {
     size_t size;
 } TestBytes;
 TestBytes test_save(SingeSim *sim);
+/// A simulation loaded from saved bytes; NULL stands for the default hooks.
+SingeSim *test_load(const SingeSimDef *hooks, const TestBytes *bytes);
+/// The simulation, saved and loaded.
+SingeSim *test_reload(const SingeSimDef *hooks, SingeSim *sim);
+/// Fails unless the simulation's saved bytes are these.
+void test_assert_saved(SingeSim *sim, const TestBytes *bytes);
 
 // ---- locales (locale.c)
 
