@@ -1,7 +1,7 @@
 // A flat grid sheet with its shell, state and events, for the tests of burn and ablate.
 #pragma once
 
-#include "support/test.h"
+#include "support/support.h"
 
 #include "ablate/ablate.h"
 #include "burn/burn.h"
@@ -64,29 +64,14 @@ static inline SingeMaterialDef plain_material(void) {
 /// A source of nx by ny square cells with side `cell` (m) in the plane z = 0, its corner at x = `left`.
 static inline SheetSource grid_source(Memory *memory, uint32_t nx, uint32_t ny, float cell, float left,
                                       const SingeMaterialDef *material, float drop_pieces_below) {
-    SingeSheetDef def = singe_default_sheet();
     SheetSource source;
-    uint32_t row = nx + 1;
-    def.vertex_count = row * (ny + 1), def.cell_count = nx * ny;
-    float *positions = calloc(3 * (size_t)def.vertex_count, sizeof *positions);
-    float *uv = calloc(2 * (size_t)def.vertex_count, sizeof *uv);
-    uint32_t *cells = calloc(4 * (size_t)def.cell_count, sizeof *cells);
-    for (uint32_t j = 0; j <= ny; j++)
-        for (uint32_t i = 0; i <= nx; i++) {
-            size_t v = j * row + i;
-            positions[3 * v] = left + cell * (float)i, positions[3 * v + 1] = cell * (float)j;
-            uv[2 * v] = (float)i / (float)nx, uv[2 * v + 1] = (float)j / (float)ny;
-        }
-    for (uint32_t j = 0; j < ny; j++)
-        for (uint32_t i = 0; i < nx; i++) {
-            uint32_t *corners = cells + 4 * (size_t)(j * nx + i), v = j * row + i;
-            corners[0] = v, corners[1] = v + 1, corners[2] = v + row + 1, corners[3] = v + row;
-        }
-    def.positions = positions, def.uv = uv, def.cells = cells;
+    TestMesh mesh = test_grid(nx, ny, cell, cell);
+    test_mesh_move(&mesh, left, 0, 0);
+    SingeSheetDef def = test_sheet(&mesh);
     def.material = *material;
     def.drop_pieces_below = drop_pieces_below;
     assert_int_equal(sheet_source_create(memory, &def, &source, NULL), SINGE_OK);
-    free(positions), free(uv), free(cells);
+    test_mesh_free(&mesh);
     return source;
 }
 

@@ -261,9 +261,8 @@ typedef struct Searched {
 static Searched *searched(uint32_t n) {
     Searched *s = calloc(1, sizeof *s);
     uint32_t row = n + 1, next = 1;
-    float *x = malloc(3 * row * row * sizeof *x), cell = 2e-3f;
-    uint32_t *cells = malloc(4 * n * n * sizeof *cells);
-
+    TestMesh mesh = test_grid(n, n, 1, 1);
+    float *x = mesh.positions, cell = 2e-3f;
     for (uint32_t v = 0; v < row * row; v++) {
         float i = (float)(v % row), j = (float)(v / row);
         next = next * 1664525u + 1013904223u;
@@ -271,14 +270,8 @@ static Searched *searched(uint32_t n) {
         x[3 * v + 2] = cell * (4 * sinf(0.4f * i + 0.7f * j) + 0.3f * (float)(next >> 8) / 16777216);
     }
 
-    for (uint32_t c = 0; c < n * n; c++) {
-        uint32_t v = c / n * row + c % n, corner[4] = {v, v + 1, v + row + 1, v + row};
-        memcpy(cells + 4 * c, corner, sizeof corner);
-    }
-
     s->memory = memory_make((SingeAllocator){0});
-    SingeSheetDef def = singe_default_sheet();
-    def.vertex_count = row * row, def.positions = x, def.cell_count = n * n, def.cells = cells;
+    SingeSheetDef def = test_sheet(&mesh);
     assert_int_equal(sheet_source_create(&s->memory, &def, &s->source, NULL), SINGE_OK);
     assert_int_equal(shell_create(&s->memory, &s->source, 1, &s->shell, NULL), SINGE_OK);
     assert_int_equal(state_create(&s->memory, &s->shell, &s->state), SINGE_OK);
@@ -289,7 +282,7 @@ static Searched *searched(uint32_t n) {
     assert_int_equal(collision_open(&s->memory, s->plan, &s->shell, STATE_INPUT(&s->state), NULL, s->plan->time_step,
                                     true, &s->state.dynamics),
                      SINGE_OK);
-    free(x), free(cells);
+    test_mesh_free(&mesh);
     return s;
 }
 

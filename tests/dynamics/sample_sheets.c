@@ -9,30 +9,13 @@
 #include "support/test.h"
 
 Quads quads_grid(uint32_t nx, uint32_t ny, float sx, float sy, bool wrap_x) {
-    uint32_t columns = wrap_x ? nx : nx + 1;
-    Quads quads = {columns * (ny + 1), nx * ny, NULL, NULL};
-    quads.positions = malloc(3 * quads.vertex_count * sizeof(float));
-    quads.cells = malloc(4 * quads.cell_count * sizeof(uint32_t));
-    float radius = sx * (float)nx / (2 * 3.14159265f);
-    for (uint32_t j = 0; j <= ny; j++)
-        for (uint32_t i = 0; i < columns; i++) {
-            float *p = quads.positions + 3 * (j * columns + i), angle = 2 * 3.14159265f * (float)i / (float)nx;
-            p[0] = wrap_x ? radius * cosf(angle) : sx * (float)i;
-            p[1] = sy * (float)j;
-            p[2] = wrap_x ? -radius * sinf(angle) : 0;
-        }
-    for (uint32_t j = 0; j < ny; j++)
-        for (uint32_t i = 0; i < nx; i++) {
-            uint32_t *c = quads.cells + 4 * (j * nx + i), right = (i + 1) % columns;
-            c[0] = j * columns + i, c[1] = j * columns + right;
-            c[2] = (j + 1) * columns + right, c[3] = (j + 1) * columns + i;
-        }
+    if (!wrap_x) return test_grid(nx, ny, sx, sy);
+    Quads quads = test_cylinder(nx, ny, sx * (float)nx / (2 * 3.14159265f), sy * (float)ny);
+    for (uint32_t v = 0; v < quads.vertex_count; v++) {
+        float *p = quads.positions + 3 * v, y = p[1];
+        p[1] = p[2], p[2] = -y;
+    }
     return quads;
-}
-
-void quads_free(Quads *quads) {
-    free(quads->positions);
-    free(quads->cells);
 }
 
 void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int threads) {
@@ -42,9 +25,7 @@ void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int
                                          .solver = singe_default_solver(),
                                          .thread_count = threads,
                                          .time_step = 1.0f / 480};
-    SingeSheetDef def = singe_default_sheet();
-    def.vertex_count = quads.vertex_count, def.positions = quads.positions;
-    def.cell_count = quads.cell_count, def.cells = quads.cells;
+    SingeSheetDef def = test_sheet(&quads);
     if (material) def.material = *material;
     float *uv = malloc(2 * quads.vertex_count * sizeof *uv), *along = malloc(quads.vertex_count * sizeof *along);
     float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
@@ -65,7 +46,7 @@ void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int
     assert_int_equal(state_create(&bench->memory, &bench->shell, &bench->state), SINGE_OK);
     assert_int_equal(dynamics_plan_create(&bench->memory, &bench->shell, &bench->settings, &bench->plan), SINGE_OK);
     assert_int_equal(pool_create(&bench->memory, (SingeTasks){0}, threads, &bench->pool), SINGE_OK);
-    quads_free(&quads);
+    test_mesh_free(&quads);
     free(uv), free(along);
 }
 

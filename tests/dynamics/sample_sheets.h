@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dynamics/dynamics.h"
+#include "support/support.h"
 
 /// A shell with its state and plan, and empty surroundings.
 typedef struct Bench {
@@ -19,16 +20,10 @@ typedef struct Bench {
     SingeError error;
 } Bench;
 
-/// A mesh on the caller's side.
-typedef struct Quads {
-    uint32_t vertex_count, cell_count;
-    float *positions;
-    uint32_t *cells;
-} Quads;
+typedef TestMesh Quads;
 
 /// nx × ny cells of sx × sy m in the x-y plane from the origin; wrap_x closes it to a cylinder about y.
 Quads quads_grid(uint32_t nx, uint32_t ny, float sx, float sy, bool wrap_x);
-void quads_free(Quads *quads);
 
 /// Builds everything; frees the quads. Asserts success. u and v go from 0 to 1 along x and y, and so does the attribute
 /// "along" along x.

@@ -50,7 +50,7 @@ static void add_cell(Quads *quads, uint32_t a, uint32_t b, uint32_t c, uint32_t 
 /// spacing, those of the triangles' sides and corners, then the triangles' centres.
 static Quads quads_random_valence(uint32_t n) {
     uint32_t side = 2 * n + 1, corners = side * side;
-    Quads quads = {corners + 2 * n * n, 0, NULL, NULL};
+    Quads quads = {.vertex_count = corners + 2 * n * n};
     quads.positions = calloc(3 * quads.vertex_count, sizeof(float));
     quads.cells = malloc(24 * n * n * sizeof(uint32_t));
     for (uint32_t v = 0; v < corners; v++)

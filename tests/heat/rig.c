@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "common/random.h"
+#include "support/support.h"
 
 RigDef rig_default(int nx, int ny, float dx, float dy) {
     RigDef def = {.nx = nx, .ny = ny, .dx = dx, .dy = dy, .material = singe_default_material()};
@@ -15,44 +16,23 @@ RigDef rig_default(int nx, int ny, float dx, float dy) {
     return def;
 }
 
-static void rig_mesh(const RigDef *def, float *positions, float *uv, uint32_t *cells) {
-    for (int j = 0; j <= def->ny; j++)
-        for (int i = 0; i <= def->nx; i++) {
-            size_t v = (size_t)(j * (def->nx + 1) + i);
-            float *x = positions + 3 * v;
-            x[0] = (float)i * def->dx, x[1] = (float)j * def->dy, x[2] = 0;
-            uv[2 * v] = (float)i / (float)def->nx, uv[2 * v + 1] = (float)j / (float)def->ny;
-            if (def->shape) def->shape(x, i, j);
-        }
-    for (int j = 0; j < def->ny; j++)
-        for (int i = 0; i < def->nx; i++) {
-            uint32_t *cell = cells + 4 * (j * def->nx + i), row = (uint32_t)def->nx + 1;
-            cell[0] = (uint32_t)j * row + (uint32_t)i, cell[1] = cell[0] + 1, cell[2] = cell[1] + row,
-            cell[3] = cell[0] + row;
-        }
-}
-
 void rig_open(Rig *rig, const RigDef *def) {
     *rig = (Rig){.memory = memory_make((SingeAllocator){0}),
                  .nx = def->nx,
                  .ny = def->ny,
                  .settings = def->settings,
                  .h = 0.002f};
-    size_t vertices = (size_t)(def->nx + 1) * (size_t)(def->ny + 1), count = (size_t)def->nx * (size_t)def->ny;
-    float *positions = malloc(vertices * 3 * sizeof *positions), *uv = malloc(vertices * 2 * sizeof *uv);
-    uint32_t *cells = malloc(count * 4 * sizeof *cells);
-    assert_true(positions && uv && cells);
-    rig_mesh(def, positions, uv, cells);
-    SingeSheetDef sheet = singe_default_sheet();
-    sheet.vertex_count = (uint32_t)vertices, sheet.positions = positions, sheet.uv = uv;
-    sheet.cell_count = (uint32_t)count, sheet.cells = cells;
+    TestMesh mesh = test_grid((uint32_t)def->nx, (uint32_t)def->ny, def->dx, def->dy);
+    for (int j = 0; def->shape && j <= def->ny; j++)
+        for (int i = 0; i <= def->nx; i++) def->shape(mesh.positions + 3 * (j * (def->nx + 1) + i), i, j);
+    SingeSheetDef sheet = test_sheet(&mesh);
     sheet.material = def->material;
     SheetSource source;
     if (sheet_source_create(&rig->memory, &sheet, &source, &rig->error) ||
         shell_create(&rig->memory, &source, 1, &rig->shell, &rig->error))
         fail_msg("%s", rig->error.message);
     sheet_source_free(&rig->memory, &source);
-    free(positions), free(uv), free(cells);
+    test_mesh_free(&mesh);
     assert_int_equal(state_create(&rig->memory, &rig->shell, &rig->state), SINGE_OK);
     assert_int_equal(heat_plan_create(&rig->memory, &rig->shell, &rig->settings, &rig->plan, &rig->error), SINGE_OK);
     rig->sources = (SourceList){.capacity = 2, .items = rig->source};

@@ -2,6 +2,7 @@
 #include "rig.h"
 
 #include "heat/heat_plan.h"
+#include "support/support.h"
 #include "tear/tear_plan.h"
 
 #include <string.h>
@@ -24,26 +25,20 @@ static uint32_t any(Torn *t, uint32_t count) {
 
 /// Leaning cells off the grid, so that some do not go by linear elements alone.
 static void make(Torn *t) {
-    float positions[3 * VERTICES] = {0};
-    uint32_t cells[4 * CELLS];
+    TestMesh mesh = test_grid(COLUMNS, ROWS, 1, 1);
+    float *positions = mesh.positions;
     for (uint32_t v = 0; v < VERTICES; v++) {
         float x = (float)(v % (COLUMNS + 1)), y = (float)(v / (COLUMNS + 1));
         positions[3 * v] = 1e-3f * (x + 0.8f * y + 1e-3f * (float)any(t, 300));
         positions[3 * v + 1] = 1e-3f * (y + 1e-3f * (float)any(t, 300));
     }
 
-    for (uint32_t c = 0; c < CELLS; c++) {
-        uint32_t v = c / COLUMNS * (COLUMNS + 1) + c % COLUMNS;
-        cells[4 * c] = v, cells[4 * c + 1] = v + 1;
-        cells[4 * c + 2] = v + COLUMNS + 2, cells[4 * c + 3] = v + COLUMNS + 1;
-    }
-
-    SingeSheetDef def = singe_default_sheet();
-    def.vertex_count = VERTICES, def.positions = positions, def.cell_count = CELLS, def.cells = cells;
+    SingeSheetDef def = test_sheet(&mesh);
     def.material.thickening = 2;
     HeatSettings settings = {.ambient_temperature = 293, .tolerance = 1e-7f, .pace = 1};
     t->memory = memory_make((SingeAllocator){0});
     assert_int_equal(sheet_source_create(&t->memory, &def, &t->source, NULL), SINGE_OK);
+    test_mesh_free(&mesh);
     t->source.sheet.spare_count = SPARES;
     assert_int_equal(shell_create(&t->memory, &t->source, 1, &t->shell, NULL), SINGE_OK);
     assert_int_equal(state_create(&t->memory, &t->shell, &t->state), SINGE_OK);

@@ -88,38 +88,20 @@ void mesh_append_grid(QuadMesh *mesh, uint32_t n, uint32_t m, float x, float y) 
     append_grid(mesh, n, m, x, y, 0.01f, 0.01f);
 }
 
-QuadMesh mesh_torus(uint32_t n, uint32_t m) {
-    QuadMesh mesh = {0};
-    for (uint32_t j = 0; j < m; j++) {
-        for (uint32_t i = 0; i < n; i++) {
-            double a = 2 * pi * i / n, b = 2 * pi * j / m, r = 1 + 0.4 * cos(b);
-            mesh_add_vertex(&mesh, (float)(r * cos(a)), (float)(r * sin(a)), (float)(0.4 * sin(b)));
-        }
-    }
-
-    for (uint32_t j = 0; j < m; j++) {
-        for (uint32_t i = 0; i < n; i++) {
-            uint32_t e = (i + 1) % n, f = (j + 1) % m;
-            mesh_add_cell(&mesh, j * n + i, j * n + e, f * n + e, f * n + i);
-        }
-    }
-
-    return mesh;
+static QuadMesh to_quads(TestMesh from) {
+    free(from.uv);
+    return (QuadMesh){from.vertex_count,
+                      from.cell_count,
+                      from.vertex_count,
+                      from.cell_count,
+                      (float(*)[3])(void *)from.positions,
+                      (uint32_t(*)[4])(void *)from.cells};
 }
 
-QuadMesh mesh_cylinder(uint32_t n, uint32_t m, float radius, float height) {
-    QuadMesh mesh = {0};
-    for (uint32_t j = 0; j <= m; j++) {
-        for (uint32_t i = 0; i < n; i++) {
-            double a = 2 * pi * i / n;
-            mesh_add_vertex(&mesh, radius * (float)cos(a), radius * (float)sin(a), height * (float)j / (float)m);
-        }
-    }
+QuadMesh mesh_torus(uint32_t n, uint32_t m) { return to_quads(test_torus(n, m, 1, 0.4f)); }
 
-    for (uint32_t j = 0; j < m; j++)
-        for (uint32_t i = 0; i < n; i++)
-            mesh_add_cell(&mesh, j * n + i, j * n + (i + 1) % n, (j + 1) * n + (i + 1) % n, (j + 1) * n + i);
-    return mesh;
+QuadMesh mesh_cylinder(uint32_t n, uint32_t m, float radius, float height) {
+    return to_quads(test_cylinder(n, m, radius, height));
 }
 
 QuadMesh mesh_moebius(uint32_t n) {

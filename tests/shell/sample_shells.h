@@ -2,6 +2,7 @@
 #pragma once
 
 #include "shell/shell.h"
+#include "support/support.h"
 
 typedef struct QuadMesh {
     uint32_t vertex_count, cell_count, vertex_capacity, cell_capacity;
