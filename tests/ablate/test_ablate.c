@@ -477,22 +477,9 @@ TEST(the_ledger_closes_as_a_sheet_burns_to_pieces) {
 TEST(plan_survives_lack_of_memory) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(3, 3, 0.01f, &material);
-    TestAllocator allocator = {0};
-    Memory memory = memory_make(test_allocator(&allocator));
-    SingeResult result = SINGE_ERROR_MEMORY;
+    Memory memory;
     AblatePlan *plan;
-    int n = 0;
-
-    for (; result; n++) {
-        allocator.calls = 0, allocator.fail_at = n + 1;
-        result = ablate_plan_create(&memory, &b->shell, &plan);
-        assert_true(result == SINGE_OK || (result == SINGE_ERROR_MEMORY && !plan && allocator.bytes == 0));
-    }
-
-    assert_true(n > 3);
-    assert_int_equal(memory.held, allocator.bytes);
-    ablate_plan_free(&memory, plan);
-    test_allocator_check(&allocator);
-    ablate_plan_free(&memory, NULL);
+    test_allocations_fail(3, (memory = memory_make(allocator), ablate_plan_create(&memory, &b->shell, &plan)),
+                          ablate_plan_free(&memory, plan));
     burning_sheet_free(b);
 }

@@ -289,26 +289,16 @@ TEST(running_out_of_memory_is_clean) {
     picture.kind = SINGE_SOURCE_TEXTURE, picture.texture = (SingeTexture){2, 1, pixels};
     picture.strength = keys, picture.strength_count = 2;
     ball.kind = SINGE_SOURCE_BALL, ball.path = &path, ball.path_count = 1;
-    for (int what = 0; what < 3; what++)
-        for (int n = 0;; n++) {
-            TestAllocator allocator = {.fail_at = n + 1};
-            Memory memory = memory_make(test_allocator(&allocator));
-            HeatPlan *plan = NULL;
-            Source source = {0};
-            SingeResult result =
-                what == 0 ? heat_plan_create(&memory, &rig.shell, &rig.settings, &plan, &rig.error)
-                          : source_create(&memory, &rig.shell, what == 1 ? &picture : &ball, &source, &rig.error);
-            if (!result) {
-                assert_true(n >= (what == 0 ? 12 : what == 1 ? 2 : 1));
-                heat_plan_free(&memory, plan);
-                source_free(&memory, &rig.shell, &source);
-                assert_int_equal(memory.held, 0);
-                break;
-            }
-
-            assert_int_equal(result, SINGE_ERROR_MEMORY);
-            assert_null(plan);
-            assert_int_equal(memory.held, 0);
-        }
+    Memory memory;
+    HeatPlan *plan;
+    Source source = {0};
+    test_allocations_fail(
+        12, (memory = memory_make(allocator), heat_plan_create(&memory, &rig.shell, &rig.settings, &plan, &rig.error)),
+        heat_plan_free(&memory, plan));
+    for (int k = 0; k < 2; k++)
+        test_allocations_fail(2 - k,
+                              (memory = memory_make(allocator),
+                               source_create(&memory, &rig.shell, k ? &ball : &picture, &source, &rig.error)),
+                              source_free(&memory, &rig.shell, &source));
     rig_close(&rig);
 }

@@ -198,16 +198,8 @@ TEST(bad_networks_are_refused) {
 
     // memory that fails at every place in turn
     random_make(&random);
-    for (long at = 1;; at++) {
-        TestAllocator counter = {.fail_at = at};
-        random.def.allocator = test_allocator(&counter);
-        SingeResult result = singe_network_create(&random.def, &network, &error);
-        singe_network_destroy(network);
-        assert_int_equal(counter.blocks, 0);
-        assert_int_equal(counter.faults, 0);
-        if (result == SINGE_OK) break;
-        assert_int_equal(result, SINGE_ERROR_MEMORY);
-    }
+    test_allocations_fail(3, (random.def.allocator = allocator, singe_network_create(&random.def, &network, &error)),
+                          singe_network_destroy(network));
 }
 
 // ---- sheets
@@ -406,32 +398,8 @@ TEST(paper_and_strand_end_alike) {
 }
 
 TEST(commits_fail_cleanly_without_memory) {
-    const SingeSolverMethod methods[] = {SINGE_SOLVER_PAPER, SINGE_SOLVER_ALL_AT_ONCE};
-    for (int m = 0; m < 2; m++)
-        for (long at = 40;; at++) { // earlier ones are those of the other stages
-            TestAllocator counter = {.fail_at = at};
-            SingeSimDef def = method_def(methods[m]);
-            def.allocator = test_allocator(&counter);
-            SingeSim *sim;
-            if (singe_sim_create(&def, &sim, NULL)) continue;
-            TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
-            SingeSheetDef sheet = test_sheet(&mesh);
-            SingeSheetId id;
-            SingeResult result = singe_sim_add_sheet(sim, &sheet, &id);
-            if (!result) result = singe_sim_commit(sim);
-            if (!result) { // and a step allocates nothing
-                long calls = counter.calls;
-                test_ok(sim, singe_sim_step(sim));
-                assert_int_equal(counter.calls, calls);
-            }
-
-            singe_sim_destroy(sim);
-            test_mesh_free(&mesh);
-            assert_int_equal(counter.blocks, 0);
-            assert_int_equal(counter.faults, 0);
-            if (!result) break;
-            assert_int_equal(result, SINGE_ERROR_MEMORY);
-        }
+    test_allocations_fail(50, test_life(method_def(SINGE_SOLVER_PAPER), allocator), (void)0);
+    test_allocations_fail(50, test_life(method_def(SINGE_SOLVER_ALL_AT_ONCE), allocator), (void)0);
 }
 
 // ---- mass-spring

@@ -219,20 +219,6 @@ TEST(too_many_cells_at_a_vertex_are_refused) {
     refuse(&mesh, SINGE_ERROR_LIMIT, 0, "21845 cells");
 }
 
-/// An allocator that fails at one call and knows what it holds.
-typedef struct Failing {
-    Memory memory;
-    long calls, fail;
-    size_t held;
-} Failing;
-
-static void *fail_at(void *context, void *block, size_t old_size, size_t new_size) {
-    Failing *failing = context;
-    if (new_size && failing->calls++ == failing->fail) return NULL;
-    failing->held += new_size - old_size;
-    return failing->memory.hook.resize(failing->memory.hook.context, block, old_size, new_size);
-}
-
 static SingeResult build_all(Memory *memory, const SingeSheetDef *def, SingeError *error) {
     SheetSource source;
     Shell shell;
@@ -255,21 +241,8 @@ static SingeResult build_all(Memory *memory, const SingeSheetDef *def, SingeErro
 TEST(every_allocation_fails_once) {
     QuadMesh mesh = mesh_sphere(3);
     SingeSheetDef def = mesh_sheet(&mesh);
-    SingeResult result = SINGE_ERROR_MEMORY;
-    long n = 0;
-
-    for (; result != SINGE_OK; n++) {
-        Failing failing = {.memory = memory_make((SingeAllocator){0}), .fail = n};
-        Memory memory = memory_make((SingeAllocator){fail_at, &failing});
-        SingeError error = {0};
-        result = build_all(&memory, &def, &error);
-        assert_true(result == SINGE_OK || result == SINGE_ERROR_MEMORY);
-        assert_int_equal(failing.held, 0);
-        assert_int_equal(memory.held, 0);
-        assert_true(n < 1000);
-    }
-
-    print_message("%ld allocations\n", n - 1);
-    assert_true(n > 100);
+    Memory memory;
+    SingeError error;
+    test_allocations_fail(100, (memory = memory_make(allocator), build_all(&memory, &def, &error)), (void)0);
     mesh_release(&mesh);
 }

@@ -88,6 +88,8 @@ TEST(bad_sources_are_refused) {
     SOURCE_BAD(SINGE_SOURCE_ATTRACT, (def.path_count = 0, def.position[1] = NAN));
     SOURCE_BAD(SINGE_SOURCE_TURBULENCE, (def.strength_count = 2, def.strength = strengths));
     SOURCE_BAD(SINGE_SOURCE_TURBULENCE, (strengths[0].value = 1e3f, def.strength_count = 1, def.strength = strengths));
+    strengths[0].value = -1e4f;
+    SOURCE_BAD(SINGE_SOURCE_TEXTURE, (def.flux = 1e12f, def.strength_count = 1, def.strength = strengths));
     SOURCE_BAD((SingeSourceKind)17, (void)0);
     SOURCE_BAD((SingeSourceKind)-1, (void)0);
     test_steps(sim, 2);

@@ -65,6 +65,24 @@ void test_steps(SingeSim *sim, int count) {
     for (int i = 0; i < count; i++) test_ok(sim, singe_sim_step(sim));
 }
 
+SingeResult test_life(SingeSimDef def, SingeAllocator allocator) {
+    TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
+    const SingeSheetDef sheet = test_sheet(&mesh);
+    const TestAllocator *counter = allocator.context;
+    SingeSheetId id;
+    SingeSim *sim;
+    def.allocator = allocator;
+    SingeResult result = singe_sim_create(&def, &sim, NULL);
+    if (!result) result = singe_sim_add_sheet(sim, &sheet, &id);
+    if (!result) result = singe_sim_commit(sim);
+    const long calls = counter->calls;
+    if (!result) result = singe_sim_step(sim);
+    assert_int_equal(counter->calls, calls);
+    singe_sim_destroy(sim);
+    test_mesh_free(&mesh);
+    return result;
+}
+
 SingePoseKey test_key(float time, float x, float y, float z) { return (SingePoseKey){time, {x, y, z}, {0, 0, 0, 1}}; }
 
 SingeSourceId test_spot(SingeSim *sim, float x, float y, float z, float radius, float temperature, float conductance) {

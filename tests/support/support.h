@@ -62,6 +62,9 @@ SingePoseKey test_key(float time, float x, float y, float z);
 /// Adds a spot at a point.
 SingeSourceId test_spot(SingeSim *sim, float x, float y, float z, float radius, float temperature, float conductance);
 
+/// The life of a simulation of one sheet: its commit, a step, which must allocate nothing, and its end.
+SingeResult test_life(SingeSimDef def, SingeAllocator allocator);
+
 /// Fails unless all arrays, stats and saved bytes of two simulations are bitwise equal.
 void test_assert_same(SingeSim *a, SingeSim *b);
 
@@ -99,6 +102,7 @@ typedef struct TestAllocator {
     long faults;    ///< wrong old sizes, and frees of what is not a block
 } TestAllocator;
 
+/// `allocator` is then its context.
 SingeAllocator test_allocator(TestAllocator *allocator);
 
 /// Fails the test unless every block came back, with its true size.

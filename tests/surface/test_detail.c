@@ -317,23 +317,12 @@ TEST(walks_cross_cells) {
 TEST(survives_lack_of_memory) {
     Drawing *d = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
     const BurningSheet *b = d->sheet;
-    SingeResult result = SINGE_ERROR_MEMORY;
-
+    SingeSurface surface;
+    Memory memory;
     burn_rings(d, 0.02f);
-    int failures = 0;
-    for (int n = 0; result; n++) {
-        TestAllocator allocator = {.fail_at = n + 1};
-        Memory memory = memory_make(test_allocator(&allocator));
-        SingeSurface surface = {.allocator = test_allocator(&allocator)};
-        result = surface_draw_fine(d->plan, &b->shell, &b->state, &d->detail, &memory, NULL, &surface, NULL);
-        assert_int_equal(memory.held, 0);
-        assert_true(result == SINGE_OK || result == SINGE_ERROR_MEMORY);
-        failures += result != SINGE_OK;
-        if (result) assert_int_equal(surface.vertex_count + surface.triangle_count + surface.vertex_capacity, 0);
-        singe_surface_free(&surface);
-        test_allocator_check(&allocator);
-    }
-
-    assert_true(failures > 30);
+    test_allocations_fail(30,
+                          (memory = memory_make(allocator), surface = (SingeSurface){.allocator = allocator},
+                           surface_draw_fine(d->plan, &b->shell, &b->state, &d->detail, &memory, NULL, &surface, NULL)),
+                          singe_surface_free(&surface));
     drawing_free(d);
 }

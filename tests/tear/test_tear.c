@@ -452,27 +452,7 @@ TEST(without_reserve_it_tears_no_further) {
 }
 
 /// Every allocation of the making fails once, and nothing is lost.
-TEST(a_tear_without_memory_fails_cleanly) {
-    SingeResult result = SINGE_ERROR_MEMORY;
-    TestAllocator hook = {0};
-    for (long at = 1; result != SINGE_OK; at++) {
-        hook = (TestAllocator){.fail_at = at, .once = true};
-        SingeSimDef def = pull_def();
-        TestMesh mesh = test_grid(4, 4, side, side);
-        SingeSheetDef sheet = test_sheet(&mesh);
-        SingeSheetId id;
-        SingeSim *sim;
-        def.allocator = test_allocator(&hook);
-        result = singe_sim_create(&def, &sim, NULL);
-        if (!result) result = singe_sim_add_sheet(sim, &sheet, &id);
-        if (!result) result = singe_sim_commit(sim);
-        singe_sim_destroy(sim);
-        test_mesh_free(&mesh);
-        assert_int_equal(hook.blocks, 0);
-        assert_int_equal(hook.faults, 0);
-        assert_true(at < 1000);
-    }
-}
+TEST(a_tear_without_memory_fails_cleanly) { test_allocations_fail(100, test_life(pull_def(), allocator), (void)0); }
 
 /// Stretched beyond what it reaches, a sheet tears though its substeps carry less than its strength.
 TEST(strong_sheets_tear_when_held_too_far_apart) {
