@@ -5,10 +5,12 @@ import hashlib
 import json
 import os
 import re
+import resource
 import shutil
 import struct
 import subprocess
 import tempfile
+import time
 import unittest
 import zlib
 from pathlib import Path
@@ -80,6 +82,11 @@ def write_png(path, rows, channels=1):
             file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
 
 
+def at_most(kind, most):
+    """What limits a child process to so much of a resource, for its preexec_fn."""
+    return lambda: resource.setrlimit(kind, (most, most))
+
+
 class Case(unittest.TestCase):
     def setUp(self):
         self.dir = tempfile.mkdtemp(prefix="singe-test-")
@@ -123,8 +130,19 @@ class Case(unittest.TestCase):
             digests[name] = hashlib.sha256(Path(folder, name).read_bytes()).hexdigest()
         return digests
 
+    def wait_for(self, condition, process=None):
+        """Until it holds, or the process has ended."""
+        end = time.monotonic() + 60
+        while not condition() and (process is None or process.poll() is None):
+            self.assertLess(time.monotonic(), end, "it does not come forward")
+            time.sleep(0.001)
+
+    def table(self, *parts):
+        """The rows of a table of the test's folder."""
+        return list(csv.DictReader(Path(self.path(*parts)).read_text().splitlines()))
+
     def stats(self, out):
-        return list(csv.DictReader(Path(self.path(out, "stats.csv")).read_text().splitlines()))
+        return self.table(out, "stats.csv")
 
     def numbers(self, out):
         """The stats without what a clock measured."""

@@ -9,7 +9,7 @@ import subprocess
 import threading
 from pathlib import Path
 
-from support import HAS_EXR, SINGE, Case
+from support import HAS_EXR, SINGE, Case, at_most
 
 
 class Begin(Case):
@@ -26,10 +26,7 @@ class Begin(Case):
         return found
 
     def limited(self, *args, kind=resource.RLIMIT_FSIZE, most, expect=1):
-        def limit():
-            resource.setrlimit(kind, (most, most))
-
-        return self.singe(*args, expect=expect, preexec_fn=limit)
+        return self.singe(*args, expect=expect, preexec_fn=at_most(kind, most))
 
     def other_run(self, *more):
         return ["run", self.scene, "-o", self.path("o"), "--set", "sheets.0.grid.cells=[30, 30]", *more]

@@ -1,6 +1,5 @@
 """Numbers and options on the pages are those of the program."""
 
-import csv
 import json
 import os
 import re
@@ -120,7 +119,7 @@ class Docs(Case):
     def test_grades(self):
         """docs/validation.md has the grades that the command has, and README.md their numbers."""
         self.singe("validate", "--only", "grades", "-o", self.path("page"))
-        grades = list(csv.DictReader(Path(self.path("page", "grades.csv")).read_text().splitlines()))
+        grades = self.table("page", "grades.csv")
         rows = [[cell.strip(" `") for cell in line.strip().strip("|").split("|")]
                 for line in page("validation.md").splitlines() if line.startswith("| `")]
         self.assertEqual(rows, [[g["item"], g["measure"], g["grade"], g["bar"], g["compared with"]] for g in grades])

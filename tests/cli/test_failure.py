@@ -7,7 +7,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from support import SANITIZED, SINGE, Case
+from support import SANITIZED, SINGE, Case, at_most
 
 
 class Failure(Case):
@@ -40,8 +40,7 @@ class Failure(Case):
     def test_limits_of_a_process_are_named(self):
         """Few open files and a small stack are no faults of the scene, and little memory is not none."""
         def limited(kind, most, expect, *args):
-            return self.singe("check", self.scene, *args, expect=expect,
-                              preexec_fn=lambda: resource.setrlimit(kind, (most, most)))[1]
+            return self.singe("check", self.scene, *args, expect=expect, preexec_fn=at_most(kind, most))[1]
 
         for most in 4, 15:
             err = limited(resource.RLIMIT_NOFILE, most, 1)
@@ -59,10 +58,8 @@ class Failure(Case):
 
     def limited(self, out, size, *args):
         """A run whose files may have `size` bytes at most, as on a disk that fills up."""
-        def limit():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
-
-        return self.singe("run", self.scene, "-o", self.path(out), "--no-preview", *args, expect=1, preexec_fn=limit)
+        return self.singe("run", self.scene, "-o", self.path(out), "--no-preview", *args, expect=1,
+                          preexec_fn=at_most(resource.RLIMIT_FSIZE, size))
 
     def test_no_space_for_a_frame(self):
         self.run_scene("whole", "--quiet")
@@ -129,9 +126,7 @@ class Failure(Case):
 
     def test_a_limit_of_file_sizes_is_a_message(self):
         """The signal that the system sends as well ends no command."""
-        def limited():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
-
+        limited = at_most(resource.RLIMIT_FSIZE, 0)
         self.run_scene("o", "--quiet")
         self.singe("clean", self.path("o"), "--keep-every", "2", preexec_fn=limited)  # its locks cannot name it
         _, err = self.singe("new", "letter", "-o", self.path("new"), expect=1, preexec_fn=limited)

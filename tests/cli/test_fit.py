@@ -1,6 +1,5 @@
 """A scene's parameters found again from what one run of it shows."""
 
-import csv
 import os
 import re
 import shutil
@@ -47,7 +46,7 @@ class Fit(Case):
 
     def lines(self, out="f"):
         try:
-            return list(csv.DictReader(Path(self.path(out, "fit.csv")).read_text().splitlines()))
+            return self.table(out, "fit.csv")
         except FileNotFoundError:
             return []
 
@@ -71,8 +70,7 @@ class Fit(Case):
 
     def test_temperature_curve(self):
         self.truth()
-        with open(self.path("truth", "probes.csv"), newline="") as file:
-            rows = [(r["time"], r["temperature"]) for r in csv.DictReader(file) if r["temperature"]]
+        rows = [(r["time"], r["temperature"]) for r in self.table("truth", "probes.csv") if r["temperature"]]
         with open(self.path("curve.csv"), "w") as file:
             file.write("temperature,note,time\n" + "".join(f"{kelvin},x,{time}\n" for time, kelvin in rows))
         shown, _ = self.fit("scene: tiny.yaml\ntarget: {temperature: {file: curve.csv, probe: p}}\nevaluations: 12\n" +

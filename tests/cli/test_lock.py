@@ -4,7 +4,6 @@ import os
 import re
 import signal
 import socket
-import time
 from pathlib import Path
 
 from support import Case
@@ -17,14 +16,8 @@ class Lock(Case):
         run = self.start("run", scene, "-o", self.path(out), "--no-preview", *args)
         self.addCleanup(run.stderr.close)
         self.addCleanup(lambda: run.poll() is None and run.kill())
-        return self.until(run, lambda: os.path.exists(self.path(out, "ply", "long.0002.ply")))
-
-    def until(self, process, done):
-        end = time.monotonic() + 60
-        while not done() and process.poll() is None:
-            self.assertLess(time.monotonic(), end, "does not come forward")
-            time.sleep(0.005)
-        return process
+        self.wait_for(lambda: os.path.exists(self.path(out, "ply", "long.0002.ply")), run)
+        return run
 
     def end(self, process, number=signal.SIGKILL):
         process.send_signal(number)
@@ -110,7 +103,7 @@ class Lock(Case):
         first = self.start("render", self.path("o"), "--frames", "1-2", *slow)
         self.addCleanup(first.stderr.close)
         self.addCleanup(lambda: first.poll() is None and first.kill())
-        self.until(first, lambda: os.path.exists(self.path("o", "pictures.lock")))
+        self.wait_for(lambda: os.path.exists(self.path("o", "pictures.lock")), first)
         self.singe("render", self.path("o"), "--frames", "3-4")
         self.assertEqual(sorted(os.listdir(self.path("o", "frames"))), ["tiny.0003.png", "tiny.0004.png"])
         self.singe("render", self.path("o"), "--only-sheet")  # writes no frames

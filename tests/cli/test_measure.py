@@ -1,9 +1,7 @@
 """singe measure: its table and file, the jitter by another way, and what is refused."""
 
-import csv
 import math
 import os
-from pathlib import Path
 
 from support import SANITIZED, Case, Ply
 
@@ -26,7 +24,7 @@ class Measure(Case):
         path = self.path("numbers.csv")
         out, err = self.singe("measure", self.path("o"), "--csv", path, *args)
         self.assertEqual(err, "")
-        return out, list(csv.DictReader(Path(path).read_text().splitlines()))
+        return out, self.table("numbers.csv")
 
     def test_table_and_file(self):
         out, rows = self.rows()

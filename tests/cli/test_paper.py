@@ -1,6 +1,5 @@
 """singe paper, and the paper's solver in a scene."""
 
-import csv
 import json
 import math
 import os
@@ -17,7 +16,7 @@ class Paper(Case):
     def check_page(self, folder, items, failed=0, bad_cases=True):
         """The page and its data agree, and all pictures exist."""
         data = json.loads(Path(self.path(folder, "measures.json")).read_text())
-        rows = list(csv.DictReader(Path(self.path(folder, "measures.csv")).read_text().splitlines()))
+        rows = self.table(folder, "measures.csv")
         page = Path(self.path(folder, "index.html")).read_text()
         self.assertEqual(data["failed"], failed)
         self.assertEqual([m["item"] for m in data["measures"]], [r["item"] for r in rows])
@@ -89,7 +88,7 @@ class Paper(Case):
         out, _ = self.singe("paper", "fig8", "-o", self.path("new", "fig"), timeout=600)
         self.check_page(os.path.join("new", "fig"), ["fig8"])
         for state in "swing", "shrink":
-            rows = list(csv.DictReader(Path(self.path("new", "fig", f"fig8-{state}.csv")).read_text().splitlines()))
+            rows = self.table("new", "fig", f"fig8-{state}.csv")
             sums = [float(row["sum"]) for row in rows]
             self.assertEqual(len(rows), 21)
             self.assertEqual(sums, sorted(sums, reverse=True))

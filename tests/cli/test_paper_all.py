@@ -1,13 +1,11 @@
 """All of the paper's experiments at their quick sizes: every measure holds, figures can be looked at, and what the page
 says of the paper's statements is what docs/paper.md says."""
 
-import csv
 import glob
 import json
 import os
 import struct
 import unittest
-from pathlib import Path
 
 from test_docs import ROOT
 from test_paper import Paper
@@ -33,7 +31,7 @@ class All(Paper):
         """Each has a measure on the page, and the same words in the documentation."""
         with open(self.path(folder, "measures.json")) as file:
             measures = {(m["item"], m["measure"]) for m in json.load(file)["measures"]}
-        statements = list(csv.DictReader(Path(self.path(folder, "statements.csv")).read_text().splitlines()))
+        statements = self.table(folder, "statements.csv")
         with open(os.path.join(ROOT, "docs", "paper.md")) as file:
             rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in file if line[0] == "|"]
         rows = [row for row in rows if len(row) == 6 and row[0][0] in "5678"]

@@ -11,7 +11,7 @@ import unittest
 from pathlib import Path
 
 import exr
-from support import HAS_EXR, HAS_FFMPEG, SANITIZED, SINGE, Case
+from support import HAS_EXR, HAS_FFMPEG, SANITIZED, SINGE, Case, at_most
 
 
 def png_size(path):
@@ -96,9 +96,7 @@ class Render(Case):
     @unittest.skipUnless(HAS_EXR and not SANITIZED, "no limit of memory under sanitizers")
     def test_memory_of_layers_is_foreseen(self):
         """17 million pixels take 2.7 GB, and 5.4 with their layers."""
-        def limited():
-            resource.setrlimit(resource.RLIMIT_DATA, (4 << 30, 4 << 30))
-
+        limited = at_most(resource.RLIMIT_DATA, 4 << 30)
         wide = ("--set", "preview.size=[4096, 4096]", "--set", "preview.samples=1")
         for command in (["render", self.path("o"), *wide], ["run", self.path("o"), "-o", self.path("p"), *wide]):
             _, err = self.singe(*command, "--exr", expect=2, preexec_fn=limited)

@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 from support import ROOT, Case
@@ -62,9 +61,7 @@ class Replay(Case):
         self.scene = self.write_scene(frames=1000, cells=8, gas="no")
         path = self.path("killed")
         run = self.start("run", self.scene, "-o", self.path("out"), "--no-preview", "--record", path)
-        deadline = time.monotonic() + 60
-        while time.monotonic() < deadline and not (os.path.exists(path) and os.path.getsize(path) > 6000):
-            time.sleep(0.001)
+        self.wait_for(lambda: os.path.exists(path) and os.path.getsize(path) > 6000)
         run.send_signal(signal.SIGKILL)
         run.communicate()
         out, err = self.singe("replay", path)

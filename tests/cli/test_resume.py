@@ -9,7 +9,7 @@ import signal
 import time
 from pathlib import Path
 
-from support import HAS_FFMPEG, SANITIZED, Case, write_png
+from support import HAS_FFMPEG, SANITIZED, Case, at_most, write_png
 
 
 class Resume(Case):
@@ -30,10 +30,7 @@ class Resume(Case):
         run = self.start("run", self.scene, "-o", self.path(out), *args, **options)
         self.addCleanup(run.stderr.close)
         self.addCleanup(lambda: run.poll() is None and run.kill())
-        end = time.monotonic() + 60
-        while self.lines(out) < frame and run.poll() is None:
-            self.assertLess(time.monotonic(), end, "the run does not come forward")
-            time.sleep(0.001)
+        self.wait_for(lambda: self.lines(out) >= frame, run)
         return run
 
     def same_as_whole(self, out, whole="whole"):
@@ -179,10 +176,7 @@ class Resume(Case):
         self.scene = self.write_scene(frames=100000)
         run = self.start_until("i", 1, env=self.fake_ffmpeg(f"touch {self.path('made')}; exec sleep 100"))
         run.send_signal(signal.SIGINT)
-        end = time.monotonic() + 60
-        while not os.path.exists(self.path("made")):
-            self.assertLess(time.monotonic(), end)
-            time.sleep(0.01)
+        self.wait_for(lambda: os.path.exists(self.path("made")))
         self.assertIsNone(run.poll(), "the first only asks")
         run.send_signal(signal.SIGINT)
         self.assertEqual(run.wait(timeout=2), -signal.SIGINT)
@@ -379,12 +373,8 @@ class Resume(Case):
     def test_a_failed_write_leaves_both_checkpoints(self):
         self.run_scene("o", "--frames", "5", "--quiet")
         size = os.path.getsize(self.path("o", "checkpoint.singe"))
-
-        def limit():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (size // 2, size // 2))
-
         before = [self.bytes_of("o", n) for n in ("checkpoint.singe", "checkpoint.previous.singe")]
-        self.run_scene("o", "--resume", expect=1, preexec_fn=limit)
+        self.run_scene("o", "--resume", expect=1, preexec_fn=at_most(resource.RLIMIT_FSIZE, size // 2))
         self.assertEqual(before, [self.bytes_of("o", n) for n in ("checkpoint.singe", "checkpoint.previous.singe")])
 
     def bytes_of(self, *parts):

@@ -1,6 +1,5 @@
 """Many runs of one scene: what rows a plan makes, what a stopped or failed sweep leaves, and what the report says."""
 
-import csv
 import fcntl
 import json
 import os
@@ -8,7 +7,6 @@ import re
 import shutil
 import signal
 import subprocess
-import time
 import unittest
 import xml.etree.ElementTree
 from pathlib import Path
@@ -33,15 +31,12 @@ class Sweep(Case):
         args = list(args) if preview else [*args, "--no-preview"]
         return self.singe("sweep", self.path("plan.yaml"), "-o", self.path(out), *args, expect=expect, **options)
 
-    def table(self, name, out="s"):
-        return list(csv.DictReader(Path(self.path(out, name)).read_text().splitlines()))
-
     def rows(self, plan, out="p"):
         """The rows that a plan makes; nothing is run."""
         self.write_plan(plan)
         shutil.rmtree(self.path(out), ignore_errors=True)
         shown, _ = self.sweep("--print", out=out)
-        rows = self.table("plan.csv", out)
+        rows = self.table(out, "plan.csv")
         self.assertEqual(len(shown.splitlines()), len(rows))
         self.assertEqual([int(r.pop("row")) for r in rows], list(range(1, len(rows) + 1)))
         return rows
@@ -224,7 +219,7 @@ class Sweep(Case):
             args = [arg.replace("{{Task.Param.Row}}", "3") for arg in action["args"]]
             subprocess.run([action["command"], *args], check=True, capture_output=True, timeout=120)
         self.assertEqual(self.complete(), ["0001", "0002", "0003"])
-        self.assertEqual(len(self.table("report.csv")), 3)
+        self.assertEqual(len(self.table("s", "report.csv")), 3)
         self.assertEqual([step["name"] for step in json.loads(self.sweep("--openjd")[0])["steps"]], ["Report"])
         self.assertIn("exclude each other", self.sweep("--openjd", "--print", expect=2)[1])
         self.assertIn("reserves '{{'", self.sweep("--openjd", out="a {{Task.Param.Row}}", expect=2)[1])
@@ -268,12 +263,6 @@ class Sweep(Case):
         self.addCleanup(sweep.stderr.close)
         self.addCleanup(lambda: sweep.poll() is None and sweep.kill())
         return sweep
-
-    def wait_for(self, condition):
-        end = time.monotonic() + 60
-        while not condition():
-            self.assertLess(time.monotonic(), end, "it does not come forward")
-            time.sleep(0.002)
 
     def lines(self, row):
         try:
@@ -330,7 +319,7 @@ class Sweep(Case):
         self.assertIn("--retry", err)
         self.assertEqual(self.complete(), ["0001", "0003"])
         self.assertIn("m.png", Path(self.path("s", "unfinished", "0002", "log.txt")).read_text())
-        self.assertEqual([r["state"] for r in self.table("report.csv")], ["complete", "missing", "complete"])
+        self.assertEqual([r["state"] for r in self.table("s", "report.csv")], ["complete", "missing", "complete"])
         write_png(self.path("m.png"), GREY)
         self.assertIn("1 failed", self.sweep(expect=1)[1])  # it is not run again by itself
         before = os.stat(self.path("s", "rows", "0001", "stats.csv")).st_mtime_ns
@@ -375,13 +364,13 @@ class Sweep(Case):
         self.assertEqual({units["stats." + name] for name in ("burnt_fraction", "pieces", "mass_ledger_error")}, {""})
         self.assertEqual([units["stats." + name] for name in ("mass", "temperature_max", "heat_in", "ms_gas",
                          "front_speed")], ["kg", "K", "J", "ms", "m/s of the fire's time"])
-        table = self.table("report.csv")
+        table = self.table("s", "report.csv")
         for i, row in enumerate(table):
             stats = self.stats(f"s/rows/{i + 1:04}")[-1]
             self.assertEqual(float(row["stats.mass"]), float("%.9g" % float(stats["mass"])))
             column = data["columns"].index("stats.burnt_fraction")
             self.assertEqual(data["rows"][i]["numbers"][column], float(stats["burnt_fraction"]))
-            measured = [r["crease_bend_per_m"] for r in self.table(f"rows/{i + 1:04}/measure.csv")]
+            measured = [r["crease_bend_per_m"] for r in self.table("s", f"rows/{i + 1:04}/measure.csv")]
             values = sorted(float(m) for m in measured if m)
             middle = (values[(len(values) - 1) // 2] + values[len(values) // 2]) / 2
             self.assertAlmostEqual(float(row["measure.crease_bend_per_m"]), middle, delta=1e-5 * abs(middle))

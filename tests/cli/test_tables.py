@@ -1,6 +1,5 @@
 """events.csv and probes.csv: what they hold, and the same bytes for any number of threads and after resumptions."""
 
-import csv
 import os
 import signal
 import struct
@@ -23,9 +22,6 @@ class Tables(Case):
     def setUp(self):
         super().setUp()
         self.scene = self.write_scene(frames=16, steps=6, extra=PROBES)
-
-    def table(self, out, name):
-        return list(csv.DictReader(Path(self.path(out, name)).read_text().splitlines()))
 
     def bytes(self, out):
         found = []

@@ -10,7 +10,7 @@ import time
 import unittest
 from pathlib import Path
 
-from support import ROOT, SANITIZED, SINGE, VERSION, Case
+from support import ROOT, SANITIZED, SINGE, VERSION, Case, at_most
 
 
 class Usage(Case):
@@ -151,9 +151,7 @@ class Usage(Case):
 
     def test_memory_is_said_first(self):
         """The memory of a scene is known in advance; one that needs more than the machine has is refused at once."""
-        def limited():
-            resource.setrlimit(resource.RLIMIT_AS, (1 << 32, 1 << 32))
-
+        limited = at_most(resource.RLIMIT_AS, 1 << 32)
         cells = "sheets.0.grid.cells="
         for command in ["check"], ["run", "-o", self.path("large")]:
             begun = time.monotonic()

@@ -1,6 +1,5 @@
 """singe validate at its quick sizes: every measure holds, or misses as its grade says."""
 
-import csv
 
 import unittest
 
@@ -13,10 +12,8 @@ class Validate(Paper):
     def test_all(self):
         self.singe("validate", "--quick", "-o", self.path("page"), timeout=900)
         self.check_page("page", ITEMS, bad_cases=False)
-        with open(self.path("page", "grades.csv"), newline="") as file:
-            grades = {(row["item"], row["measure"]): row["grade"] for row in csv.DictReader(file)}
-        with open(self.path("page", "measures.csv"), newline="") as file:
-            measures = {(row["item"], row["measure"]): row["grade"] for row in csv.DictReader(file)}
+        grades, measures = ({(row["item"], row["measure"]): row["grade"] for row in self.table("page", name)}
+                            for name in ("grades.csv", "measures.csv"))
         self.assertEqual(measures.pop(("front", "up_cotton"), "independent"), grades.pop(("front", "up_cotton")))
         self.assertEqual(measures, grades)  # but for the strips with gas, which the quick sizes have not
 

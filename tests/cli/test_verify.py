@@ -1,6 +1,5 @@
 """singe verify: a good cache passes, faults of every kind are found and named, crossings as in rational numbers."""
 
-import csv
 import itertools
 import math
 import os
@@ -207,7 +206,7 @@ class Verify(Case):
     def verify(self, *args, expect=0):
         path = self.path("counts.csv")
         out, err = self.singe("verify", self.path("o"), "--csv", path, *args, expect=expect)
-        return out, err, [{k: int(v) for k, v in row.items()} for row in csv.DictReader(Path(path).read_text().splitlines())]
+        return out, err, [{k: int(v) for k, v in row.items()} for row in self.table("counts.csv")]
 
     def damage(self, change, number=3):
         surface = Surface(self.frame(number))
@@ -513,7 +512,7 @@ gas: no
         Path(self.scene).write_text(self.SCENE.format(mesh=f", render_mesh: {{mesh: layers.obj{more}}}" if height else ""))
         self.run_scene("o", "--force", "--quiet")
         self.singe("verify", self.path("o"), "--csv=" + self.path("v.csv"), expect=expect)
-        return sum(int(row["crossings"]) for row in csv.DictReader(Path(self.path("v.csv")).read_text().splitlines()))
+        return sum(int(row["crossings"]) for row in self.table("v.csv"))
 
     def test_no_crossings_are_added(self):
         self.assertEqual(self.crossings(0), 0)

@@ -1,12 +1,10 @@
 """The examples: what a burning sheet must and must not do, in numbers, on the scenes that are shipped."""
 
-import csv
 import math
 import os
 import random
 import statistics
 import time
-from pathlib import Path
 
 from support import Case, Ply
 
@@ -62,7 +60,7 @@ class Example(Case):
         run = self.start("verify", self.path("whole"), "--csv", path)
         err = run.communicate(timeout=800)[1]
         self.assertIn(run.returncode, (0, 1), err)
-        rows = list(csv.DictReader(Path(path).read_text().splitlines()))
+        rows = self.table("faults.csv")
         self.assertEqual(len(rows), len(self.rows))
         for kind in list(rows[0])[3 : list(rows[0]).index("stats") + 1]:
             count = sum(int(row[kind]) for row in rows)
@@ -93,7 +91,7 @@ class Example(Case):
         the mesh, wrinkles where it has burnt, in degrees of the normal (the letter without shrinkage has
         0.05, one whose char rolls up 13), and none elsewhere."""
         self.singe("measure", self.path("whole"), "--frames", frames, "--csv", self.path("look.csv"), timeout=800)
-        rows = list(csv.DictReader(Path(self.path("look.csv")).read_text().splitlines()))
+        rows = self.table("look.csv")
 
         def median(name):
             values = [float(row[name]) for row in rows if row[name]]
@@ -135,7 +133,7 @@ class Example(Case):
         """What has not burnt looks as still as it is. With the velocities of single substeps the letter's jitter was 8.4
         and 12.1 mm/s, and 10 far from the fire."""
         self.singe("measure", self.path("whole"), "--no-preview", "--csv", self.path("still.csv"), timeout=800)
-        rows = list(csv.DictReader(Path(self.path("still.csv")).read_text().splitlines()))
+        rows = self.table("still.csv")
         near, cold = ([float(row[name]) for row in rows if row[name]] for name in ("jitter_mm_per_s", "jitter_cold_mm_per_s"))
         middle, worst, far = statistics.median(near), max(near), statistics.median(cold)
         self.say["still"] = f"jitter {middle:.1f}, at most {worst:.1f}; {far:.2f} mm/s far from the fire"

@@ -6,12 +6,10 @@ with the file's name and a number, or it is refused with exit code 2, the file's
 """
 
 import collections
-import csv
 import math
 import os
 import re
 import sys
-from pathlib import Path
 
 from support import SANITIZED, Case
 from test_verify import Surface
@@ -89,7 +87,7 @@ class MeshZoo(Case):
             return code, err, {}
         found, said = self.code_of("verify", self.path(name), "--csv", self.path("counts.csv"))
         self.assertIn(found, (0, 1), said)
-        rows = list(csv.DictReader(Path(self.path("counts.csv")).read_text().splitlines()))
+        rows = self.table("counts.csv")
         self.assertEqual(len(rows), FRAMES)
         counts = collections.Counter()
         for row in rows:
