@@ -48,15 +48,7 @@ void glb_put_string(Sink *sink, const char *text) {
 
 // ---- buffers
 
-uint32_t glb_put_accessor(GlbFile *f, size_t begin, uint32_t count, int width, GlbUse use, const float *box) {
-    static const char *const types[] = {[1] = "SCALAR", [2] = "VEC2", [3] = "VEC3", [4] = "VEC4"};
-    const char *comma = f->view_count ? "," : "";
-    sink_text(&f->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu", comma, begin, f->data.size - begin);
-    if (use == GLB_OF_ANIMATION) sink_text(&f->views, "}");
-    else sink_text(&f->views, ",\"target\":%d}", use == GLB_OF_CORNERS ? GLB_CORNERS : GLB_VERTICES);
-    sink_text(&f->accessors, "%s{\"bufferView\":%u,\"componentType\":%d,\"count\":%u,\"type\":\"%s\"", comma,
-              f->view_count, use == GLB_OF_CORNERS ? GLB_UINT : GLB_FLOAT, count, types[width]);
-
+uint32_t glb_end_accessor(GlbFile *f, int width, const float *box) {
     for (int side = 0; box && side < 2; side++) {
         sink_text(&f->accessors, side ? "],\"max\":[" : ",\"min\":[");
         for (int c = 0; c < width; c++) {
@@ -67,6 +59,18 @@ uint32_t glb_put_accessor(GlbFile *f, size_t begin, uint32_t count, int width, G
 
     sink_text(&f->accessors, box ? "]}" : "}");
     return f->view_count++;
+}
+
+uint32_t glb_put_accessor(GlbFile *f, size_t begin, uint32_t count, int width, GlbUse use, const float *box) {
+    static const char *const types[] = {[1] = "SCALAR", [2] = "VEC2", [3] = "VEC3", [4] = "VEC4"};
+    const char *comma = f->view_count ? "," : "";
+    sink_text(&f->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu", comma, begin, f->data.size - begin);
+    if (use == GLB_OF_ANIMATION) sink_text(&f->views, "}");
+    else sink_text(&f->views, ",\"target\":%d}", use == GLB_OF_CORNERS ? GLB_CORNERS : GLB_VERTICES);
+    sink_text(&f->accessors, "%s{\"bufferView\":%u,\"componentType\":%d,\"count\":%u,\"type\":\"%s\"", comma,
+              f->view_count, use == GLB_OF_CORNERS ? GLB_UINT : GLB_FLOAT, count, types[width]);
+
+    return glb_end_accessor(f, width, box);
 }
 
 void glb_make_unit(float v[3]) {
@@ -263,10 +267,7 @@ static void put_vectors(GlbMeshes *w, const SheetPart *part, const char *name, f
         float v[3];
         glb_turn(values[part->vertices[i]], v);
         if (unit) glb_make_unit(v);
-        for (int c = 0; c < 3; c++) {
-            bounds[c] = i && bounds[c] < v[c] ? bounds[c] : v[c];
-            bounds[3 + c] = i && bounds[3 + c] > v[c] ? bounds[3 + c] : v[c];
-        }
+        box_grow(bounds, v, i == 0);
         sink_words(&w->file->data, v, 3);
     }
 
@@ -300,18 +301,9 @@ static void list_corners(GlbMeshes *w, SheetPart *part) {
 
 /// The grid of positions: a 32,768th of the mesh's longest side, or finer.
 static int grid_of(const SingeSurface *s) {
-    float side = 0;
-    for (int c = 0; c < 3; c++) {
-        float low = 0, high = 0;
-        for (uint32_t i = 0; i < s->vertex_count; i++) {
-            const float x = s->position[i][c];
-            low = i && low < x ? low : x;
-            high = i && high > x ? high : x;
-        }
-
-        side = fmaxf(side, high - low);
-    }
-
+    float box[6] = {0}, side = 0;
+    for (uint32_t i = 0; i < s->vertex_count; i++) box_grow(box, s->position[i], i == 0);
+    for (int c = 0; c < 3; c++) side = fmaxf(side, box[3 + c] - box[c]);
     return side > 0 && isfinite(side) ? ilogbf(side) - 15 : -17;
 }
 

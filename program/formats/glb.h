@@ -27,6 +27,8 @@ void glb_put_string(Sink *sink, const char *text);
 /// Adds the view and the accessor of the data written since `begin`: `count` times `width` floats, or corners. `box`:
 /// [2][width] min and max, or NULL. Returns the accessor's number.
 uint32_t glb_put_accessor(GlbFile *file, size_t begin, uint32_t count, int width, GlbUse use, const float *box);
+/// Ends the accessor in the making with its box, as above, and returns its number.
+uint32_t glb_end_accessor(GlbFile *file, int width, const float *box);
 
 // ---- packed: by meshoptimizer, where the build has it
 

@@ -99,12 +99,8 @@ uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, Glb
             meshopt_encodeFilterOct(stream + 4 * (size_t)i, 1, 4, 8, direction);
         }
 
-    float bounds[2][3] = {{0}};
-    for (size_t i = 0; i < total && box; i++) {
-        const size_t c = i % (size_t)width;
-        if (i < (size_t)width || values[i] < bounds[0][c]) bounds[0][c] = values[i];
-        if (i < (size_t)width || values[i] > bounds[1][c]) bounds[1][c] = values[i];
-    }
+    float bounds[6] = {0}; // positions alone have a box
+    for (uint32_t i = 0; i < count && box; i++) box_grow(bounds, values + 3 * (size_t)i, i == 0);
 
     // packed, in place of the floats; the versions are those that the extension allows
     meshopt_encodeVertexVersion(0);
@@ -139,16 +135,7 @@ uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, Glb
               : direction ? GLB_BYTE
                           : GLB_FLOAT32,
               (unsigned)count, types[width], direction ? ",\"normalized\":true" : "");
-    for (int side = 0; box && side < 2; side++) {
-        sink_text(&f->accessors, side ? "],\"max\":[" : ",\"min\":[");
-        for (int c = 0; c < width; c++) {
-            sink_text(&f->accessors, c ? "," : "");
-            sink_float(&f->accessors, bounds[side][c]);
-        }
-    }
-
-    sink_text(&f->accessors, box ? "]}" : "}");
-    return f->view_count++;
+    return glb_end_accessor(f, width, box ? bounds : NULL);
 }
 
 #endif

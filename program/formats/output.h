@@ -202,6 +202,14 @@ static inline const void *surface_field(const SingeSurface *surface, const Surfa
     return array;
 }
 
+/// Grows a box, its lowest and its highest corner, by a point; the first point is the whole box.
+static inline void box_grow(float box[6], const float point[3], bool first) {
+    for (int c = 0; c < 3; c++) {
+        box[c] = !first && box[c] < point[c] ? box[c] : point[c];
+        box[3 + c] = !first && box[3 + c] > point[c] ? box[3 + c] : point[c];
+    }
+}
+
 // ---- a surface by sheet, for formats with a mesh for each
 
 /// Vertices and triangles by sheet, each in the surface's order.

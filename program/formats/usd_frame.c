@@ -156,15 +156,9 @@ static void put_own(UsdWriter *w, const SheetPart *part, CrateValue values[USD_O
     values[USD_ST] = put_vectors(w, part, s->uv, 2);
     values[USD_REST] = put_vectors(w, part, s->rest_position, 3);
 
-    float box[2][3] = {{0}};
-    for (uint32_t i = 0; i < part->count; i++)
-        for (int c = 0; c < 3; c++) {
-            const float x = w->surface->position[part->vertices[i]][c];
-            box[0][c] = i && box[0][c] < x ? box[0][c] : x;
-            box[1][c] = i && box[1][c] > x ? box[1][c] : x;
-        }
-
-    values[USD_EXTENT] = crate_floats(&w->crate, 3, box[0], 2);
+    float box[6] = {0};
+    for (uint32_t i = 0; i < part->count; i++) box_grow(box, s->position[part->vertices[i]], i == 0);
+    values[USD_EXTENT] = crate_floats(&w->crate, 3, box, 2);
 
     put_colours(w, part, &values[USD_COLOUR], &values[USD_COLOUR_INDICES]);
 

@@ -232,18 +232,9 @@ static void put_points(Root *r, const float *vertices, uint32_t count) {
 }
 
 static void put_box(Root *r, const float *vertices, uint32_t count) {
-    float box[2][3] = {{0}};
-    for (uint32_t i = 0; i < count; i++) {
-        const float *p = vertices + 3 * (size_t)i;
-        for (int c = 0; c < 3; c++) {
-            box[0][c] = i && box[0][c] < p[c] ? box[0][c] : p[c];
-            box[1][c] = i && box[1][c] > p[c] ? box[1][c] : p[c];
-        }
-    }
-
-    put(r, "[");
-    put_numbers(r, box[0], 3), put(r, ", "), put_numbers(r, box[1], 3);
-    put(r, "]");
+    float box[6] = {0};
+    for (uint32_t i = 0; i < count; i++) box_grow(box, vertices + 3 * (size_t)i, i == 0);
+    put_points(r, box, 2);
 }
 
 /// An array derived from the vertices, with a sample per frame if they move.
@@ -348,9 +339,9 @@ static void put_shape(Root *r, uint32_t index) {
 
     if (!s->vertex_count) {
         const float low[3] = {-half[0], -half[1], -half[2]};
-        put(r, "            float3[] extent = [");
-        put_numbers(r, low, 3), put(r, ", "), put_numbers(r, half, 3);
-        put(r, "]\n");
+        put(r, "            float3[] extent = ");
+        put_points(r, (const float[]){low[0], low[1], low[2], half[0], half[1], half[2]}, 2);
+        put(r, "\n");
     }
 
     put_poses(r, "            token visibility", s, put_visible);

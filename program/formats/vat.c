@@ -205,10 +205,7 @@ static void put_values(GlbFile *f, const char *name, const VatCorner *corners, u
     float box[6] = {0};
     for (uint32_t i = 0; i < count; i++) {
         const float *value = values[corners[i].vertex];
-        for (int c = 0; c < 3; c++) {
-            box[c] = i && box[c] < value[c] ? box[c] : value[c];
-            box[3 + c] = i && box[3 + c] > value[c] ? box[3 + c] : value[c];
-        }
+        box_grow(box, value, i == 0);
         sink_words(&f->data, value, 3);
     }
 
@@ -330,24 +327,17 @@ SingeResult vat_write(const char *path, const OutputScene *scene, const OutputCa
     if (!result) {
         char name[4096];
         Sink sink = {0};
-        float box[2][3];
-        for (int c = 0; c < 3; c++) box[0][c] = box[1][c] = vat.position[0][c];
-
+        float box[6] = {0};
         for (int f = 0; f < vat.cache->frames; f++)
-            for (uint32_t v = 0; v < vat.count; v++) {
-                const float *at = vat.position[(size_t)f * (size_t)vat.rows * (size_t)vat.width + v];
-                for (int c = 0; c < 3; c++) {
-                    box[0][c] = at[c] < box[0][c] ? at[c] : box[0][c];
-                    box[1][c] = at[c] > box[1][c] ? at[c] : box[1][c];
-                }
-            }
+            for (uint32_t v = 0; v < vat.count; v++)
+                box_grow(box, vat.position[(size_t)f * (size_t)vat.rows * (size_t)vat.width + v], !f && !v);
 
         sink_text(&sink, "{\n  \"generator\": \"Singe " SINGE_VERSION "\",\n  \"frames\": %d,\n  \"fps\": ",
                   vat.cache->frames);
         sink_float(&sink, vat.scene->fps);
         sink_text(&sink, ",\n  \"vertices\": %u,\n  \"width\": %d,\n  \"height\": %d,\n  \"rows_per_frame\": %d,\n",
                   vat.count, vat.width, vat.height, vat.rows);
-        put_triple(&sink, "bounds_min", box[0]), put_triple(&sink, "bounds_max", box[1]);
+        put_triple(&sink, "bounds_min", box), put_triple(&sink, "bounds_max", box + 3);
         sink_text(&sink, "  \"up\": \"y\",\n  \"unit\": \"m\"\n}\n");
         if (snprintf(name, sizeof name, "%s.json", path) >= (int)sizeof name) sink.failed = true;
         result = sink_write(&sink, name, error);
