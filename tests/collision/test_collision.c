@@ -495,16 +495,3 @@ TEST(the_search_is_linear) {
     assert_int_equal(large->plan->counters.dropped, 0);
     searched_free(small), searched_free(large);
 }
-
-TEST(bad_values_are_refused) {
-    SingeSimDef def = singe_default_sim();
-    SingeSim *sim;
-    SingeError error;
-
-    def.contact.thickness = 0;
-    assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_ERROR_ARGUMENT);
-    assert_non_null(strstr(error.message, "thickness"));
-    def = singe_default_sim(), def.contact.friction = NAN;
-    assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_ERROR_ARGUMENT);
-    assert_non_null(strstr(error.message, "friction"));
-}

@@ -145,6 +145,12 @@ TEST(bad_colliders_and_wind_are_refused) {
     key.rotation[3] = 1;
     def.path = &key, def.struct_size = 0;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id));
+    for (int kind = -1; kind < 18; kind += 18) {
+        def = singe_default_collider();
+        def.kind = (SingeColliderKind)kind;
+        test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id));
+        assert_non_null(strstr(singe_sim_error(sim)->message, "kind"));
+    }
     SingeWindDef wind = singe_default_wind();
     wind.struct_size = 0;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_wind(sim, &wind));

@@ -87,6 +87,7 @@ static int try_table(SingeSim *sim, const DefTable *table, const void *standard,
                 assert_int_equal(call(sim, &def), has ? SINGE_ERROR_ARGUMENT : SINGE_OK);
                 if (!has) continue;
                 const char *message = singe_sim_error(sim)->message;
+                assert_string_equal(singe_sim_error(sim)->stage, table->stage);
                 if (!strstr(message, field->name) || !strstr(message, range->words))
                     fail_msg("%s of %g: \"%s\" lacks \"%s\"", field->name, (double)outside[o], message, range->words);
             }

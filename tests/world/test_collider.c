@@ -1,10 +1,7 @@
 // Signed distances: against hand values, and normals against numeric gradients at random points.
 #include "support/support.h"
 
-#include "common/def_table.h"
 #include "world/collider.h"
-
-#include <string.h>
 
 static uint32_t random_state = 1;
 static float any(float scale) {
@@ -100,45 +97,4 @@ TEST(surfaces_are_round_inside) {
     def = make(SINGE_COLLIDER_CAPSULE);
     assert_true(distance_at(&def, float3(0, 0, 0.3f), &normal) == -0.7f); // on the axis
     assert_true(fabsf(float3_length(normal) - 1) < 1e-6f);
-}
-
-typedef void Spoil(SingeColliderDef *def);
-static void spoil_kind(SingeColliderDef *def) { def->kind = (SingeColliderKind)9; }
-static void spoil_kind_negative(SingeColliderDef *def) { def->kind = (SingeColliderKind)-1; }
-static void spoil_radius(SingeColliderDef *def) { def->radius = 0; }
-static void spoil_radius_nan(SingeColliderDef *def) { def->radius = NAN; }
-static void spoil_half(SingeColliderDef *def) { def->kind = SINGE_COLLIDER_BOX, def->half_size[2] = -1; }
-static void spoil_height(SingeColliderDef *def) { def->kind = SINGE_COLLIDER_CAPSULE, def->height = -1; }
-static void spoil_friction(SingeColliderDef *def) { def->friction = -0.1f; }
-static void spoil_offset(SingeColliderDef *def) { def->offset = INFINITY; }
-static void spoil_conductance(SingeColliderDef *def) { def->conductance = -1; }
-static void spoil_distance(SingeColliderDef *def) { def->contact_distance = NAN; }
-static void spoil_temperature(SingeColliderDef *def) { def->conductance = 1, def->temperature = 0; }
-
-TEST(bad_fields_are_named) {
-    static const struct {
-        Spoil *spoil;
-        const char *word;
-    } cases[] = {{spoil_kind, "kind"},
-                 {spoil_kind_negative, "kind"},
-                 {spoil_radius, "radius"},
-                 {spoil_radius_nan, "radius"},
-                 {spoil_half, "half_size"},
-                 {spoil_height, "height"},
-                 {spoil_friction, "friction"},
-                 {spoil_offset, "offset"},
-                 {spoil_conductance, "conductance"},
-                 {spoil_distance, "contact_distance"},
-                 {spoil_temperature, "temperature"}};
-    SingeError error;
-    SingeColliderDef good = make(SINGE_COLLIDER_SPHERE);
-    good.path_count = 1;
-    assert_int_equal(def_check(&collider_table, &good, &error), SINGE_OK);
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        SingeColliderDef def = good;
-        cases[i].spoil(&def);
-        assert_int_equal(def_check(&collider_table, &def, &error), SINGE_ERROR_ARGUMENT);
-        assert_string_equal(error.stage, "collider");
-        assert_non_null(strstr(error.message, cases[i].word));
-    }
 }

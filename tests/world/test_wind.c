@@ -1,7 +1,6 @@
 // Wind: the mean, the gusts' bound, seed and smoothness. Air that sources move.
 #include "support/support.h"
 
-#include "common/def_table.h"
 #include "world/air.h"
 #include "world/wind.h"
 
@@ -63,26 +62,6 @@ TEST(gusts_are_smooth_in_time_and_space) {
         assert_true(float3_length(float3_sub(later, v)) < 1.75f * 3.75f * 1.8f * 1e-3f / def.gust_time + 1e-4f);
         assert_true(float3_length(float3_sub(there, v)) < 1.75f * 3.75f * 1e-3f / def.gust_size + 1e-4f);
     }
-}
-
-TEST(bad_winds_are_refused) {
-    SingeError error;
-    SingeWindDef good = singe_default_wind(), bad;
-    assert_int_equal(def_check(&wind_table, &good, &error), SINGE_OK);
-#define BAD(field, value)                                                         \
-    bad = good;                                                                   \
-    bad.field = (value);                                                          \
-    assert_int_equal(def_check(&wind_table, &bad, &error), SINGE_ERROR_ARGUMENT); \
-    assert_string_equal(error.stage, "wind")
-    BAD(velocity[1], NAN);
-    BAD(velocity[0], 1e6f);
-    BAD(gust, -1);
-    BAD(gust, INFINITY);
-    BAD(gust_time, 0);
-    BAD(gust_time, NAN);
-    BAD(gust_size, -1);
-    BAD(gust_size, INFINITY);
-#undef BAD
 }
 
 /// The air of one source at the origin, whose axis is z.
