@@ -40,6 +40,12 @@ static void advect_tasks(void *context, int begin, int end) {
         }
 }
 
+static inline uint32_t advect_bits(float q) {
+    uint32_t bits;
+    memcpy(&bits, &q, sizeof bits);
+    return bits;
+}
+
 /// Carries one field over the displacement of a step. Outside the box it does not change.
 static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
     GasPlan *plan = pass->plan;
@@ -51,16 +57,25 @@ static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
     memcpy(pass->to->field[f], start, grid->cells * sizeof(float));
     if (box->high[0] <= box->low[0]) return;
 
-    // the sweeps read the box and the cells around it
-    size_t row = (size_t)(box->high[0] - box->low[0] + 2 * GAS_GHOSTS);
-    for (int s = 0; s < 2; s++)
-        for (int k = box->low[2] - GAS_GHOSTS; k < box->high[2] + GAS_GHOSTS; k++)
-            for (int j = box->low[1] - GAS_GHOSTS; j < box->high[1] + GAS_GHOSTS; j++) {
-                size_t c = gas_at(grid, box->low[0] - GAS_GHOSTS, j, k);
-                memcpy(plan->spare[s] + c, start + c, row * sizeof(float));
+    // the sweeps read the box and the cells around it, in each row from the first that is not +0 to the last
+    const int left = box->low[0] - GAS_GHOSTS, right = box->high[0] + GAS_GHOSTS;
+    for (int k = box->low[2] - GAS_GHOSTS; k < box->high[2] + GAS_GHOSTS; k++)
+        for (int j = box->low[1] - GAS_GHOSTS; j < box->high[1] + GAS_GHOSTS; j++) {
+            const size_t c = gas_at(grid, 0, j, k);
+            const float *q = start + c;
+            uint32_t any = 0;
+            for (int i = left; i < right; i++) any |= advect_bits(q[i]);
+            GasRange range = {any ? left : INT_MAX / 2, any ? right : INT_MIN / 2};
+            while (any && !advect_bits(q[range.low])) range.low++;
+            while (any && !advect_bits(q[range.high - 1])) range.high--;
+            for (int s = 0; s < 2; s++) {
+                plan->row_busy[s][gas_row(grid, j, k)] = range;
+                memcpy(plan->spare[s] + c + left, q + left, (size_t)(right - left) * sizeof(float));
             }
+        }
 
     // three sweeps a part, one per axis
+    int turn = 0;
     for (int part = 0; part < parts; part++) {
         float *here = end[part % 2];
         const float *from[3] = {start, here, between};
@@ -72,11 +87,15 @@ static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
                            .from = from[s],
                            .to = to[s],
                            .start = start,
+                           .busy = plan->row_busy[turn],
+                           .busy_after = plan->row_busy[!turn],
+                           .beyond = axis ? grid->stride[axis] / grid->stride[1] : 0,
                            .axis = axis,
                            .across = axis == 2 ? 1 : 2,
                            .last = s == 2,
                            .rows = plan->rows};
             pool_for(pass->pool, box->high[sweep.across] - box->low[sweep.across], 1, advect_tasks, &sweep);
+            turn = !turn;
         }
 
         start = here;

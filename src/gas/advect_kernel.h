@@ -2,8 +2,9 @@
 // of its function, and includes this. Every operation rounds according to IEEE 754, so all give the same bytes.
 #include "gas/advect_axis.h"
 
-/// Fluxes through the lower faces of `count` cells in a row from c on.
+/// Fluxes through the lower faces of `count` cells in a row from c on, and of some more, so that no lane is left over.
 static void sweep_faces(const Sweep *sweep, size_t c, int count, float *restrict flux) {
+    count = (count + SWEEP_LANES - 1) / SWEEP_LANES * SWEEP_LANES;
     const GasPass *pass = sweep->pass;
     const size_t beyond = pass->plan->grid.stride[sweep->axis];
     const float *restrict through = pass->from->field[GAS_THROUGH + sweep->axis] + c;
@@ -34,22 +35,59 @@ static void sweep_update(const Sweep *sweep, size_t c, int count, const float *r
     for (int i = 0; i < count; i++) to[i] = from[i] - (upper[i] - lower[i]) + start[i] * courant * (v[i] - u[i]);
 }
 
-void SWEEP_ROWS(const Sweep *sweep, int task, int first, int count) {
+/// The columns from `first` on of a row that may change. A cell stays +0, to the last bit, where the two before it along
+/// the axis and the two after it are +0 as well.
+static inline GasRange sweep_range(const Sweep *sweep, int j, int k, int first, int count) {
+    const GasGrid *grid = &sweep->pass->plan->grid;
+    const size_t row = gas_row(grid, j, k), beyond = sweep->beyond;
+    GasRange range = sweep->busy[row];
+    for (int d = 0; d < 2 * GAS_GHOSTS + 1; d++) {
+        const GasRange *other = &sweep->busy[row - GAS_GHOSTS * beyond + (size_t)d * beyond];
+        range.low = other->low < range.low ? other->low : range.low;
+        range.high = other->high > range.high ? other->high : range.high;
+    }
+    range.low -= beyond ? 0 : GAS_GHOSTS;
+    range.high += beyond ? 0 : GAS_GHOSTS;
+    sweep->busy_after[row] = range;
+
+    if (range.low < first) range.low = first;
+    if (range.low < range.high) range.high += (range.low - range.high) & (SWEEP_LANES - 1); // few lanes are left over
+    if (range.high > first + count) range.high = first + count;
+    return range;
+}
+
+void SWEEP_ROWS(const Sweep *sweep, int task, int first, int columns) {
     const GasGrid *grid = &sweep->pass->plan->grid;
     const GasBox *box = sweep->box;
-    int other = sweep->across == 1 ? 2 : 1, at[3] = {first, 0, 0};
-    float flux[2][SWEEP_RUN + 1];
+    int other = sweep->across == 1 ? 2 : 1, at[3] = {0, 0, 0};
+    float room[2][SWEEP_RUN + 2 * SWEEP_LANES];
     at[sweep->across] = task;
+    at[other] = box->low[other];
+    GasRange range, next = sweep_range(sweep, at[1], at[2], first, columns);
     for (int r = box->low[other]; r < box->high[other]; r++) {
+        range = next;
+        at[other] = r + 1;
+        if (r + 1 < box->high[other]) next = sweep_range(sweep, at[1], at[2], first, columns);
         at[other] = r;
-        size_t c = gas_at(grid, at[0], at[1], at[2]);
+
+        // the upper faces are the next row's lower ones
+        const int low = next.low < range.low ? next.low : range.low;
+        const int high = next.high > range.high ? next.high : range.high;
+        float *lower = room[r % 2], *upper = room[(r + 1) % 2]; // of column `first`
+        if (sweep->axis > 0 && low < high)
+            sweep_faces(sweep, gas_at(grid, low, at[1], at[2]) + grid->stride[sweep->axis], high - low,
+                        upper + (low - first));
+
+        const int count = range.high - range.low;
+        if (count <= 0) continue;
+        const size_t c = gas_at(grid, range.low, at[1], at[2]);
+        lower += range.low - first;
         if (sweep->axis == 0) {
-            sweep_faces(sweep, c, count + 1, flux[0]);
-            sweep_update(sweep, c, count, flux[0], flux[0] + 1);
+            sweep_faces(sweep, c, count + 1, lower);
+            sweep_update(sweep, c, count, lower, lower + 1);
         } else {
-            if (r == box->low[other]) sweep_faces(sweep, c, count, flux[r % 2]);
-            sweep_faces(sweep, c + grid->stride[sweep->axis], count, flux[(r + 1) % 2]);
-            sweep_update(sweep, c, count, flux[r % 2], flux[(r + 1) % 2]);
+            if (r == box->low[other]) sweep_faces(sweep, c, count, lower);
+            sweep_update(sweep, c, count, lower, upper + (range.low - first));
         }
 
         // subtract q0 sum(c_upper - c_lower)

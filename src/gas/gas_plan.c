@@ -119,6 +119,9 @@ static size_t plan_scratch(GasPlan *plan, float *base) {
     for (int d = 0; d < 3; d++) plan->open[d] = gas_take(base, &used, cells);
     plan->mixing = gas_take(base, &used, cells);
     plan->expansion = gas_take(base, &used, cells);
+    const size_t rows = gas_row(&plan->grid, plan->grid.n[1] + 1, plan->grid.n[2] + 1) + 1;
+    for (int s = 0; s < 2; s++)
+        plan->row_busy[s] = (GasRange *)gas_take(base, &used, rows * sizeof(GasRange) / sizeof(float));
     plan->solid = (uint8_t *)gas_take(base, &used, cells / sizeof(float) + 1);
     for (int l = 0; l < plan->levels; l++) {
         GasLevel *level = &plan->level[l];

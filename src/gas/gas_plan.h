@@ -54,6 +54,15 @@ typedef struct GasBox {
     int low[3], high[3];
 } GasBox;
 
+/// Columns [low, high) of a row of cells: low > high if there are none.
+typedef struct GasRange {
+    int low, high;
+} GasRange;
+
+static inline size_t gas_row(const GasGrid *grid, int j, int k) {
+    return (size_t)(j + GAS_GHOSTS) + (size_t)(grid->n[1] + 2 * GAS_GHOSTS) * (size_t)(k + GAS_GHOSTS);
+}
+
 #define GAS_NO_BOX ((GasBox){{1 << 30, 1 << 30, 1 << 30}, {0, 0, 0}})
 
 /// Extends a box to contain another one.
@@ -106,6 +115,7 @@ struct GasPlan {
     float *expansion;                ///< L that a step adds
     double *partial;                 ///< [planes]
     GasBox (*plane_busy)[GAS_BOXES]; ///< [planes] where there is heat, fuel, smoke, momentum to carry
+    GasRange *row_busy[2];           ///< [rows] of the field that is carried, before and after a sweep
     float (*normal)[3];              ///< [particles] unit
     Smother smother;
     int *hot;       ///< [planes] whether anything there is warmer than the air around
