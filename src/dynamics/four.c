@@ -11,15 +11,14 @@ static inline Lanes lanes_with_fourth(Lanes a, Lanes fourth) {
     return float4_select((Float4Mask){-1, -1, -1, 0}, a, fourth);
 }
 
-#define MOVE_RANGE move_range_four
-#include "dynamics/move_kernel.h"
-
 #define LANES_SPREAD(a, e) FLOAT4_SHUFFLE(a, a, e, e, e, e)
 #define FLOAT4S_SET(float4s, e, value) (float4s).at[e] = (value)
+#define MOVE_RANGE move_range_four
 #define HEIGHT_RANGE height_range_four
 #define PLANE_RANGE plane_range_four
 #include "dynamics/height_kernel.h"
 #include "dynamics/plane_kernel.h"
+#include "dynamics/move_kernel.h"
 
 #define SMOOTH_GROUP smooth_group_four
 #include "dynamics/smooth_kernel.h"
