@@ -1,6 +1,6 @@
 // Draws a frame of the worker: the table, the sheet, the match and pins, then the fire, a lens's halo and a film's curve.
 import {
-    AddEquation, BufferGeometry, CanvasTexture, CustomBlending, CylinderGeometry, Data3DTexture, DataTexture, DepthTexture, DoubleSide, DynamicDrawUsage, GLSL3, HalfFloatType,
+    AddEquation, BufferGeometry, CanvasTexture, CustomBlending, CylinderGeometry, Data3DTexture, DataArrayTexture, DataTexture, DepthTexture, DoubleSide, DynamicDrawUsage, GLSL3, HalfFloatType,
     InstancedBufferGeometry, InstancedInterleavedBuffer, InterleavedBuffer, InterleavedBufferAttribute, BufferAttribute, LatheGeometry, LessEqualCompare, LinearFilter, LinearSRGBColorSpace, Matrix4, Mesh,
     NoColorSpace, OneFactor, OneMinusSrcAlphaFactor, OrthographicCamera, PerspectiveCamera, PlaneGeometry, RawShaderMaterial, RepeatWrapping, RGBAFormat, Scene,
     SphereGeometry, SRGBColorSpace, Texture, UnsignedByteType, UnsignedIntType, Vector2, Vector3, Vector4, WebGLRenderer, WebGLRenderTarget,
@@ -10,12 +10,12 @@ import { ATTRIBUTES, FLOATS } from "./fields.js";
 import type { Frame } from "./messages.js";
 import { BALL, placeOf, type Place, type Point, type Where } from "./places.js";
 import { AIRBORNE_FLOATS, AIRBORNE_LIMIT } from "../view/airborne.js";
-import { glowBytes, noiseBytes } from "../view/tables.js";
+import { glowBytes, noiseBytes, sliceBytes } from "../view/tables.js";
 import * as glsl from "../view/shaders.js";
 
 /** Behind what lies, before what hangs. */
 const LAMPS = { lying: new Vector3(-0.19, 0.21, 0.34), hanging: new Vector3(-0.26, -0.34, 0.42) };
-const LAMP = { at: LAMPS.lying.clone(), to: new Vector3(0.0, 0.01, 0), colour: [0.092, 0.064, 0.037] };
+const LAMP = { at: LAMPS.lying.clone(), to: new Vector3(0.0, 0.01, 0), ahead: new Vector3(), colour: [0.092, 0.064, 0.037] };
 const NIGHT = new Vector3(0.0150, 0.0172, 0.0262);
 const EXPOSURE = 1.0;
 const SHADOW = 1024;
@@ -43,7 +43,6 @@ export class Renderer {
     private shared: Uniforms;
     private sceneTarget: WebGLRenderTarget;
     private fireTarget = target();
-    private merged = target();
     private bright = target();
     private across = target();
     private halo = target();
@@ -51,7 +50,7 @@ export class Renderer {
     private shadowTarget = new WebGLRenderTarget(SHADOW, SHADOW);
     private full = new Mesh(new PlaneGeometry(2, 2));
     private fullCamera = new OrthographicCamera(-1, 1, 1, -1, 0, 1);
-    private passes: Record<"fire" | "merge" | "bright" | "blur" | "film", RawShaderMaterial>;
+    private passes: Record<"fire" | "bright" | "blur" | "film", RawShaderMaterial>;
     private buffer: InterleavedBuffer | null = null;
     private fireMap: Data3DTexture | null = null;
     private match: Mesh[];
@@ -75,8 +74,8 @@ export class Renderer {
 
         this.sceneTarget = new WebGLRenderTarget(4, 4, { type: HalfFloatType, samples: 4, depthTexture: new DepthTexture(4, 4, UnsignedIntType) });
         this.shared = {
-            noiseMap: { value: noiseTexture() }, glowMap: { value: glowTexture() }, viewProjection: { value: new Matrix4() },
-            eye: { value: new Vector3() }, lampAt: { value: LAMP.at }, lampTo: { value: LAMP.to }, lampColour: { value: new Vector3(...LAMP.colour as Point) },
+            noiseMap: { value: noiseTexture(Data3DTexture, noiseBytes()) }, sliceMap: { value: noiseTexture(DataArrayTexture, sliceBytes()) }, glowMap: { value: glowTexture() }, viewProjection: { value: new Matrix4() },
+            eye: { value: new Vector3() }, lampAt: { value: LAMP.at }, lampAhead: { value: LAMP.ahead }, lampColour: { value: new Vector3(...LAMP.colour as Point) },
             nightColour: { value: NIGHT }, lampView: { value: this.lampView }, shadowMap: { value: depth }, time: { value: 0 },
             fireLights: { value: Array.from({ length: 6 }, () => new Vector4()) }, fireColour: { value: new Vector3(1, 0.46, 0.13) },
         };
@@ -113,17 +112,17 @@ export class Renderer {
         this.scene.add(this.airborne, table, this.paper, this.ball, this.ember, ...this.match);
         this.setPlace("table");
 
+        const seen = { sceneMap: { value: this.sceneTarget.texture }, fireMap2: { value: this.fireTarget.texture } };
         this.passes = {
             fire: material(glsl.FULL_VERTEX, glsl.FIRE, {
                 ...this.shared, fireMap: { value: null }, depthMap: { value: this.sceneTarget.depthTexture }, inverse_: { value: new Matrix4() },
                 low: { value: new Vector3() }, high: { value: new Vector3() }, origin: { value: new Vector3() }, span: { value: new Vector3(1, 1, 1) },
                 match_: { value: new Vector3() }, matchOn: { value: 0 }, fireScale: { value: 1 }, fireDaylight: { value: new Vector3(...LAMP.colour as Point).multiplyScalar(0.1) },
             }),
-            merge: material(glsl.FULL_VERTEX, glsl.MERGE, { sceneMap: { value: this.sceneTarget.texture }, fireMap2: { value: this.fireTarget.texture } }),
-            bright: material(glsl.FULL_VERTEX, glsl.BRIGHT, { map: { value: this.merged.texture }, pixel: { value: new Vector2() }, exposure: { value: EXPOSURE } }),
+            bright: material(glsl.FULL_VERTEX, glsl.BRIGHT, { ...seen, pixel: { value: new Vector2() }, exposure: { value: EXPOSURE } }),
             blur: material(glsl.FULL_VERTEX, glsl.BLUR, { map: { value: null }, along: { value: new Vector2() }, sigma: { value: 1 } }),
             film: material(glsl.FULL_VERTEX, glsl.FILM, {
-                map: { value: this.merged.texture }, halo: { value: this.halo.texture }, glare: { value: this.glare.texture }, exposure: { value: EXPOSURE }, vignette: { value: 0.32 },
+                ...seen, halo: { value: this.halo.texture }, glare: { value: this.glare.texture }, exposure: { value: EXPOSURE }, vignette: { value: 0.32 },
                 resolution: { value: new Vector2(1, 1) },
             }),
         };
@@ -147,7 +146,6 @@ export class Renderer {
         const w = Math.max(2, Math.round(width * scale)), h = Math.max(2, Math.round(height * scale));
         this.gl.setSize(w, h, false);
         this.sceneTarget.setSize(w, h);
-        this.merged.setSize(w, h);
         this.fireTarget.setSize(Math.ceil(w / 2), Math.ceil(h / 2));
         for (const small of [this.bright, this.across, this.halo, this.glare]) small.setSize(Math.ceil(w / 4), Math.ceil(h / 4));
         this.camera.aspect = width / height;
@@ -203,6 +201,7 @@ export class Renderer {
         this.moveEmber(0);
         LAMP.at.copy(this.where.upright ? LAMPS.hanging : LAMPS.lying);
         LAMP.to.setZ(this.where.upright ? 0.17 : 0);
+        LAMP.ahead.subVectors(LAMP.to, LAMP.at).normalize();
         this.lamp.position.copy(LAMP.at);
         this.lamp.lookAt(LAMP.to);
         this.lamp.updateMatrixWorld();
@@ -307,8 +306,7 @@ export class Renderer {
         gl.render(this.scene, camera);
 
         this.pass(this.passes.fire, this.fireTarget);
-        this.pass(this.passes.merge, this.merged);
-        const { width, height } = this.merged, bright = this.passes.bright.uniforms;
+        const { width, height } = this.sceneTarget, bright = this.passes.bright.uniforms;
         (bright.pixel!.value as Vector2).set(1 / width, 1 / height);
         this.pass(this.passes.bright, this.bright);
         this.blur(this.halo, 0.005 * height / 4);
@@ -350,12 +348,12 @@ function white(): Texture {
     return texture;
 }
 
-function noiseTexture(): Data3DTexture {
-    const { side, bytes } = noiseBytes();
-    const texture = new Data3DTexture(bytes, side, side, side);
+function noiseTexture(kind: typeof Data3DTexture | typeof DataArrayTexture, { side, bytes }: ReturnType<typeof noiseBytes>): Data3DTexture | DataArrayTexture {
+    const texture = new kind(bytes, side, side, bytes.length / (4 * side * side));
     texture.format = RGBAFormat;
     texture.type = UnsignedByteType;
-    texture.wrapS = texture.wrapT = texture.wrapR = RepeatWrapping;
+    texture.wrapS = texture.wrapT = RepeatWrapping;
+    if (texture instanceof Data3DTexture) texture.wrapR = RepeatWrapping;
     texture.minFilter = texture.magFilter = LinearFilter;
     texture.unpackAlignment = 1;
     texture.colorSpace = NoColorSpace;

@@ -29,62 +29,60 @@ vec3 blackbody_glow(float kelvin) { return texture(glowMap, vec2((kelvin - 780.0
 vec3 flame_colour(float hot) { return texture(glowMap, vec2(hot, 0.75)).rgb; }
 `;
 
-/** The lamp with its shadow, the fire's lights, and a little of the night. */
-export const LAMP = /* glsl */ `
+/** The mean of 12 looks around s into a shadow map, of the four farthest where they agree. */
+export const SHADOW = /* glsl */ `
 precision highp sampler2DShadow;
-uniform vec3 lampAt, lampTo, lampColour, nightColour;
-uniform mat4 lampView;
 uniform sampler2DShadow shadowMap;
+const vec2 DISC[12] = vec2[12](vec2(0.96, -0.19), vec2(-0.84, 0.07), vec2(0.51, 0.77), vec2(-0.61, -0.75), vec2(0.19, -0.89), vec2(-0.20, 0.62),
+    vec2(-0.33, -0.41), vec2(-0.70, 0.46), vec2(0.47, -0.48), vec2(0.44, 0.02), vec2(0.12, 0.21), vec2(0.75, 0.39));
+float lightSeen(vec3 s, float wide) {
+    float angle = 6.2832 * fract(52.98 * fract(dot(gl_FragCoord.xy, vec2(0.0671, 0.00584)))), c = wide * cos(angle), si = wide * sin(angle), sum = 0.0;
+    for (int k = 0; k < 12; k++) {
+        if (k == 4 && (sum < 0.001 || sum > 3.999)) return 0.25 * sum;
+        sum += texture(shadowMap, vec3(s.xy + mat2(c, si, -si, c) * DISC[k], s.z));
+    }
+    return sum / 12.0;
+}
+`;
+
+/** The lamp with its shadow, the fire's lights, and a little of the night. */
+export const LAMP = /* glsl */ `${SHADOW}
+uniform vec3 lampAt, lampAhead, lampColour, nightColour;
+uniform mat4 lampView;
 uniform vec4 fireLights[6]; // position and strength
 uniform vec3 fireColour;
 uniform vec3 eye;
-
-const vec2 DISC[12] = vec2[12](vec2(-0.33, -0.41), vec2(-0.84, 0.07), vec2(-0.70, 0.46), vec2(-0.20, 0.62), vec2(0.96, -0.19),
-    vec2(0.47, -0.48), vec2(0.51, 0.77), vec2(0.19, -0.89), vec2(0.44, 0.02), vec2(0.12, 0.21), vec2(-0.61, -0.75), vec2(0.75, 0.39));
 
 float lampSeen(vec3 p) {
     vec4 q = lampView * vec4(p, 1.0);
     vec3 s = q.xyz / q.w * 0.5 + 0.5;
     if (any(lessThan(s.xy, vec2(0.0))) || any(greaterThan(s.xy, vec2(1.0)))) return 1.0;
-    float angle = 6.2832 * fract(52.98 * fract(dot(gl_FragCoord.xy, vec2(0.0671, 0.00584)))), c = cos(angle), si = sin(angle), sum = 0.0;
-    for (int k = 0; k < 12; k++) {
-        vec2 d = mat2(c, si, -si, c) * DISC[k];
-        sum += texture(shadowMap, vec3(s.xy + d * 0.0042, s.z - 0.0006));
-    }
-    return sum / 12.0;
+    return lightSeen(s - vec3(0.0, 0.0, 0.0006), 0.0042);
 }
 
-/** Light on a side with this normal, and that on its back times what comes through. */
 const vec3 THROUGH = vec3(1.18, 0.98, 0.70); // scattered often, light is warmer
-vec3 lit(vec3 p, vec3 n, float through, float seen) {
-    vec3 to = lampAt - p;
-    float d2 = dot(to, to);
-    vec3 l = to * inversesqrt(d2);
-    float cone = smoothstep(0.62, 0.97, dot(-l, normalize(lampTo - lampAt)));
-    float facing = dot(n, l);
-    vec3 sum = lampColour * (cone * seen / d2) * (max(facing, 0.0) + through * THROUGH * max(-facing, 0.0));
+
+/** What a surface sends to v: light on a side with this normal, and that on its back times what comes through, and highlights, Blinn and Phong. */
+vec3 shaded(vec3 albedo, float through, float gloss, float power, vec3 p, vec3 n, vec3 v, float seen) {
+    vec3 to = lampAt - p, sum = nightColour * (0.6 + 0.4 * n.z), matte = vec3(0.0);
+    float d2 = dot(to, to), shiny = 0.0;
+    vec3 l = to * inversesqrt(d2), h = l + v;
+    float lamp = seen * smoothstep(0.62, 0.97, dot(-l, lampAhead)) / d2, facing = dot(n, l), mid = max(dot(n, h), 0.0);
+    sum += lampColour * (lamp * (max(facing, 0.0) + through * THROUGH * max(-facing, 0.0)));
+    vec3 high = lampColour * (lamp * pow(mid * mid / dot(h, h), 0.5 * power));
     for (int k = 0; k < 6; k++) {
         vec3 f = fireLights[k].xyz - p;
-        float r2 = dot(f, f) + 0.0012, side = dot(n, f) * inversesqrt(r2);
-        sum += fireColour * (fireLights[k].w / r2) * (max(side, 0.0) + 0.12 + through * THROUGH * max(-side, 0.0));
+        float near = inversesqrt(dot(f, f) + 0.0012), w = fireLights[k].w * near * near, side = dot(n, f) * near;
+        matte += w * (max(side, 0.0) + 0.12 + through * THROUGH * max(-side, 0.0));
+        h = f * near + v;
+        mid = max(dot(n, h), 0.0);
+        if (mid > 0.0) shiny += w * pow(mid * mid / dot(h, h), 0.5 * power);
     }
-    return sum + nightColour * (0.6 + 0.4 * n.z);
+    return albedo * (sum + fireColour * matte) + gloss * (high + fireColour * shiny);
 }
 
 /** What is seen in a mirror: the night. */
 vec3 mirrored(vec3 d) { return nightColour * (0.6 + 0.4 * d.z); }
-
-/** Their highlights, Blinn and Phong. */
-vec3 shine(vec3 p, vec3 n, vec3 v, float power, float seen) {
-    vec3 to = lampAt - p, l = normalize(to);
-    float cone = smoothstep(0.62, 0.97, dot(-l, normalize(lampTo - lampAt)));
-    vec3 sum = lampColour * (cone * seen / dot(to, to)) * pow(max(dot(n, normalize(l + v)), 0.0), power);
-    for (int k = 0; k < 6; k++) {
-        vec3 f = fireLights[k].xyz - p;
-        sum += fireColour * (fireLights[k].w / (dot(f, f) + 0.0012)) * pow(max(dot(n, normalize(normalize(f) + v)), 0.0), power);
-    }
-    return sum;
-}
 `;
 
 export const PAPER_VERTEX = /* glsl */ `
@@ -108,7 +106,7 @@ void main() {
     gl_Position = viewProjection * vec4(position, 1.0);
 }`;
 
-/** The sheet in this light: GLSL with lampSeen, lit, shine and mirrored. With SHADOW defined, only where it is. */
+/** The sheet in this light: GLSL with lampSeen, shaded and mirrored. With SHADOW defined, only where it is. */
 export const paper = (light) => /* glsl */ `${NOISE}${GLOW}${light}
 in vec3 vPosition, vNormal, vRest;
 in vec2 vUv;
@@ -136,24 +134,25 @@ void main() {
     if (state.burn > PAPER_WHOLE && is_hole(state, shade_paper_bend(state, point.footprint), point.footprint)) discard;
     colour = vec4(0.0);
 #else
-    Bent bent = shade_paper_bend(state, point.footprint);
+    bool burnt = state.burn > 0.0 || max(state.peak, state.temperature) > 294.0;
+    Bent bent;
+    if (burnt) bent = shade_paper_bend(state, point.footprint);
     if (state.burn > PAPER_WHOLE && is_hole(state, bent, point.footprint)) discard;
     if (dot(point.normal, point.view) < 0.0) point.normal = -point.normal;
 
     vec3 fresh = vec3(0.86, 0.852, 0.832) * tint * texture(printMap, vUv, -0.7).rgb * (1.0 + 0.018 * paper_noise(askew(state.rest), 2.4, point.footprint, 5.0));
-    float scorch = scorch_amount(state, bent, point.footprint), ink = stepf(0.3, 0.75, 1.0 - clamp(dot(fresh, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0));
-    point.transmission *= 1.0 - stepf(0.1, 0.7, scorch);
     point.albedo = fresh;
-    if (state.burn > 0.0 || max(state.peak, state.temperature) > 295.0) {
+    if (burnt) {
+        float scorch = scorch_amount(state, bent, point.footprint), ink = stepf(0.3, 0.75, 1.0 - clamp(dot(fresh, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0));
+        point.transmission *= 1.0 - stepf(0.1, 0.7, scorch);
         char_shade(bent, scorch_colour(scorch) * mix(fresh, vec3(0.80), stepf(0.6, 1.0, scorch)), ink, point);
         ash_shade(state, bent, ink, point);
         ember_shade(state, bent, point);
     }
 
     float seen = lampSeen(vPosition + 0.0008 * point.normal);
-    vec3 c = point.albedo * lit(vPosition, point.normal, point.transmission, seen) + point.glow;
-    c += point.gloss * shine(vPosition, point.normal, point.view, point.shininess, seen) + light_mirrored(point) * mirrored(reflect(-point.view, point.normal));
-    colour = vec4(c, 1.0);
+    vec3 c = shaded(point.albedo, point.transmission, point.gloss, point.shininess, vPosition, point.normal, point.view, seen) + point.glow;
+    colour = vec4(c + light_mirrored(point) * mirrored(reflect(-point.view, point.normal)), 1.0);
 #endif
 }`;
 
@@ -172,11 +171,18 @@ void main() {
 export const table = (light, colour, fade) => /* glsl */ `${NOISE}${light}
 in vec3 vPosition, vNormal;
 out vec4 colour;
+uniform highp sampler2DArray sliceMap;
 float hash(vec2 p) { return fract(sin(dot(p, vec2(127.1, 311.7))) * 43758.5453); }
-float noise2(float x, float y, float z) { return noise4(vec3(x, y, z)).r; }
+/** noise4 half-way between its corners in z, four such in a layer: half of the looks that it takes. */
+vec4 noise2(float x, float y, float layer) {
+    vec2 p = vec2(x, y), i = floor(p), f = p - i;
+    return texture(sliceMap, vec3((i + f * f * (3.0 - 2.0 * f) + 0.5) / 32.0, layer)) * 2.0 - 1.0;
+}
 float visible(float wide, float size) { return clamp(1.5 - 0.9 * size / wide, 0.0, 1.0); }
 float dashes(float u, float v, float wide, float often, float size) {
-    float even = 0.18 * often, shown = visible(1.3 * wide, size), row = floor(v / wide), at = u / (11.0 * wide) + 7.0 * hash(vec2(row, 3.0));
+    float even = 0.18 * often, shown = visible(1.3 * wide, size), row = floor(v / wide);
+    if (shown <= 0.0) return even;
+    float at = u / (11.0 * wide) + 7.0 * hash(vec2(row, 3.0));
     vec2 cell = vec2(mod(floor(at), 997.0), row);
     if (hash(cell) >= often) return (1.0 - shown) * even;
     float w = mix(0.12, 0.3, hash(cell + 0.1)), reach = mix(0.15, 0.48, hash(cell + 0.2));
@@ -190,7 +196,8 @@ void main() {
     float row = floor(p.y / 0.118), across = fract(p.y / 0.118), shift = hash(vec2(row, 7.0));
     float column = floor(p.x / 1.3 + shift), along = fract(p.x / 1.3 + shift) * 1.3;
     float tone = hash(vec2(row, column)), hue = hash(vec2(row + 0.3, column + 0.7));
-    float edge = min(min(across, 1.0 - across) * 0.118, min(along, 1.3 - along)) + 0.0002 * noise2(p.x * 60.0, p.y * 60.0, 12.5);
+    float edge = min(min(across, 1.0 - across) * 0.118, min(along, 1.3 - along));
+    if (edge < 0.01 + size) edge += 0.0002 * noise2(p.x * 60.0, p.y * 60.0, 3.0).r;
     float u = along + 60.0 * hash(vec2(row + 0.5, column)), v0 = (across - 0.5) * 0.118, v = v0;
 
     float depth = 0.016 + 0.09 * tone + (hue > 0.5 ? 1.0 : -1.0) * (0.035 + 0.07 * tone) * (along - 0.6), knot = 9.0;
@@ -203,25 +210,27 @@ void main() {
         if (near <= 0.0) continue;
         v -= r * y * near * min(1.0 / max(far, 1e-6), 1.0);
         depth -= 3.2 * r * near * exp(-far / 7.0);
-        knot = min(knot, sqrt(mix(0.35, 0.9, hash(key + 0.07)) * x * x + y * y) + 0.22 * noise2(1.3 * x, 1.3 * y, 9.5));
+        knot = min(knot, sqrt(mix(0.35, 0.9, hash(key + 0.07)) * x * x + y * y) + 0.22 * noise2(1.3 * x, 1.3 * y, 2.0).g);
     }
 
-    float bend = 0.011 * noise2(u * 2.3, v * 9.0, 0.5) + 0.003 * noise2(u * 9.0, v * 30.0, 1.5);
+    float bend = 0.011 * noise2(u * 2.3, v * 9.0, 0.0).r + 0.003 * noise2(u * 9.0, v * 30.0, 0.0).g;
     float aside = v + 0.09 * (hue - 0.5) + bend, radius = length(vec2(aside, depth)), wide = 0.0034 + 0.003 * hue;
-    float year = radius / wide + 0.35 * noise2(u * 1.3, radius * 60.0, 2.5) + 1.1 * noise2(u * 0.01, radius * 85.0, 9.5) + 0.3 * noise2(u * 17.0, v * 70.0, 3.5)
-        + 0.1 * visible(0.002, size) * noise2(u * 40.0, v * 330.0, 4.5);
+    float year = radius / wide + 0.35 * noise2(u * 1.3, radius * 60.0, 0.0).b + 1.1 * noise2(u * 0.01, radius * 85.0, 2.0).g + 0.3 * noise2(u * 17.0, v * 70.0, 0.0).a, y = p.y + v - v0, fibre = 0.0;
+    vec3 fine = vec3(visible(0.002, size), visible(0.001, size), visible(0.0005, size));
+    if (fine.x > 0.0) year += 0.1 * fine.x * noise2(u * 40.0, v * 330.0, 1.0).r;
+    if (fine.x > 0.0) fibre += 0.5 * fine.x * noise2(u * 31.0, y * 500.0, 0.0).a;
+    if (fine.y > 0.0) fibre += 0.45 * fine.y * noise2(u * 62.0, y * 1000.0, 1.0).r;
+    if (fine.z > 0.0) fibre += 0.4 * fine.z * noise2(u * 125.0, y * 2000.0, 1.0).b;
     float within = fract(year), slope = max(abs(aside) / radius, 0.12), fall = clamp(1.2 * size * slope / wide, 0.03, 0.4), sharp = visible(0.0035 / max(slope, 0.3), size);
     float late = stepf(0.25, 1.0 - fall, within) * (1.0 - stepf(1.0 - fall, 1.0, within)), strength = 0.35 + 0.65 * hash(vec2(floor(year), tone));
     late = mix(0.33, late, sharp) * mix(0.65, strength, sharp);
 
-    float y = p.y + v - v0;
-    float fibre = 0.5 * noise2(u * 31.0, y * 500.0, 3.5) * visible(0.002, size) + 0.45 * noise2(u * 62.0, y * 1000.0, 4.5) * visible(0.001, size)
-        + 0.4 * noise2(u * 125.0, y * 2000.0, 6.5) * visible(0.0005, size);
     float pores = max(0.9 * dashes(u, y, 0.00075, 0.9 * mix(0.3, 1.0 - stepf(0.05, 0.5, within), sharp), size), 0.7 * dashes(u, y + 0.7, 0.0004, 0.4, size));
-    float blotch = noise2(u * 3.1, v * 14.0, 6.5), wear = noise2(p.x * 5.0, p.y * 5.0, 7.5), inside = 1.0 - stepf(0.9, 1.05, knot);
+    float blotch = noise2(u * 3.1, v * 14.0, 1.0).b, wear = noise2(p.x * 5.0, p.y * 5.0, 1.0).a, inside = 1.0 - stepf(0.9, 1.05, knot), core = 0.0;
+    if (inside > 0.0) core = 0.18 * noise2(6.0 * knot, u, 2.0).r;
     float value = 1.19 + 0.46 * (tone - 0.5) - 0.66 * late + 0.24 * fibre + 0.10 * blotch + 0.05 * wear;
     value *= 1.0 - 0.64 * pores;
-    value *= mix(1.0 - 0.3 * (1.0 - stepf(0.9, 2.5, knot)), 0.5 + 0.18 * noise2(6.0 * knot, u, 8.5), inside) * (1.0 - 0.4 * (1.0 - stepf(0.02, 0.2, abs(knot - 1.0))));
+    value *= mix(1.0 - 0.3 * (1.0 - stepf(0.9, 2.5, knot)), 0.5 + core, inside) * (1.0 - 0.4 * (1.0 - stepf(0.02, 0.2, abs(knot - 1.0))));
     float soft = max(0.0008, 0.7 * size), joint = 1.0 - stepf(0.0003, soft + 0.0003, edge);
     value *= (1.0 - 0.86 * joint * min(1.0, 0.0016 / size)) * (1.0 - 0.2 * (1.0 - stepf(0.0005, 0.009, edge)));
 
@@ -229,7 +238,7 @@ void main() {
     vec3 albedo = ${colour} * vec3(1.0 + 0.22 * red, 1.0 - 0.10 * red, 1.0 - 0.42 * red) * max(value, 0.04);
     vec3 n = normalize(vec3(0.004 * wear, 0.012 * (blotch + fibre), 1.0));
     float polish = (0.46 - 0.16 * late + 0.20 * wear + 0.16 * fibre) * (1.0 - 0.8 * joint) * (1.0 - 0.6 * pores), open = lampSeen(p + vec3(0.0, 0.0, 0.0006));
-    vec3 c = albedo * lit(p, n, 0.0, open) + 0.10 * polish * shine(p, n, view, 26.0, open);
+    vec3 c = shaded(albedo, 0.0, 0.10 * polish, 26.0, p, n, view, open);
     ${fade}
     colour = vec4(c, 1.0);
 }`;
@@ -242,7 +251,7 @@ out vec4 colour;
 void main() {
     vec3 n = normalize(vNormal), view = normalize(eye - vPosition);
     float seen = lampSeen(vPosition + 0.0015 * n), grain = 1.0 + 0.12 * noise4(vPosition * vec3(900.0, 900.0, 900.0)).r;
-    colour = vec4(albedo * grain * lit(vPosition, n, 0.0, seen) + gloss * shine(vPosition, n, view, 40.0, seen) + emission, 1.0);
+    colour = vec4(shaded(albedo * grain, 0.0, gloss, 40.0, vPosition, n, view, seen) + emission, 1.0);
 }`;
 
 /** Sparks and flakes (airborne.js), four corners each: a spark is a streak at least some pixels wide, a flake a plate. */
@@ -299,7 +308,7 @@ void main() {
     float rim = 1.0 - stepf(0.0, 0.28, inside), pale = clamp(vWhat.z + 0.25 * rim + 0.3 * noise4(vec3(2.3 * vAt, seed.y)).b, 0.0, 1.0);
     vec3 albedo = mix(vec3(0.014), vec3(0.30, 0.30, 0.29), pale * pale);
     vec3 glow = blackbody_glow(vWhat.y) * 1.6 * stepf(800.0, 950.0, vWhat.y) * stepf(-0.1, 0.5, noise4(vec3(4.0 * vAt, seed.y)).a);
-    colour = vec4(albedo * lit(vPosition, n, 0.25, lampSeen(vPosition)) + glow, 0.96) * vec4(vec3(0.96), 1.0);
+    colour = vec4(shaded(albedo, 0.25, 0.0, 1.0, vPosition, n, view, lampSeen(vPosition)) + glow, 0.96) * vec4(vec3(0.96), 1.0);
 }`;
 
 export const FULL_VERTEX = /* glsl */ `
@@ -406,31 +415,28 @@ void main() {
     colour = vec4(light, clear);
 }`;
 
-/** Fire in front of the scene. */
-export const MERGE = /* glsl */ `
+/** Fire in front of the scene: the mean of a few looks, as its steps begin at random. */
+const FIRE_SEEN = /* glsl */ `
 precision highp float;
 in vec2 at;
 uniform sampler2D sceneMap, fireMap2;
-out vec4 colour;
-void main() {
-    vec2 d = 0.75 / vec2(textureSize(fireMap2, 0)); // the mean of a few: steps of the fire begin at random
-    vec4 f = 0.25 * (texture(fireMap2, at + d) + texture(fireMap2, at - d) + texture(fireMap2, at + vec2(d.x, -d.y)) + texture(fireMap2, at + vec2(-d.x, d.y)));
-    colour = vec4(texture(sceneMap, at).rgb * f.a + f.rgb, 1.0);
-}`;
+vec4 fireSeen(float apart) {
+    vec2 d = apart / vec2(textureSize(fireMap2, 0));
+    return 0.25 * (texture(fireMap2, at + d) + texture(fireMap2, at - d) + texture(fireMap2, at + vec2(d.x, -d.y)) + texture(fireMap2, at + vec2(-d.x, d.y)));
+}
+`;
 
 /** What is overexposed, smaller. */
-export const BRIGHT = /* glsl */ `
-precision highp float;
-in vec2 at;
-uniform sampler2D map;
+export const BRIGHT = /* glsl */ `${FIRE_SEEN}
 uniform vec2 pixel;
 uniform float exposure;
 out vec4 colour;
 void main() {
     vec3 sum = vec3(0.0);
+    vec4 fire = fireSeen(1.0);
     for (int j = 0; j < 2; j++)
         for (int i = 0; i < 2; i++) {
-            vec3 c = min(texture(map, at + (vec2(i, j) * 2.0 - 1.0) * pixel).rgb * exposure, vec3(16.0));
+            vec3 c = min((texture(sceneMap, at + (vec2(i, j) * 2.0 - 1.0) * pixel).rgb * fire.a + fire.rgb) * exposure, vec3(16.0));
             float peak = max(c.r, max(c.g, c.b));
             sum += c * max(peak - 1.1, 0.0) / max(peak, 1e-6);
         }
@@ -456,10 +462,8 @@ void main() {
 }`;
 
 /** The halo and the film's curve (film.c). */
-export const FILM = /* glsl */ `
-precision highp float;
-in vec2 at;
-uniform sampler2D map, halo, glare;
+export const FILM = /* glsl */ `${FIRE_SEEN}
+uniform sampler2D halo, glare;
 uniform float exposure, vignette;
 uniform vec2 resolution;
 out vec4 colour;
@@ -470,7 +474,8 @@ float curve(float x) {
     return f <= 0.0031308 ? 12.92 * f : 1.055 * pow(f, 1.0 / 2.4) - 0.055;
 }
 void main() {
-    vec3 c = texture(map, at).rgb * exposure + 0.14 * texture(halo, at).rgb + 0.10 * texture(glare, at).rgb;
+    vec4 fire = fireSeen(0.75);
+    vec3 c = (texture(sceneMap, at).rgb * fire.a + fire.rgb) * exposure + 0.14 * texture(halo, at).rgb + 0.10 * texture(glare, at).rgb;
     vec2 d = (at - 0.5) * vec2(resolution.x / resolution.y, 1.0);
     c *= 1.0 - vignette * smoothstep(0.35, 1.05, length(d));
     float over = max(max(c.r, max(c.g, c.b)) - 1.0, 0.0), leak = 0.02 + 0.14 * over * over / (over * over + 9.0);

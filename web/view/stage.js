@@ -4,7 +4,7 @@ import { Flying } from "./flying.js";
 import { refineGas } from "./gas.js";
 import { LOOK } from "./look.js";
 import * as glsl from "./shaders.js";
-import { glowBytes, noiseBytes } from "./tables.js";
+import { glowBytes, noiseBytes, sliceBytes } from "./tables.js";
 import { gapsOf, REACH } from "./contact.js";
 import { FIELDS, VERTEX_BYTES } from "./frame.js";
 import { add, apply, cross, dot, invert, length, lookAt, multiply, orthographic, perspective, placed, unit } from "./math.js";
@@ -13,23 +13,17 @@ import { COLOURS, placesOf } from "./strands.js";
 const SHADOW = 2048, LIGHTS = 16, GAP = FIELDS.length, TABLE = 1024; // the attribute of contact; texels of a row of a table
 
 /** The scene's sun, sky and lamps, after program/preview/lighting.c and lamps.c: what LAMP is for the page. */
-const DAY = /* glsl */ `
-precision highp sampler2DShadow;
+const DAY = /* glsl */ `${glsl.SHADOW}
 uniform vec3 sunTo, sunLight, eye, ambient[9];
 uniform mat4 lampView;
-uniform sampler2DShadow shadowMap;
 uniform float soft;
 uniform vec4 lampPlace[${LIGHTS}], lampStrength[${LIGHTS}];
 uniform int lampCount;
-const vec2 DISC[12] = vec2[12](vec2(-0.33, -0.41), vec2(-0.84, 0.07), vec2(-0.70, 0.46), vec2(-0.20, 0.62), vec2(0.96, -0.19),
-    vec2(0.47, -0.48), vec2(0.51, 0.77), vec2(0.19, -0.89), vec2(0.44, 0.02), vec2(0.12, 0.21), vec2(-0.61, -0.75), vec2(0.75, 0.39));
 float lampSeen(vec3 p) {
     vec4 q = lampView * vec4(p, 1.0);
     vec3 s = q.xyz * 0.5 + 0.5;
     if (any(lessThan(s, vec3(0.0))) || any(greaterThan(s, vec3(1.0)))) return 1.0;
-    float angle = 6.2832 * fract(52.98 * fract(dot(gl_FragCoord.xy, vec2(0.0671, 0.00584)))), c = cos(angle), si = sin(angle), sum = 0.0;
-    for (int k = 0; k < 12; k++) sum += texture(shadowMap, vec3(s.xy + mat2(c, si, -si, c) * DISC[k] * soft, s.z - 0.0015));
-    return sum / 12.0;
+    return lightSeen(s - vec3(0.0, 0.0, 0.0015), soft);
 }
 vec3 skyLight(vec3 n) {
     vec3 sum = 0.282095 * ambient[0] + 0.488603 * (n.y * ambient[1] + n.z * ambient[2] + n.x * ambient[3]);
@@ -39,27 +33,22 @@ vec3 skyLight(vec3 n) {
 }
 vec3 mirrored(vec3 d) { return skyLight(d); }
 const vec3 THROUGH = vec3(1.18, 0.98, 0.70); // scattered often, light is warmer
-vec3 lit(vec3 p, vec3 n, float through, float seen) {
+vec3 shaded(vec3 albedo, float through, float gloss, float power, vec3 p, vec3 n, vec3 v, float seen) {
     float facing = dot(n, sunTo);
-    vec3 sum = sunLight * seen * (max(facing, 0.0) + through * THROUGH * max(-facing, 0.0));
-    sum += skyLight(n) + through * THROUGH * skyLight(-n);
+    vec3 sum = sunLight * seen * (max(facing, 0.0) + through * THROUGH * max(-facing, 0.0)), high = vec3(0.0);
+    sum += skyLight(n);
+    if (through > 0.0) sum += through * THROUGH * skyLight(-n);
+    if (gloss > 0.0) high = sunLight * seen * pow(max(dot(n, normalize(sunTo + v)), 0.0), power) + 0.4 * skyLight(reflect(-v, n));
     // sheets are wrapped, as flames have an extent; what lies below them is not, in place of the shadow that sheets cast
     float wrap = through > 0.0 ? 0.2 : 0.0;
     for (int k = 0; k < lampCount; k++) {
-        vec3 f = lampPlace[k].xyz - p;
-        float d2 = dot(f, f) + lampPlace[k].w, c = dot(n, f) * inversesqrt(d2);
+        vec3 f = lampPlace[k].xyz - p, light = lampStrength[k].rgb;
+        float r2 = dot(f, f), d2 = r2 + lampPlace[k].w, c = dot(n, f) * inversesqrt(d2);
         float before = max((c + wrap) / (1.0 + wrap), 0.0);
-        sum += lampStrength[k].rgb * ((before + THROUGH * max(-through * c - before, 0.0)) / d2);
+        sum += light * ((before + THROUGH * max(-through * c - before, 0.0)) / d2);
+        if (gloss > 0.0) high += light * (pow(max(dot(n, normalize(f * inversesqrt(r2) + v)), 0.0), power) / d2);
     }
-    return sum;
-}
-vec3 shine(vec3 p, vec3 n, vec3 v, float power, float seen) {
-    vec3 sum = sunLight * seen * pow(max(dot(n, normalize(sunTo + v)), 0.0), power) + 0.4 * skyLight(reflect(-v, n));
-    for (int k = 0; k < lampCount; k++) {
-        vec3 f = lampPlace[k].xyz - p;
-        sum += lampStrength[k].rgb * pow(max(dot(n, normalize(normalize(f) + v)), 0.0), power) / (dot(f, f) + lampPlace[k].w);
-    }
-    return sum;
+    return albedo * sum + gloss * high;
 }
 `;
 
@@ -103,7 +92,7 @@ void main() {
         n = normalize(vec3(0.02 * patches, 0.02 * rough, 1.0));
     }
     float seen = lampSeen(p + vec3(0.0, 0.0, 0.0006));
-    vec3 c = groundColour * max(value, 0.1) * lit(p, n, 0.0, seen) + (stone > 0.5 ? 0.04 : 0.008) * shine(p, n, view, 26.0, seen);
+    vec3 c = shaded(groundColour * max(value, 0.1), 0.0, stone > 0.5 ? 0.04 : 0.008, 26.0, p, n, view, seen);
     ${FADE}
     colour = vec4(c, 1.0);
 }`;
@@ -133,7 +122,7 @@ void main() {
         tilt = 0.03 * vec2(sweep, grain);
     }
     albedo *= 1.0 - 0.5 * exp(-max(p.z - floorHeight, 0.0) / 0.03);
-    vec3 c = albedo * lit(p, normalize(face + tilt.x * wallAlong + vec3(0.0, 0.0, tilt.y)), 0.0, lampSeen(p + 0.0006 * face));
+    vec3 c = shaded(albedo, 0.0, 0.0, 1.0, p, normalize(face + tilt.x * wallAlong + vec3(0.0, 0.0, tilt.y)), view, lampSeen(p + 0.0006 * face));
     ${FADE}
     colour = vec4(c, 1.0);
 }`;
@@ -148,7 +137,7 @@ void main() {
     if (dot(n, view) < 0.0) n = -n;
     float seen = lampSeen(vPosition + 0.0015 * n), hot = kelvin > 800.0 ? 1.0 : 0.0, scale = noise4(vPosition * 120.0).r;
     vec3 glow = hot * blackbody_glow(kelvin + 60.0 * scale) * 3.0 * (0.6 + 0.4 * dot(n, view));
-    colour = vec4(albedo * (1.0 - 0.55 * hot) * lit(vPosition, n, 0.0, seen) + 0.06 * shine(vPosition, n, view, 40.0, seen) + glow, 1.0);
+    colour = vec4(shaded(albedo * (1.0 - 0.55 * hot), 0.0, 0.06, 40.0, vPosition, n, view, seen) + glow, 1.0);
 }`;
 
 /** One field by colour, shaded a little so that folds are seen. */
@@ -305,11 +294,12 @@ export class Stage {
         this.programs = {
             wood: this.program(glsl.PLAIN_VERTEX, GROUND_WOOD), plain: this.program(glsl.PLAIN_VERTEX, GROUND_PLAIN), wall: this.program(glsl.PLAIN_VERTEX, WALL), shape: this.program(glsl.PLAIN_VERTEX, SHAPE),
             paper: this.program(SHEET_VERTEX, glsl.paper(DAY)), caster: this.program(SHEET_VERTEX, `#define SHADOW\n${glsl.paper(DAY)}`), field: this.program(SHEET_VERTEX, FIELD), slice: this.program(glsl.PLAIN_VERTEX, SLICE), grid: this.program(glsl.PLAIN_VERTEX, FIELD_GROUND),
-            strand: this.program(STRAND_VERTEX, STRAND), flying: this.program(glsl.AIRBORNE_VERTEX, glsl.airborne(DAY)), fire: this.program(glsl.FULL_VERTEX, glsl.FIRE), merge: this.program(glsl.FULL_VERTEX, glsl.MERGE), bright: this.program(glsl.FULL_VERTEX, glsl.BRIGHT),
+            strand: this.program(STRAND_VERTEX, STRAND), flying: this.program(glsl.AIRBORNE_VERTEX, glsl.airborne(DAY)), fire: this.program(glsl.FULL_VERTEX, glsl.FIRE), bright: this.program(glsl.FULL_VERTEX, glsl.BRIGHT),
             blur: this.program(glsl.FULL_VERTEX, glsl.BLUR), film: this.program(glsl.FULL_VERTEX, glsl.FILM), copy: this.program(glsl.FULL_VERTEX, COPY),
         };
         const { side, bytes } = noiseBytes(), glow = glowBytes();
         this.noise = this.texture3d(side, side, side, bytes, gl.REPEAT);
+        this.slices = this.texture3d(side, side, 4, sliceBytes().bytes, gl.REPEAT, gl.TEXTURE_2D_ARRAY);
         this.glow = this.texture2d(glow.width, 2, gl.RGBA16F, gl.RGBA, gl.FLOAT, glow.values);
         this.ramps = Object.fromEntries(Object.entries(LAYERS).map(([name, layer]) => [name, this.texture2d(256, 1, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, ramp(layer))]));
         this.white = this.texture2d(1, 1, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array([255, 255, 255, 255]));
@@ -370,7 +360,7 @@ export class Stage {
             case gl.FLOAT_MAT4: gl.uniformMatrix4fv(place, false, value); break;
             default:
                 gl.activeTexture(gl.TEXTURE0 + unit_);
-                gl.bindTexture(type === gl.SAMPLER_3D ? gl.TEXTURE_3D : gl.TEXTURE_2D, value);
+                gl.bindTexture(type === gl.SAMPLER_3D ? gl.TEXTURE_3D : type === gl.SAMPLER_2D_ARRAY ? gl.TEXTURE_2D_ARRAY : gl.TEXTURE_2D, value);
                 gl.uniform1i(place, unit_++);
             }
         }
@@ -392,13 +382,13 @@ export class Stage {
         return texture;
     }
 
-    texture3d(x, y, z, bytes, wrap) {
+    texture3d(x, y, z, bytes, wrap, kind = this.gl.TEXTURE_3D) {
         const { gl } = this, texture = gl.createTexture();
-        gl.bindTexture(gl.TEXTURE_3D, texture);
+        gl.bindTexture(kind, texture);
         gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-        gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA, x, y, z, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
-        for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_3D, name, gl.LINEAR);
-        for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R]) gl.texParameteri(gl.TEXTURE_3D, name, wrap);
+        gl.texImage3D(kind, 0, gl.RGBA, x, y, z, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+        for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(kind, name, gl.LINEAR);
+        for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R]) gl.texParameteri(kind, name, wrap);
         return texture;
     }
 
@@ -431,7 +421,7 @@ export class Stage {
         const { gl } = this, w = Math.max(width, 2), h = Math.max(height, 2), half = Math.ceil(w / 2), quarter = Math.ceil(w / 4);
         this.canvas.width = w;
         this.canvas.height = h;
-        for (const name of ["scene", "merged"]) this.target(name, w, h);
+        this.target("scene", w, h);
         this.target("fire", half, Math.ceil(h / 2));
         for (const name of ["bright", "across", "halo", "glare"]) this.target(name, quarter, Math.ceil(h / 4));
         for (const old of [this.colourBuffer, this.depthBuffer]) if (old) gl.deleteRenderbuffer(old);
@@ -535,7 +525,7 @@ export class Stage {
         }
         const soft = Math.min(Math.max((Math.tan(room.sun_angle) * 0.10) / sun.size, 1.2 / SHADOW), 0.02);
         const shared = {
-            viewProjection: matrix, eye: camera.eye, noiseMap: this.noise, glowMap: this.glow, time: frame.time % 1000, sunTo: room.towards, sunLight: room.sun,
+            viewProjection: matrix, eye: camera.eye, noiseMap: this.noise, sliceMap: this.slices, glowMap: this.glow, time: frame.time % 1000, sunTo: room.towards, sunLight: room.sun,
             ambient: room.ambient, lampView: sun.matrix, shadowMap: this.shadowMap, soft, lampPlace: places, lampStrength: strengths, lampCount: frame.lightCount,
             groundColour: room.ground_colour, background: room.background, reach, stone: room.ground === 1 ? 1 : 0,
         };
@@ -588,15 +578,14 @@ export class Stage {
         }
         copy(this.depthFrame, gl.DEPTH_BUFFER_BIT);
         this.drawFire(camera, matrix, shared);
-        const { merged, fire, bright, across, halo, glare } = this.targets;
-        this.pass("merge", merged, { sceneMap: scene.texture, fireMap2: fire.texture });
-        this.pass("bright", bright, { map: merged.texture, pixel: [1 / merged.width, 1 / merged.height], exposure: room.exposure });
+        const { fire, bright, across, halo, glare } = this.targets, seen = { sceneMap: scene.texture, fireMap2: fire.texture, exposure: room.exposure };
+        this.pass("bright", bright, { ...seen, pixel: [1 / scene.width, 1 / scene.height] });
         for (const [to, sigma] of [[halo, 0.005], [glare, 0.022]]) {
-            const wide = Math.max((sigma * merged.height) / 4, 0.5);
+            const wide = Math.max((sigma * scene.height) / 4, 0.5);
             this.pass("blur", across, { map: bright.texture, along: [1 / bright.width, 0], sigma: wide });
             this.pass("blur", to, { map: across.texture, along: [0, 1 / bright.height], sigma: wide });
         }
-        this.pass("film", null, { map: merged.texture, halo: halo.texture, glare: glare.texture, exposure: room.exposure, vignette: 0, resolution: [merged.width, merged.height] });
+        this.pass("film", null, { ...seen, halo: halo.texture, glare: glare.texture, vignette: 0, resolution: [scene.width, scene.height] });
     }
 
     /** An upright plane across the look, `this.slice` of the way through the gas. */

@@ -14,6 +14,16 @@ export function noiseBytes() {
     return { side, bytes };
 }
 
+/** Of the first byte of these, means of corners that follow each other in z, from 0 to 16, four in a layer. */
+export function sliceBytes() {
+    const { side, bytes } = noiseBytes(), slice = side * side, means = new Uint8Array(16 * slice);
+    for (let i = 0; i < means.length; i++) {
+        const z = Math.floor(i / slice), at = i % slice, mean = (bytes[4 * i] + bytes[4 * (i + slice)]) / 2;
+        means[4 * (slice * (z >> 2) + at) + (z & 3)] = Math.round(mean);
+    }
+    return { side, bytes: means };
+}
+
 /** Planck's law by the eye's three curves (blackbody.c), linear Rec. 709 as a camera balanced for 3400 K sees it. */
 function blackbody(kelvin) {
     const lobe = (x, centre, left, right) => Math.exp(-0.5 * ((x - centre) * (x < centre ? left : right)) ** 2);
