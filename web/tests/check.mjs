@@ -128,6 +128,20 @@ const CASES = {
             const changes = seen.filter((share, i) => i > 0 && share !== seen[i - 1]).length;
             assert.ok(changes < 10 && (end === null || seen.at(-1) === end), `${fixed} and ${most} ms: ${changes} changes, ${seen.at(-1)} at the end`);
         }
+        // ms for all pixels, and in every so many drawings more: from two seconds on no more than one frame of 60 is missed
+        for (const [most, spike, every] of [[18, 0, 1], [18, 24, 10], [24, 32, 10], [18, 24, 25], [14, 24, 30]]) {
+            const pixels = new Pixels({}), frame = 1000 / 60, seen = [];
+            let frames = 0;
+            for (let now = 0, i = 0; now < 90_000; i++) {
+                const ms = (i % every === every - 1 && spike ? spike : most) * pixels.share ** 2 + 0.8 * Math.abs(Math.sin(7 * i));
+                now += frame * Math.ceil(ms / frame);
+                pixels.took(ms, now);
+                if (now > 2000) frames++;
+                seen.push(pixels.share);
+            }
+            const changes = seen.filter((share, i) => i > 0 && share !== seen[i - 1]).length;
+            assert.ok(frames / 88 >= 59 && changes <= 8 && seen.at(-1) >= 0.5, `${most} and ${spike} ms: ${(frames / 88).toFixed(1)} frames/s, ${changes} changes, ${seen.at(-1)} at the end`);
+        }
         await flame(false);
         const wide = () => page.evaluate(() => document.querySelector("#view").width), played = await wide();
         await page.keyboard.press("Space");

@@ -3,7 +3,9 @@
 
 const SHARES = [0.35, 0.5, 0.7, 0.85, 1];
 const IN_TIME = [Infinity, 32, 15, 15, 15]; // ms: 60 frames a second, or where pixels would be seen, 30
-const TRIES = { fewer: 3, more: 6, most: 600 }; // drawings in a row
+const LATE = { most: 2, within: 2000 }; // late drawings in so many ms: one of 60
+const MORE = { first: 6, calm: 600 }; // drawings in a row with time to spare, before and after a share was too much
+const FAILED = 60_000; // ms for which a share that was too much is not tried again
 const SETTLES = 3; // drawings after a change, in which the card also makes its pictures anew
 const STILL = 250; // ms
 
@@ -11,9 +13,10 @@ export class Pixels {
     #gl;
     #level = 0; // the first drawings also compile programs
     #fence = null;
-    #streak = 0; // drawings in a row that were in time for more pixels, or negative, too slow
+    #fast = 0; // drawings in a row with time for more pixels
+    #late = []; // when the last late ones were
     #settling = 0;
-    #patience = TRIES.more; // drawings until more pixels are tried, more after each try that failed
+    #failed = SHARES.map(() => -Infinity); // when each share was too much
     #moved = 0;
     #whole = false;
     /** A share that tests ask for. @type {number | null} */
@@ -54,17 +57,25 @@ export class Pixels {
     }
 
     /** A drawing took so many ms. */
-    took(ms) {
+    took(ms, now = performance.now()) {
         if (this.fixed !== null || this.held) return;
         if (this.#settling > 0) return void this.#settling--;
         const level = this.#level, next = level + 1, more = (1 + (SHARES[next] / SHARES[level]) ** 2) / 2; // half of the time is for pixels
-        const slow = ms > IN_TIME[level], fast = next < SHARES.length && more * ms < IN_TIME[next];
-        this.#streak = slow ? Math.min(this.#streak, 0) - 1 : fast ? Math.max(this.#streak, 0) + 1 : 0;
-        const by = this.#streak <= -TRIES.fewer ? -1 : this.#streak >= this.#patience ? 1 : 0;
-        if (!by) return;
-        if (by < 0) this.#patience = Math.min(4 * this.#patience, TRIES.most);
-        this.#settling = SETTLES;
+        this.#fast = more * ms < IN_TIME[next] && now - this.#failed[next] > FAILED ? this.#fast + 1 : 0;
+        this.#late = this.#late.filter((time) => now - time < LATE.within);
+        if (ms > IN_TIME[level]) this.#late.push(now);
+        if (this.#late.length > LATE.most) {
+            this.#failed[level] = now;
+            this.#change(-1);
+        } else if (this.#fast >= (this.#failed.every((time) => time === -Infinity) ? MORE.first : MORE.calm)) {
+            this.#change(1);
+        }
+    }
+
+    #change(by) {
         this.#level += by;
-        this.#streak = 0;
+        this.#settling = SETTLES;
+        this.#fast = 0;
+        this.#late = [];
     }
 }
