@@ -3,7 +3,7 @@ import { AIRBORNE_FLOATS, airborneOf, GLOWING, STARVED } from "./airborne.js";
 
 const PARTS = ["from", "to", "across", "what"];
 
-/** Of temperature, rate, glowing, burn, gradient and starved: which short of a vertex it is, and its value at 1 (SHEET_VERTEX in stage.js). */
+/** Of temperature, rate, glowing, burn, gradient and starved: which short of a vertex it is, and its value at 1 (SHEET_VERTEX in daylight.js). */
 const SHORT = [18, 20, 20, 22, 23, 20], MOST = [5000, 64, 64, 1, 400, 64].map((most) => most / 65535);
 const KINDS = { [GLOWING]: 65535, [STARVED]: 32768 }; // of what burns (PackVertex)
 

@@ -1,293 +1,31 @@
 // Draws a frame by WebGL 2: ground, sheets and shapes in the scene's light, then fire, a lens's halo and the film's curve,
 // with the shaders of the page; or one field of the sheets by colour.
+import { Card, GAP } from "./card.js";
+import { gapsOf } from "./contact.js";
+import { DAY, GROUND_PLAIN, GROUND_WOOD, LIGHTS, SHAPE, SHEET_VERTEX, WALL } from "./daylight.js";
 import { Flying } from "./flying.js";
-import { refineGas } from "./gas.js";
-import { LOOK } from "./look.js";
-import * as glsl from "./shaders.js";
-import { glowBytes, noiseBytes, sliceBytes } from "./tables.js";
-import { gapsOf, REACH } from "./contact.js";
 import { FIELDS, VERTEX_BYTES } from "./frame.js";
+import { refineGas } from "./gas.js";
+import { FIELD, FIELD_GROUND, hex, LAYERS, ramp, SLICE, STRAND, STRAND_VERTEX, TABLE } from "./layers.js";
+import { LOOK } from "./look.js";
 import { add, apply, cross, dot, invert, length, lookAt, multiply, orthographic, perspective, placed, unit } from "./math.js";
+import * as glsl from "./shaders.js";
+import { box, sphere } from "./solids.js";
 import { COLOURS, placesOf } from "./strands.js";
+import { glowBytes, noiseBytes, sliceBytes } from "./tables.js";
 
-const SHADOW = 2048, LIGHTS = 16, GAP = FIELDS.length, TABLE = 1024; // the attribute of contact; texels of a row of a table
-
-/** The scene's sun, sky and lamps, after program/preview/lighting.c and lamps.c: what LAMP is for the page. */
-const DAY = /* glsl */ `${glsl.SHADOW}
-uniform vec3 sunTo, sunLight, eye, ambient[9];
-uniform mat4 lampView;
-uniform float soft;
-uniform vec4 lampPlace[${LIGHTS}], lampStrength[${LIGHTS}];
-uniform int lampCount;
-float lampSeen(vec3 p) {
-    vec4 q = lampView * vec4(p, 1.0);
-    vec3 s = q.xyz * 0.5 + 0.5;
-    if (any(lessThan(s, vec3(0.0))) || any(greaterThan(s, vec3(1.0)))) return 1.0;
-    return lightSeen(s - vec3(0.0, 0.0, 0.0015), soft);
-}
-vec3 skyLight(vec3 n) {
-    vec3 sum = 0.282095 * ambient[0] + 0.488603 * (n.y * ambient[1] + n.z * ambient[2] + n.x * ambient[3]);
-    sum += 1.092548 * (n.x * n.y * ambient[4] + n.y * n.z * ambient[5] + n.x * n.z * ambient[7]);
-    sum += 0.315392 * (3.0 * n.z * n.z - 1.0) * ambient[6] + 0.546274 * (n.x * n.x - n.y * n.y) * ambient[8];
-    return max(sum, vec3(0.0));
-}
-vec3 mirrored(vec3 d) { return skyLight(d); }
-const vec3 THROUGH = vec3(1.18, 0.98, 0.70); // scattered often, light is warmer
-vec3 shaded(vec3 albedo, float through, float gloss, float power, vec3 p, vec3 n, vec3 v, float seen) {
-    float facing = dot(n, sunTo);
-    vec3 sum = sunLight * seen * (max(facing, 0.0) + through * THROUGH * max(-facing, 0.0)), high = vec3(0.0);
-    sum += skyLight(n);
-    if (through > 0.0) sum += through * THROUGH * skyLight(-n);
-    if (gloss > 0.0) high = sunLight * seen * pow(max(dot(n, normalize(sunTo + v)), 0.0), power) + 0.4 * skyLight(reflect(-v, n));
-    // sheets are wrapped, as flames have an extent; what lies below them is not, in place of the shadow that sheets cast
-    float wrap = through > 0.0 ? 0.2 : 0.0;
-    for (int k = 0; k < lampCount; k++) {
-        vec3 f = lampPlace[k].xyz - p, light = lampStrength[k].rgb;
-        float r2 = dot(f, f), d2 = r2 + lampPlace[k].w, c = dot(n, f) * inversesqrt(d2);
-        float before = max((c + wrap) / (1.0 + wrap), 0.0);
-        sum += light * ((before + THROUGH * max(-through * c - before, 0.0)) / d2);
-        if (gloss > 0.0) high += light * (pow(max(dot(n, normalize(f * inversesqrt(r2) + v)), 0.0), power) / d2);
-    }
-    return albedo * sum + gloss * high;
-}
-`;
-
-const SHEET_VERTEX = /* glsl */ `
-in vec3 position, normal, rest;
-in vec2 uv;
-in vec4 heat, look, more;
-in float gap;
-uniform mat4 viewProjection;
-out vec3 vPosition, vNormal, vRest;
-out vec2 vUv;
-out vec3 vLeaf;
-out vec4 vHeat, vLook, vMore;
-void main() {
-    vPosition = position;
-    vNormal = normal;
-    vRest = rest;
-    vUv = uv;
-    vHeat = heat * vec4(5000.0, 5000.0, 64.0, 0.0);
-    vHeat.w = more.y > 0.75 ? vHeat.z : 0.0;
-    vLook = look * vec4(1.0, 400.0, 1.0, 655.35);
-    vLeaf = vec3(more.w * 0.0655, more.y > 0.25 && more.y < 0.75 ? vHeat.z : 0.0, heat.w * 1.2e5);
-    vMore = vec4(more.xy, more.z * 4.0 - 1.0, gap);
-    gl_Position = viewProjection * vec4(position, 1.0);
-}`;
-
-const FADE = "float far = distance(eye, p) / reach; c = mix(background, c, exp(-far * far * far));";
-const GROUND_WOOD = glsl.table(DAY, "groundColour", FADE).replace("out vec4 colour;", "out vec4 colour;\nuniform vec3 groundColour, background;\nuniform float reach;");
-const GROUND_PLAIN = /* glsl */ `${glsl.NOISE}${DAY}
-in vec3 vPosition, vNormal;
-out vec4 colour;
-uniform vec3 groundColour, background;
-uniform float reach, stone;
-void main() {
-    vec3 p = vPosition, view = normalize(eye - p);
-    float cloud = noise4(p * 7.0).r, patches = noise4(p * 26.0).g, rough = noise4(p * 110.0).b, value = 1.0;
-    vec3 n = vec3(0.0, 0.0, 1.0);
-    if (stone > 0.5) {
-        float line = abs(noise4(vec3((p.x + 0.03 * cloud) * 7.5 + 3.0, p.y * 2.6, 0.5)).r);
-        value = 0.95 + 0.30 * cloud + 0.22 * patches + 0.13 * rough + 1.1 * (1.0 - smoothstep(0.004, 0.025, line)) * smoothstep(-0.45, 0.25, patches);
-        n = normalize(vec3(0.02 * patches, 0.02 * rough, 1.0));
-    }
-    float seen = lampSeen(p + vec3(0.0, 0.0, 0.0006));
-    vec3 c = shaded(groundColour * max(value, 0.1), 0.0, stone > 0.5 ? 0.04 : 0.008, 26.0, p, n, view, seen);
-    ${FADE}
-    colour = vec4(c, 1.0);
-}`;
-
-/** After shade_wall.c. */
-const WALL = /* glsl */ `${glsl.NOISE}${DAY}
-in vec3 vPosition;
-out vec4 colour;
-uniform vec3 wallColour, wallAlong, background;
-uniform float reach, bricks, floorHeight;
-float hash(vec2 p) { return fract(sin(dot(p, vec2(127.1, 311.7))) * 43758.5453); }
-void main() {
-    vec3 p = vPosition, view = normalize(eye - p), face = vec3(wallAlong.y, -wallAlong.x, 0.0), albedo = wallColour;
-    if (dot(view, face) <= 0.0) discard;
-    vec2 at = vec2(dot(p, wallAlong), p.z), tilt = vec2(0.0);
-    float cloud = noise4(vec3(at * 6.0, 3.5)).r, sweep = noise4(vec3(at * 11.0, 4.5)).g, grain = noise4(vec3(at * 250.0, 5.5)).b;
-    if (bricks > 0.5) {
-        float row = floor(at.y / 0.075), shift = at.x / 0.225 + 0.5 * mod(row, 2.0), soft = 0.0012 + 0.6 * fwidth(at.y);
-        vec2 from = vec2(fract(shift) * 0.225, at.y - row * 0.075), side = min(from, vec2(0.225, 0.075) - from);
-        float tone = hash(vec2(row, floor(shift))), edge = min(side.x, side.y) - 0.005 + 0.002 * noise4(vec3(at * 130.0, 6.5)).r, isFace = smoothstep(-soft, soft, edge);
-        float hue = hash(vec2(row + 0.5, floor(shift))) - 0.5;
-        vec3 clay = vec3(0.56 + 0.14 * hue, 0.31 + 0.05 * hue, 0.22) * (0.94 + 0.55 * tone + 0.20 * cloud + 0.12 * grain);
-        albedo *= mix(vec3(0.62, 0.59, 0.53) * (1.0 - (from.y > 0.0375 ? 0.1 : 0.45) * smoothstep(-0.006, 0.0, edge) * (1.0 - isFace)), clay, isFace);
-        tilt = 0.04 * vec2(grain, sweep);
-    } else if (bricks > -0.5) {
-        albedo *= 0.94 + 0.08 * cloud + 0.05 * sweep + 0.05 * grain;
-        tilt = 0.03 * vec2(sweep, grain);
-    }
-    albedo *= 1.0 - 0.5 * exp(-max(p.z - floorHeight, 0.0) / 0.03);
-    vec3 c = shaded(albedo, 0.0, 0.0, 1.0, p, normalize(face + tilt.x * wallAlong + vec3(0.0, 0.0, tilt.y)), view, lampSeen(p + 0.0006 * face));
-    ${FADE}
-    colour = vec4(c, 1.0);
-}`;
-
-const SHAPE = /* glsl */ `${glsl.NOISE}${glsl.GLOW}${DAY}
-in vec3 vPosition, vNormal;
-uniform vec3 albedo;
-uniform float kelvin;
-out vec4 colour;
-void main() {
-    vec3 n = normalize(vNormal), view = normalize(eye - vPosition);
-    if (dot(n, view) < 0.0) n = -n;
-    float seen = lampSeen(vPosition + 0.0015 * n), hot = kelvin > 800.0 ? 1.0 : 0.0, scale = noise4(vPosition * 120.0).r;
-    vec3 glow = hot * blackbody_glow(kelvin + 60.0 * scale) * 3.0 * (0.6 + 0.4 * dot(n, view));
-    colour = vec4(shaded(albedo * (1.0 - 0.55 * hot), 0.0, 0.06, 40.0, vPosition, n, view, seen) + glow, 1.0);
-}`;
-
-/** One field by colour, shaded a little so that folds are seen. */
-const FIELD = /* glsl */ `precision highp float;
-in vec3 vPosition, vNormal;
-in vec4 vHeat, vLook, vMore;
-uniform vec3 eye, range; // range: which, and the ends
-uniform sampler2D colours;
-out vec4 colour;
-void main() {
-    float value = range.x < 0.5 ? vHeat.x : range.x < 1.5 ? vLook.x : range.x < 2.5 ? vMore.z : vMore.w, t = clamp((value - range.y) / (range.z - range.y), 0.0, 1.0);
-    vec3 n = normalize(vNormal), view = normalize(eye - vPosition);
-    float shade = 0.58 + 0.42 * abs(dot(n, view)) + 0.10 * n.x;
-    colour = vec4(texture(colours, vec2(t, 0.5)).rgb * shade, 1.0);
-}`;
-const FIELD_GROUND = /* glsl */ `precision highp float;
-in vec3 vPosition;
-uniform vec3 eye;
-uniform float reach;
-out vec4 colour;
-void main() {
-    vec2 g = vPosition.xy / 0.05, w = fwidth(g), d = abs(fract(g - 0.5) - 0.5) / max(w, 1e-4);
-    float line = (1.0 - min(min(d.x, d.y), 1.0)) * clamp(1.5 - 3.0 * max(w.x, w.y), 0.0, 1.0), far = distance(eye, vPosition) / reach;
-    colour = vec4(mix(vec3(0.062, 0.056, 0.052), vec3(0.075, 0.068, 0.062) + 0.07 * line, exp(-4.0 * far * far)), 1.0);
-}`;
-/** A spring as a bar of some pixels, a little in front of the sheet. An end is a vertex, or the mean of a cell's corners. */
-const STRAND_VERTEX = /* glsl */ `
-precision highp usampler2D;
-in uvec2 ends;
-uniform sampler2D places;
-uniform usampler2D cellMap;
-uniform int vertexCount;
-uniform mat4 viewProjection;
-uniform vec3 eye;
-uniform vec2 resolution;
-uniform float thick; // pixels
-vec4 place(int k) { return texelFetch(places, ivec2(k % ${TABLE}, k / ${TABLE}), 0); }
-vec4 end(int k) {
-    if (k < vertexCount) return place(k);
-    k -= vertexCount;
-    uvec4 corner = texelFetch(cellMap, ivec2(k % ${TABLE}, k / ${TABLE}), 0);
-    vec4 a = place(int(corner.x)), b = place(int(corner.y)), c = place(int(corner.z)), d = place(int(corner.w));
-    return vec4(0.25 * (a.xyz + b.xyz + c.xyz + d.xyz), min(min(a.w, b.w), min(c.w, d.w)));
-}
-void main() {
-    vec4 a = end(int(ends.x)), b = end(int(ends.y));
-    vec4 p = viewProjection * vec4(mix(a.xyz, eye, 0.003), 1.0), q = viewProjection * vec4(mix(b.xyz, eye, 0.003), 1.0);
-    if (min(a.w, b.w) < 0.5 || min(p.w, q.w) <= 0.0) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; } // outside
-    vec2 along = (q.xy / q.w - p.xy / p.w) * resolution * 0.5;
-    float size = length(along), wide = clamp(0.16 * size, 0.4, thick);
-    vec2 across = vec2(-along.y, along.x) / max(size, 1e-6);
-    gl_Position = gl_VertexID < 2 ? p : q;
-    gl_Position.xy += ((gl_VertexID & 1) == 0 ? wide : -wide) * across * gl_Position.w / resolution;
-}`;
-const STRAND = /* glsl */ `precision highp float;
-uniform vec3 tint;
-out vec4 colour;
-void main() { colour = vec4(tint, 1.0); }`;
-/** The gas in a plane: the share that burns by colour, smoke in grey, a border around the cells. */
-const SLICE = /* glsl */ `precision highp float;
-precision highp sampler3D;
-in vec3 vPosition;
-uniform sampler3D fireMap;
-uniform sampler2D colours;
-uniform vec3 origin, span;
-out vec4 colour;
-void main() {
-    vec3 at = (vPosition - origin) / span, off = abs(at - 0.5), wide = fwidth(at);
-    if (any(greaterThan(off, vec3(0.5)))) discard;
-    vec4 c = texture(fireMap, at);
-    float burning = smoothstep(0.01, 0.12, c.r), grey = 0.85 * (1.0 - exp(-2.5 * c.b)), rim = any(greaterThan(off, 0.5 - 1.5 * wide)) ? 0.5 : 0.0;
-    vec3 smoke = vec3(0.42, 0.40, 0.39);
-    colour = vec4(mix(smoke, texture(colours, vec2(c.r, 0.5)).rgb, burning), max(max(burning, grey), max(rim, 0.10)));
-}`;
+const SHADOW = 2048;
 const COPY = /* glsl */ `precision highp float;
 in vec2 at;
 uniform sampler2D map;
 out vec4 colour;
 void main() { colour = texture(map, at); }`;
 
-// ---- fields and their colours
-
-const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16));
-export const LAYERS = {
-    temperature: { index: 0, low: 293, high: 1293, unit: "°C", show: (k) => `${Math.round(k - 273.15)}`, stops: ["#15102b", "#43146e", "#8a2580", "#d8456c", "#fb8861", "#fec488", "#fcfdbf"] },
-    char: { index: 1, low: 0, high: 1, unit: "burnt", show: (x) => `${Math.round(100 * x)} %`, stops: ["#f0e6d6", "#d9a860", "#8a5222", "#2c1a12", "#1b1918", "#55524f", "#b9b4ab"] },
-    strain: { index: 2, low: -0.15, high: 0.15, unit: "stretch", show: (x) => `${x > 0 ? "+" : ""}${Math.round(100 * x)} %`, stops: ["#2a5da8", "#5b8fc7", "#a9c6dd", "#ece6da", "#eab48a", "#d6703f", "#a8321f"] },
-};
-LAYERS.gas = { index: 1, low: 0, high: 1, unit: "burning", show: (x) => (x === 0.5 ? "of the gas burns" : `${Math.round(100 * x)} %`), stops: ["#2b1512", "#7c1d10", "#d9480f", "#ff922b", "#ffd43b", "#fff3bf"] };
-LAYERS.contact = { index: 3, low: 0, high: 1, show: (x) => `${1000 * REACH * (1 - x)} mm`, stops: ["#2b2622", "#31485a", "#3f7f8c", "#74b79a", "#e6d27a", "#fff6d8"] };
-LAYERS.strands = { index: 1, low: 0, high: 1, stops: ["#1d1917", "#1d1917"], names: COLOURS };
-export function cssGradient(layer) {
-    const { stops, names } = LAYERS[layer], parts = names ? names.map(([colour], i) => `${colour} ${(100 * i) / names.length}% ${(100 * (i + 1)) / names.length}%`) : stops;
-    return `linear-gradient(90deg, ${parts.join(", ")})`;
-}
-/** What stands under a layer's colours. */
-export function legendOf(layer) {
-    const { low, high, unit, show, names } = LAYERS[layer];
-    return names ? names.map(([, name]) => name) : [low, (low + high) / 2, high].map((value) => show(value) + (unit === "°C" ? " °C" : ""));
-}
-function ramp({ stops }) {
-    const bytes = new Uint8Array(1024), colours = stops.map(hex);
-    for (let i = 0; i < 256; i++) {
-        const x = (i / 255) * (colours.length - 1), k = Math.min(Math.floor(x), colours.length - 2);
-        for (let c = 0; c < 3; c++) bytes[4 * i + c] = colours[k][c] + (x - k) * (colours[k + 1][c] - colours[k][c]);
-        bytes[4 * i + 3] = 255;
-    }
-    return bytes;
-}
-
-/** Spheres, boxes and capsules as triangles: positions, then normals. */
-function sphere(squeeze = 0) {
-    const p = [], index = [], rows = 24, columns = 40;
-    for (let r = 0; r <= rows; r++)
-        for (let c = 0; c <= columns; c++) {
-            const a = (Math.PI * r) / rows, b = (2 * Math.PI * c) / columns, n = [Math.sin(a) * Math.cos(b), Math.sin(a) * Math.sin(b), Math.cos(a)];
-            p.push(n[0], n[1], n[2] + squeeze * (r * 2 < rows ? 1 : -1), ...n);
-        }
-    for (let r = 0; r < rows; r++)
-        for (let c = 0; c < columns; c++) {
-            const a = r * (columns + 1) + c, b = a + columns + 1;
-            index.push(a, b, a + 1, a + 1, b, b + 1);
-        }
-    return [p, index];
-}
-function box() {
-    const p = [], index = [];
-    for (let axis = 0; axis < 3; axis++)
-        for (const side of [-1, 1]) {
-            const first = p.length / 6;
-            for (const [u, v] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) {
-                const at = [0, 0, 0], n = [0, 0, 0];
-                at[axis] = n[axis] = side;
-                at[(axis + 1) % 3] = u;
-                at[(axis + 2) % 3] = v;
-                p.push(...at, ...n);
-            }
-            index.push(first, first + 1, first + 2, first, first + 2, first + 3);
-        }
-    return [p, index];
-}
-
-export class Stage {
+export class Stage extends Card {
     /** @param {HTMLCanvasElement} canvas */
     constructor(canvas) {
-        const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
-        if (!gl || !gl.getExtension("EXT_color_buffer_float")) throw new Error("This view needs WebGL 2 with floating-point pictures, which this browser or its card does not have.");
-        gl.getExtension("OES_texture_float_linear");
-        this.gl = gl;
-        this.canvas = canvas;
+        super(canvas);
+        const { gl } = this;
         this.layer = "paper";
         this.slice = 0.5;
         this.fire = true;
@@ -309,7 +47,6 @@ export class Stage {
         this.solids = new Map();
         this.pictures = [];
         this.sheets = { array: gl.createVertexArray(), vertices: gl.createBuffer(), triangles: gl.createBuffer(), gaps: gl.createBuffer(), runs: [] };
-        this.targets = {};
         this.shadowMap = gl.createTexture();
         gl.bindTexture(gl.TEXTURE_2D, this.shadowMap);
         gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, SHADOW, SHADOW);
@@ -319,102 +56,6 @@ export class Stage {
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.shadowFrame);
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.shadowMap, 0);
         this.resize(canvas.width, canvas.height);
-    }
-
-    // ---- what WebGL needs
-
-    program(vertex, fragment) {
-        const { gl } = this, program = gl.createProgram();
-        for (const [kind, text] of [[gl.VERTEX_SHADER, `precision highp float;\n${vertex}`], [gl.FRAGMENT_SHADER, fragment]]) {
-            const shader = gl.createShader(kind);
-            gl.shaderSource(shader, `#version 300 es\n${text}`);
-            gl.compileShader(shader);
-            gl.attachShader(program, shader);
-            if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(gl.getShaderInfoLog(shader));
-        }
-        FIELDS.forEach(([name], i) => gl.bindAttribLocation(program, i, name));
-        gl.bindAttribLocation(program, GAP, "gap");
-        gl.linkProgram(program);
-        if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(gl.getProgramInfoLog(program));
-        const uniforms = new Map();
-        for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i++) {
-            const { name, type } = gl.getActiveUniform(program, i);
-            uniforms.set(name.replace("[0]", ""), [gl.getUniformLocation(program, name), type]);
-        }
-        return { program, uniforms };
-    }
-
-    use({ program, uniforms }, values) {
-        const { gl } = this;
-        let unit_ = 0;
-        gl.useProgram(program);
-        for (const [name, [place, type]] of uniforms) {
-            const value = values[name];
-            if (value === undefined) throw new Error(`no value of ${name}`);
-            switch (type) {
-            case gl.FLOAT: gl.uniform1f(place, value); break;
-            case gl.INT: gl.uniform1i(place, value); break;
-            case gl.FLOAT_VEC2: gl.uniform2fv(place, value); break;
-            case gl.FLOAT_VEC3: gl.uniform3fv(place, value); break;
-            case gl.FLOAT_VEC4: gl.uniform4fv(place, value); break;
-            case gl.FLOAT_MAT4: gl.uniformMatrix4fv(place, false, value); break;
-            default:
-                gl.activeTexture(gl.TEXTURE0 + unit_);
-                gl.bindTexture(type === gl.SAMPLER_3D ? gl.TEXTURE_3D : type === gl.SAMPLER_2D_ARRAY ? gl.TEXTURE_2D_ARRAY : gl.TEXTURE_2D, value);
-                gl.uniform1i(place, unit_++);
-            }
-        }
-    }
-
-    texture2d(width, height, inner, format, type, data, mip = false) {
-        const { gl } = this, texture = gl.createTexture();
-        gl.bindTexture(gl.TEXTURE_2D, texture);
-        gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-        gl.texImage2D(gl.TEXTURE_2D, 0, inner, width, height, 0, format, type, data);
-        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, mip ? gl.LINEAR_MIPMAP_LINEAR : gl.LINEAR);
-        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
-        for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, side, mip ? gl.REPEAT : gl.CLAMP_TO_EDGE);
-        if (mip) {
-            gl.generateMipmap(gl.TEXTURE_2D);
-            const sharp = gl.getExtension("EXT_texture_filter_anisotropic");
-            if (sharp) gl.texParameterf(gl.TEXTURE_2D, sharp.TEXTURE_MAX_ANISOTROPY_EXT, 8);
-        }
-        return texture;
-    }
-
-    texture3d(x, y, z, bytes, wrap, kind = this.gl.TEXTURE_3D) {
-        const { gl } = this, texture = gl.createTexture();
-        gl.bindTexture(kind, texture);
-        gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-        gl.texImage3D(kind, 0, gl.RGBA, x, y, z, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
-        for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(kind, name, gl.LINEAR);
-        for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R]) gl.texParameteri(kind, name, wrap);
-        return texture;
-    }
-
-    /** Positions and normals by turns. */
-    mesh(values, triangles) {
-        const { gl } = this, array = gl.createVertexArray();
-        gl.bindVertexArray(array);
-        gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-        gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(values), gl.STATIC_DRAW);
-        for (const i of [0, 1]) {
-            gl.enableVertexAttribArray(i);
-            gl.vertexAttribPointer(i, 3, gl.FLOAT, false, 24, 12 * i);
-        }
-        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
-        gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(triangles), gl.STATIC_DRAW);
-        gl.bindVertexArray(null);
-        return { array, count: triangles.length };
-    }
-
-    target(name, width, height) {
-        const { gl } = this, old = this.targets[name];
-        if (old) { gl.deleteTexture(old.texture); gl.deleteFramebuffer(old.frame); }
-        const texture = this.texture2d(width, height, gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, null), frame = gl.createFramebuffer();
-        gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-        gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
-        this.targets[name] = { texture, frame, width, height };
     }
 
     resize(width, height) {
@@ -723,11 +364,6 @@ export class Stage {
         this.drawMesh(this.quad);
     }
 
-    drawMesh({ array, count }) {
-        this.gl.bindVertexArray(array);
-        this.gl.drawElements(this.gl.TRIANGLES, count, this.gl.UNSIGNED_INT, 0);
-    }
-
     drawFire(camera, matrix, shared) {
         const { gl, frame, room } = this, { gas } = frame, { fire } = this.targets;
         if (!gas || !this.fire) {
@@ -748,14 +384,6 @@ export class Stage {
             ...shared, fireMap: this.gas, depthMap: this.depth, inverse_: invert(matrix), low: gas.corner, high: add(gas.corner, span), origin: gas.corner, span,
             match_: [0, 0, 0], matchOn: 0, fireScale: Math.min(Math.max(gas.cell / LOOK.FIRE_SCALE_CELL, 1), 3), fireLights: lights, fireDaylight: daylight,
         });
-    }
-
-    pass(program, to, values) {
-        const { gl } = this;
-        gl.bindFramebuffer(gl.FRAMEBUFFER, to ? to.frame : null);
-        gl.viewport(0, 0, to ? to.width : this.canvas.width, to ? to.height : this.canvas.height);
-        this.use(this.programs[program], values);
-        this.drawMesh(this.quad);
     }
 
     /** Where a point is on the canvas, in its own pixels, or null behind the camera. */

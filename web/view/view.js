@@ -1,5 +1,6 @@
 // The view: asks the program for state, frames and tables, and shows them. All addresses are relative, behind the token.
-import { cssGradient, LAYERS, legendOf, Stage } from "./stage.js";
+import { cssGradient, LAYERS, legendOf } from "./layers.js";
+import { Stage } from "./stage.js";
 import { pick, positionOf, readFrame, sourceOf, vertexValues } from "./frame.js";
 import { Film } from "./webm.js";
 import { Pixels } from "./pixels.js";

@@ -1,0 +1,132 @@
+// GLSL of the scene's own light, and of what stands in it: sheets, ground, wall and shapes.
+import * as glsl from "./shaders.js";
+
+export const LIGHTS = 16; // lamps at most
+
+/** The scene's sun, sky and lamps, after program/preview/lighting.c and lamps.c: what LAMP is for the page. */
+export const DAY = /* glsl */ `${glsl.SHADOW}
+uniform vec3 sunTo, sunLight, eye, ambient[9];
+uniform mat4 lampView;
+uniform float soft;
+uniform vec4 lampPlace[${LIGHTS}], lampStrength[${LIGHTS}];
+uniform int lampCount;
+float lampSeen(vec3 p) {
+    vec4 q = lampView * vec4(p, 1.0);
+    vec3 s = q.xyz * 0.5 + 0.5;
+    if (any(lessThan(s, vec3(0.0))) || any(greaterThan(s, vec3(1.0)))) return 1.0;
+    return lightSeen(s - vec3(0.0, 0.0, 0.0015), soft);
+}
+vec3 skyLight(vec3 n) {
+    vec3 sum = 0.282095 * ambient[0] + 0.488603 * (n.y * ambient[1] + n.z * ambient[2] + n.x * ambient[3]);
+    sum += 1.092548 * (n.x * n.y * ambient[4] + n.y * n.z * ambient[5] + n.x * n.z * ambient[7]);
+    sum += 0.315392 * (3.0 * n.z * n.z - 1.0) * ambient[6] + 0.546274 * (n.x * n.x - n.y * n.y) * ambient[8];
+    return max(sum, vec3(0.0));
+}
+vec3 mirrored(vec3 d) { return skyLight(d); }
+const vec3 THROUGH = vec3(1.18, 0.98, 0.70); // scattered often, light is warmer
+vec3 shaded(vec3 albedo, float through, float gloss, float power, vec3 p, vec3 n, vec3 v, float seen) {
+    float facing = dot(n, sunTo);
+    vec3 sum = sunLight * seen * (max(facing, 0.0) + through * THROUGH * max(-facing, 0.0)), high = vec3(0.0);
+    sum += skyLight(n);
+    if (through > 0.0) sum += through * THROUGH * skyLight(-n);
+    if (gloss > 0.0) high = sunLight * seen * pow(max(dot(n, normalize(sunTo + v)), 0.0), power) + 0.4 * skyLight(reflect(-v, n));
+    // sheets are wrapped, as flames have an extent; what lies below them is not, in place of the shadow that sheets cast
+    float wrap = through > 0.0 ? 0.2 : 0.0;
+    for (int k = 0; k < lampCount; k++) {
+        vec3 f = lampPlace[k].xyz - p, light = lampStrength[k].rgb;
+        float r2 = dot(f, f), d2 = r2 + lampPlace[k].w, c = dot(n, f) * inversesqrt(d2);
+        float before = max((c + wrap) / (1.0 + wrap), 0.0);
+        sum += light * ((before + THROUGH * max(-through * c - before, 0.0)) / d2);
+        if (gloss > 0.0) high += light * (pow(max(dot(n, normalize(f * inversesqrt(r2) + v)), 0.0), power) / d2);
+    }
+    return albedo * sum + gloss * high;
+}
+`;
+
+export const SHEET_VERTEX = /* glsl */ `
+in vec3 position, normal, rest;
+in vec2 uv;
+in vec4 heat, look, more;
+in float gap;
+uniform mat4 viewProjection;
+out vec3 vPosition, vNormal, vRest;
+out vec2 vUv;
+out vec3 vLeaf;
+out vec4 vHeat, vLook, vMore;
+void main() {
+    vPosition = position;
+    vNormal = normal;
+    vRest = rest;
+    vUv = uv;
+    vHeat = heat * vec4(5000.0, 5000.0, 64.0, 0.0);
+    vHeat.w = more.y > 0.75 ? vHeat.z : 0.0;
+    vLook = look * vec4(1.0, 400.0, 1.0, 655.35);
+    vLeaf = vec3(more.w * 0.0655, more.y > 0.25 && more.y < 0.75 ? vHeat.z : 0.0, heat.w * 1.2e5);
+    vMore = vec4(more.xy, more.z * 4.0 - 1.0, gap);
+    gl_Position = viewProjection * vec4(position, 1.0);
+}`;
+
+const FADE = "float far = distance(eye, p) / reach; c = mix(background, c, exp(-far * far * far));";
+export const GROUND_WOOD = glsl.table(DAY, "groundColour", FADE).replace("out vec4 colour;", "out vec4 colour;\nuniform vec3 groundColour, background;\nuniform float reach;");
+export const GROUND_PLAIN = /* glsl */ `${glsl.NOISE}${DAY}
+in vec3 vPosition, vNormal;
+out vec4 colour;
+uniform vec3 groundColour, background;
+uniform float reach, stone;
+void main() {
+    vec3 p = vPosition, view = normalize(eye - p);
+    float cloud = noise4(p * 7.0).r, patches = noise4(p * 26.0).g, rough = noise4(p * 110.0).b, value = 1.0;
+    vec3 n = vec3(0.0, 0.0, 1.0);
+    if (stone > 0.5) {
+        float line = abs(noise4(vec3((p.x + 0.03 * cloud) * 7.5 + 3.0, p.y * 2.6, 0.5)).r);
+        value = 0.95 + 0.30 * cloud + 0.22 * patches + 0.13 * rough + 1.1 * (1.0 - smoothstep(0.004, 0.025, line)) * smoothstep(-0.45, 0.25, patches);
+        n = normalize(vec3(0.02 * patches, 0.02 * rough, 1.0));
+    }
+    float seen = lampSeen(p + vec3(0.0, 0.0, 0.0006));
+    vec3 c = shaded(groundColour * max(value, 0.1), 0.0, stone > 0.5 ? 0.04 : 0.008, 26.0, p, n, view, seen);
+    ${FADE}
+    colour = vec4(c, 1.0);
+}`;
+
+/** After shade_wall.c. */
+export const WALL = /* glsl */ `${glsl.NOISE}${DAY}
+in vec3 vPosition;
+out vec4 colour;
+uniform vec3 wallColour, wallAlong, background;
+uniform float reach, bricks, floorHeight;
+float hash(vec2 p) { return fract(sin(dot(p, vec2(127.1, 311.7))) * 43758.5453); }
+void main() {
+    vec3 p = vPosition, view = normalize(eye - p), face = vec3(wallAlong.y, -wallAlong.x, 0.0), albedo = wallColour;
+    if (dot(view, face) <= 0.0) discard;
+    vec2 at = vec2(dot(p, wallAlong), p.z), tilt = vec2(0.0);
+    float cloud = noise4(vec3(at * 6.0, 3.5)).r, sweep = noise4(vec3(at * 11.0, 4.5)).g, grain = noise4(vec3(at * 250.0, 5.5)).b;
+    if (bricks > 0.5) {
+        float row = floor(at.y / 0.075), shift = at.x / 0.225 + 0.5 * mod(row, 2.0), soft = 0.0012 + 0.6 * fwidth(at.y);
+        vec2 from = vec2(fract(shift) * 0.225, at.y - row * 0.075), side = min(from, vec2(0.225, 0.075) - from);
+        float tone = hash(vec2(row, floor(shift))), edge = min(side.x, side.y) - 0.005 + 0.002 * noise4(vec3(at * 130.0, 6.5)).r, isFace = smoothstep(-soft, soft, edge);
+        float hue = hash(vec2(row + 0.5, floor(shift))) - 0.5;
+        vec3 clay = vec3(0.56 + 0.14 * hue, 0.31 + 0.05 * hue, 0.22) * (0.94 + 0.55 * tone + 0.20 * cloud + 0.12 * grain);
+        albedo *= mix(vec3(0.62, 0.59, 0.53) * (1.0 - (from.y > 0.0375 ? 0.1 : 0.45) * smoothstep(-0.006, 0.0, edge) * (1.0 - isFace)), clay, isFace);
+        tilt = 0.04 * vec2(grain, sweep);
+    } else if (bricks > -0.5) {
+        albedo *= 0.94 + 0.08 * cloud + 0.05 * sweep + 0.05 * grain;
+        tilt = 0.03 * vec2(sweep, grain);
+    }
+    albedo *= 1.0 - 0.5 * exp(-max(p.z - floorHeight, 0.0) / 0.03);
+    vec3 c = shaded(albedo, 0.0, 0.0, 1.0, p, normalize(face + tilt.x * wallAlong + vec3(0.0, 0.0, tilt.y)), view, lampSeen(p + 0.0006 * face));
+    ${FADE}
+    colour = vec4(c, 1.0);
+}`;
+
+export const SHAPE = /* glsl */ `${glsl.NOISE}${glsl.GLOW}${DAY}
+in vec3 vPosition, vNormal;
+uniform vec3 albedo;
+uniform float kelvin;
+out vec4 colour;
+void main() {
+    vec3 n = normalize(vNormal), view = normalize(eye - vPosition);
+    if (dot(n, view) < 0.0) n = -n;
+    float seen = lampSeen(vPosition + 0.0015 * n), hot = kelvin > 800.0 ? 1.0 : 0.0, scale = noise4(vPosition * 120.0).r;
+    vec3 glow = hot * blackbody_glow(kelvin + 60.0 * scale) * 3.0 * (0.6 + 0.4 * dot(n, view));
+    colour = vec4(shaded(albedo * (1.0 - 0.55 * hot), 0.0, 0.06, 40.0, vPosition, n, view, seen) + glow, 1.0);
+}`;
