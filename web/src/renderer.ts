@@ -20,7 +20,7 @@ const NIGHT = new Vector3(0.0150, 0.0172, 0.0262);
 const EXPOSURE = 1.0;
 const SHADOW = 1024;
 const FIRE_LIGHT = 3.6e-5; // strength of a cell that burns fully
-const FULL_PAPER = 0.22; // light that comes through (preview.h)
+const FULL_PAPER = 0.19; // light that comes through (preview.h)
 
 const EMBER: Point = [0.62, 0.12, 0.012], EMBER_LIGHT = 0.0012; // a ball of 1300 K
 
