@@ -45,9 +45,10 @@ typedef struct BenchOptions {
     BenchList curvature; ///< 1/m, limits of it; 0: none
     BenchList seeds;     ///< of noise
     BenchOutline outline;
-    bool creases; ///< sharp bends are plastic
-    bool contact; ///< with themselves
-    double red;   ///< m/N, compliance of red springs; 0: the material's
+    bool creases;   ///< sharp bends are plastic
+    bool contact;   ///< with themselves
+    bool isotropic; ///< with braces
+    double red;     ///< m/N, compliance of red springs; 0: the material's
     BenchState state;
     SingeSolverMethod solver;
     SingeInstructions instructions;
@@ -79,7 +80,7 @@ int options_substeps(const BenchOptions *options);
 // ---- command lines
 
 /// The options of all measurements.
-enum { BENCH_OPTION_COUNT = 25 };
+enum { BENCH_OPTION_COUNT = 26 };
 extern const ArgOption bench_all_options[BENCH_OPTION_COUNT];
 
 typedef struct BenchRequest {

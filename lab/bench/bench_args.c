@@ -89,6 +89,7 @@ const ArgOption bench_all_options[BENCH_OPTION_COUNT] = {
     {"outline", 0, "square|disc", "only this outline [both]", .read = read_word, FIELD(outline)},
     {"creases", 0, NULL, "sharp bends leave creases, by the material's crease_radius", .read = args_switch,
      FIELD(creases)},
+    {"isotropic", 0, NULL, "bending is isotropic, with braces", .read = args_switch, FIELD(isotropic)},
     {"red", 0, "M/N", "compliance of red springs, 1e-6 to 1e6 m/N [the material's]", .read = args_number, FIELD(red),
      1e-6, 1e6},
     {"json", 0, NULL, "prints JSON", .read = args_switch, offsetof(BenchRequest, json)},

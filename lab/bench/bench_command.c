@@ -58,7 +58,7 @@ static const struct {
     {"fold", bench_fold, " substeps threads quick instructions " OUTPUT,
      "A strip is folded by 180 degrees and released: the angle that remains, by resolution and time step."},
     {"isotropy", bench_isotropy,
-     " cells thickness curvature creases red outline seeds time threads substeps instructions quick " OUTPUT,
+     " cells thickness curvature creases isotropic red outline seeds time threads substeps instructions quick " OUTPUT,
      "The same burn on a grid and on one turned by 45 degrees: whether its folds follow the mesh."},
     {"plate", bench_plate, " cells substeps threads instructions quick svg " OUTPUT,
      "Strips that sag and discs that roll up, by the direction of their mesh: stiffness and curvatures."},

@@ -8,6 +8,9 @@
 //
 //   mesh effect M = sqrt(r_0/r_45),   1 if folds do not depend on the mesh
 //
+// The same for gentle bends alone, which follow the stiffness of bending, and for sharp ones, where rows of edges give
+// way.
+//
 // Seeds are those of the material's noise: where it burns, shrinks and remains. Both grids of a pair have the same
 // seed.
 #include "bench/bench.h"
@@ -83,6 +86,7 @@ static SingeResult isotropy_build(const Burn *burn, double angle, SingeSim **sim
     def.instructions = options->instructions;
     def.solver.substeps = options->substeps ? options->substeps : 8;
     def.solver.creases = burn->creases;
+    def.solver.isotropic = options->isotropic;
     def.solver.tearing = true;
     def.contact.enabled = true;
     SingeResult result = singe_sim_create(&def, sim, error);
@@ -136,15 +140,34 @@ static SingeResult isotropy_run(const Burn *burn, double angle, Wrinkles *wrinkl
     return result;
 }
 
-/// The row of the `index`-th seed; *sum is the sum of the logarithms of the effects.
-static SingeResult isotropy_compare(const Burn *burn, int index, BenchTable *table, double *sum, SingeError *error) {
+/// Sums over seeds, of logarithms of effects.
+typedef struct Effects {
+    int count;
+    double all, squares, gentle, sharp;
+} Effects;
+
+static double effect(double r_0, double r_45) { return sqrt(r_0 / r_45); }
+
+/// The standard error of the geometric mean; NaN of one seed.
+static double effects_error(const Effects *sum) {
+    const double n = sum->count, mean = sum->all / n;
+    return exp(mean) * sqrt(fmax(sum->squares / n - mean * mean, 0) / (n - 1));
+}
+
+/// The row of a seed, which it adds to the sums.
+static SingeResult isotropy_compare(const Burn *burn, BenchTable *table, Effects *sum, SingeError *error) {
     Wrinkles straight = {0}, turned = {0};
     SingeResult result = isotropy_run(burn, 0, &straight, error);
     if (!result) result = isotropy_run(burn, acos(-1) / 4, &turned, error);
     if (result) return result;
     const double r_0 = wrinkles_bias(&straight), r_45 = wrinkles_bias(&turned);
     const double bend = total(straight.crease, WRINKLE_BINS) + total(turned.crease, WRINKLE_BINS);
-    *sum += 0.5 * log(r_0 / r_45);
+    const double own_effect = log(effect(r_0, r_45));
+    sum->count++;
+    sum->all += own_effect;
+    sum->squares += own_effect * own_effect;
+    sum->gentle += log(effect(wrinkles_bias_gentle(&straight), wrinkles_bias_gentle(&turned)));
+    sum->sharp += log(effect(wrinkles_bias_sharp(&straight), wrinkles_bias_sharp(&turned)));
 
     // red springs give by the material's compliance, or by (a + r) h^2/m of the solver where that is more (stiffness.c)
     const SingeSolverDef solver = singe_default_solver();
@@ -163,8 +186,11 @@ static SingeResult isotropy_compare(const Burn *burn, int index, BenchTable *tab
     table_number(table, "seed", "%.0f", 5, burn->seed);
     table_number(table, "r_0", "%.3f", 7, r_0);
     table_number(table, "r_45", "%.3f", 7, r_45);
-    table_number(table, "effect", "%.3f", 7, sqrt(r_0 / r_45));
-    table_number(table, "mean", "%.3f", 7, exp(*sum / (index + 1))); // of the seeds so far
+    table_number(table, "effect", "%.3f", 7, effect(r_0, r_45));
+    table_number(table, "mean", "%.3f", 7, exp(sum->all / sum->count)); // of the seeds so far, as are the next three
+    table_number(table, "error", "%.3f", 7, effects_error(sum));
+    table_number(table, "gentle", "%.3f", 7, exp(sum->gentle / sum->count));
+    table_number(table, "sharp", "%.3f", 7, exp(sum->sharp / sum->count));
     table_number(table, "bend_per_m", "%.2f", 11, bend / (2 * MOMENTS * size * size));
     return table_end_row(table);
 }
@@ -191,11 +217,11 @@ SingeResult bench_isotropy(const BenchOptions *options, BenchTable *table, Singe
                         // the same burn over the seeds
                         static const double four[] = {1, 2, 3, 4};
                         const BenchList seeds = bench_list(&burn.options->seeds, burn.options->quick ? 2 : 4, four);
-                        double sum = 0;
+                        Effects sum = {0};
                         result = SINGE_OK;
                         for (int i = 0; i < seeds.count && !result; i++) {
                             burn.seed = (uint32_t)seeds.values[i];
-                            result = isotropy_compare(&burn, i, table, &sum, error);
+                            result = isotropy_compare(&burn, table, &sum, error);
                         }
                     }
                 }

@@ -40,6 +40,9 @@ static const float burnt_min = 0.05f, fold_burnt_min = 0.02f;
 /// Min share of a Gaussian that must be covered: next to an edge, a Gaussian with less is not trusted.
 static const float covered_min = 0.6f;
 
+/// 1/m, of bends.
+static const double gentle_max = 50, sharp_min = 130;
+
 /// Of folds: rad in a cell; cells.
 static const double turn_min = 0.1745, far_off = 3;
 
@@ -114,8 +117,12 @@ static void add_creases(const RestRaster *raster, Fields *fields, Wrinkles *wrin
             const int bin = (int)(along / pi * WRINKLE_BINS);
             wrinkles->crease[bin < WRINKLE_BINS ? bin : WRINKLE_BINS - 1] += weight;
             double off = fabs(along - quarter * round(along / quarter)); // from the nearest axis, at most pi/4
-            if (off <= pi / 16) wrinkles->axis += weight;
-            if (off >= pi / 4 - pi / 16) wrinkles->diagonal += weight;
+            const bool diagonal = off >= pi / 4 - pi / 16;
+            if (off > pi / 16 && !diagonal) continue;
+            *(diagonal ? &wrinkles->diagonal : &wrinkles->axis) += weight;
+            const double bend = sqrt(mean + half);
+            if (bend < gentle_max) wrinkles->gentle[diagonal] += weight;
+            if (bend > sharp_min) wrinkles->sharp[diagonal] += weight;
         }
 }
 
@@ -165,6 +172,8 @@ bool wrinkles_add(const SingeSurface *surface, Wrinkles *wrinkles) {
 static double over(double a, double b) { return b > 0 ? a / b : (double)NAN; }
 
 double wrinkles_bias(const Wrinkles *wrinkles) { return over(wrinkles->axis, wrinkles->diagonal); }
+double wrinkles_bias_gentle(const Wrinkles *wrinkles) { return over(wrinkles->gentle[0], wrinkles->gentle[1]); }
+double wrinkles_bias_sharp(const Wrinkles *wrinkles) { return over(wrinkles->sharp[0], wrinkles->sharp[1]); }
 double wrinkles_burnt(const Wrinkles *wrinkles) { return over(wrinkles->burnt_power, wrinkles->burnt_area); }
 double wrinkles_unburnt(const Wrinkles *wrinkles) { return over(wrinkles->unburnt_power, wrinkles->unburnt_area); }
 

@@ -12,6 +12,7 @@ enum { WRINKLE_BINS = 24 };
 typedef struct Wrinkles {
     double crease[WRINKLE_BINS];        ///< area times bend, m2/m
     double axis, diagonal;              ///< the same within 11.25 degrees of the sheet's axes and of their diagonals
+    double gentle[2], sharp[2];         ///< of these, bends below 50 and above 130 1/m: axis, diagonal
     double burnt_power, burnt_area;     ///< rad2 m2 and m2: the normal's angle in wavelengths of 3 to 15 mm
     double unburnt_power, unburnt_area; ///< the same far from everything burnt
 } Wrinkles;
@@ -21,6 +22,8 @@ bool wrinkles_add(const SingeSurface *surface, Wrinkles *wrinkles);
 
 /// Axis over diagonal; NaN if there is no crease.
 double wrinkles_bias(const Wrinkles *wrinkles);
+double wrinkles_bias_gentle(const Wrinkles *wrinkles);
+double wrinkles_bias_sharp(const Wrinkles *wrinkles);
 
 /// rad2, of burnt parts and 10 mm around them, and of parts that never ignited at least 25 mm from burnt ones; NaN if
 /// there are none.

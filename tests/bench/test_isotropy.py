@@ -16,6 +16,7 @@ class Isotropy(unittest.TestCase):
         for row in rows:
             self.assertAlmostEqual(row["effect"], (row["r_0"] / row["r_45"]) ** 0.5, delta=1e-3)
             self.assertGreater(row["bend_per_m"], 20)  # it is wrinkled at all
+            self.assertLess(row["gentle"], row["sharp"])  # these follow rows of edges, those the diagonals
         mean = rows[-1]["mean"]
         print(f"{' '.join(options)}: mesh effect {mean:.3f}")
         return mean
@@ -25,7 +26,7 @@ class Isotropy(unittest.TestCase):
         self.assertTrue(0.87 <= mean <= 1.15)
 
     def test_nor_do_creases(self):
-        """Creases keep early folds, so seeds differ more: four of them have .93 on squares, 1.09 on discs.
+        """Creases keep early folds: 16 seeds have .88 on squares, 1.33 on discs.
         Without a limit these two have 1.82."""
         mean = self.effect("--creases", "--curvature", "390")
         self.assertTrue(0.8 <= mean <= 1.2)

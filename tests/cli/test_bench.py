@@ -26,7 +26,7 @@ TINY = (
     ("stability", ["--cells", "8", "--quick", "--time", "0.1"], ["result", "max_strain_pct"]),
     ("spectrum", ["--quick", "--time", "0.05", "--substeps", "2"], ["wavelength_mm", "base", "h_x_2", "s_div_2"]),
     ("isotropy", ["--quick", "--outline", "disc", "--cells", "12", "--time", "0.05", "--seeds", "3"],
-     ["r_0", "r_45", "effect", "mean"]),
+     ["r_0", "r_45", "effect", "mean", "error", "gentle", "sharp"]),
     ("plate", ["--quick", "--cells", "12", "--substeps", "3"], ["over_D", "k1_per_m", "rolls_deg"]),
 )
 
