@@ -17,6 +17,7 @@ bool args_complain(const ArgCommand *command, const char *format, ...) {
     char text[4096];
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
+
     printable_trim(text);
     fprintf(stderr, "singe %s: error: ", command->name);
     printable_write(text, stderr);
@@ -109,6 +110,7 @@ static bool take_letter(ArgReader *reader) {
     reader->letters = 0;
     if (!option->value) return take(reader, option, NULL);
     if (!*rest && reader->index >= reader->argc) return args_complain(command, "-%c needs %s", letter, option->value);
+
     return take(reader, option, *rest ? rest : reader->argv[reader->index++]);
 }
 
@@ -203,6 +205,7 @@ bool args_int(const ArgCommand *command, const ArgOption *option, const char *te
     if (!good || (double)value < option->low || (double)value > option->high)
         return args_complain(command, "--%s: expected a whole number from %.0f to %.0f, got '%s'", option->name,
                              option->low, option->high, shown(text).text);
+
     *(int *)field = (int)value;
     return true;
 }
@@ -211,11 +214,13 @@ bool args_number(const ArgCommand *command, const ArgOption *option, const char 
     char *end, range[64];
     errno = 0;
     const double number = strtod(text, &end);
+
     if (option->high < ARG_HIGHEST) snprintf(range, sizeof range, "from %.10g to %.10g", option->low, option->high);
     else snprintf(range, sizeof range, "of %.10g or more", option->low);
     if (errno || end == text || *end || !(number >= option->low && number <= option->high))
         return args_complain(command, "--%s %s: expected a number %s, got '%s'", option->name, option->value, range,
                              shown(text).text);
+
     *(double *)field = number;
     return true;
 }
@@ -233,6 +238,7 @@ bool args_span(const ArgCommand *command, const ArgOption *option, const char *t
 
     if (!good || *end != 0 || a < 1 || a > b || b > INT_MAX)
         return args_complain(command, "--%s: expected A-B with 1 <= A <= B, got '%s'", option->name, shown(text).text);
+
     int *span = field;
     span[0] = (int)a;
     span[1] = (int)b;

@@ -68,16 +68,19 @@ static SingeResult time_frame(const Job *job, SingeSim *sim, CheckTimes *times, 
     if (!result) result = frame_take_gas(sim, &frame, error);
     if (!result) times->mesh = (double)ply_surface_size(&frame.surface);
     if (!result) times->gas = gas_bytes * (double)gas_cells(&frame.gas.view);
+
     if (!result) {
         Pictures *pictures = NULL;
         const uint8_t *rgb;
         PreviewDef *preview = &job->scene->preview.def;
         const PreviewDef wanted = *preview;
+
         while (pixels_of(preview) > check_pixels) {
             preview->width = (preview->width + 1) / 2;
             preview->height = (preview->height + 1) / 2;
         }
         while (preview->samples > 1 && pixels_of(preview) * preview->samples > check_rays) preview->samples /= 2;
+
         const double rays = pixels_of(preview) * preview->samples;
         result = pictures_open(job, &pictures, error);
         begun = console_clock();
@@ -126,6 +129,7 @@ static void report_shell(const Job *job, const SingeCounts *c) {
         const char *name;
         SingeColour colour;
     } rows[] = {{"red", SINGE_RED}, {"green", SINGE_GREEN}, {"blue", SINGE_BLUE}, {"yellow", SINGE_YELLOW}};
+
     uint64_t springs = 0, strands = 0;
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
         springs += c->springs[i];
@@ -174,6 +178,7 @@ static SingeResult report_materials(const Scene *scene, float thickening, SingeE
         uint32_t j = 0;
         while (!scene_material_same(&scene->sheets[j].material, material)) j++;
         if (j < i) continue;
+
         reported++;
         printf("material      %s, %.4g g/m2", material->name ? shown(material->name).text : "its own",
                1e3 * (double)grammage);
@@ -247,12 +252,14 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
     const float thickening = singe_sim_stats(sim).thickening;
     CheckTimes times = {0};
     SingeError error = {0};
+
     report_shell(&job, &counts);
     job_note_long(&job, console, "burning a strip of each material");
     SingeResult result = report_materials(job.scene, thickening, &error);
     if (!result) job_note_long(&job, console, "timing steps");
     if (!result && pixels_of(&job.scene->preview.def) > check_pixels) console_note(console, "drawing");
     if (!result) result = time_frame(&job, sim, &times, &error);
+
     if (result) {
         fflush(stdout);
         console_result(console, &error);
@@ -262,6 +269,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
         const double frame = scene->steps * times.step + times.surface + times.picture;
         char text[32];
         console_duration(frame * scene->frames, text);
+
         printf("thickening    %.3g: the fire front is widened by this factor to span the cells\n", (double)thickening);
         printf("frames        %d at %.4g a second, %d steps of %.3g ms each\n", scene->frames, (double)scene->fps,
                scene->steps, 1e3 * (double)scene->sim.time_step);

@@ -69,6 +69,7 @@ static uint64_t hash_files(uint64_t hash, const SceneAssets *assets) {
     for (uint32_t i = 0; i < assets->sheet_count; i++) {
         const Mesh *mesh = &assets->meshes[i];
         const Image *back = &assets->images[assets->sheet_count + i];
+
         hash = hash_array(hash, mesh->positions, 3 * (size_t)mesh->vertex_count, sizeof(float));
         hash = hash_array(hash, mesh->corner_uv, 8 * (size_t)mesh->cell_count, sizeof(float));
         hash = hash_array(hash, mesh->uv, 2 * (size_t)mesh->vertex_count, sizeof(float));
@@ -78,6 +79,7 @@ static uint64_t hash_files(uint64_t hash, const SceneAssets *assets) {
             hash = hash_array(hash, mesh->attributes[k].name, strlen(mesh->attributes[k].name), 1);
             hash = hash_array(hash, mesh->attributes[k].values, mesh->vertex_count, sizeof(float));
         }
+
         const SingeRenderMeshDef *render = &assets->renders[i].def;
         if (render->positions) {
             hash = hash_array(hash, render->positions, 3 * (size_t)render->vertex_count, sizeof(float));
@@ -121,6 +123,7 @@ SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets,
     bare.gas_detail = 0;
     bare.checkpoints = (SceneCheckpoints){0};
     bool good = hash_scene(&bare, &hash->looks);
+
     bare.preview = (ScenePreview){0};
     if (good && hash_scene(&bare, &hash->result)) {
         hash->looks = hash_image(hash->looks, &assets->sky);
@@ -174,8 +177,10 @@ SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator
     memcpy(trailer.magic, checkpoint_magic, sizeof trailer.magic);
     trailer.checksum = hash_bytes(hash_bytes(hash_start, grown, size), &trailer, offsetof(Trailer, checksum));
     memcpy(grown + size, &trailer, sizeof trailer);
+
     SingeResult result =
         file_write_backup(folder->checkpoint, folder->previous_checkpoint, grown, size + sizeof trailer, error);
+
     // freed with its own size: the library counts its allocations
     uint8_t *shrunk = allocator.resize(allocator.context, grown, size + sizeof trailer, size);
     taken->bytes = shrunk ? shrunk : grown;
@@ -191,18 +196,22 @@ static SingeResult read_trailer(const char *path, const Bytes *bytes, SceneHash 
                                 Trailer *trailer, SingeError *error) {
     if (bytes->size < sizeof *trailer)
         return checkpoint_refuse(path, SINGE_ERROR_FORMAT, "the checkpoint is truncated", error);
+
     size_t size = bytes->size - sizeof *trailer;
     memcpy(trailer, bytes->data + size, sizeof *trailer);
     if (memcmp(trailer->magic, checkpoint_magic, sizeof trailer->magic) != 0 || trailer->snapshot_size != size)
         return checkpoint_refuse(path, SINGE_ERROR_FORMAT, "not a checkpoint of this version, or truncated", error);
+
     uint64_t checksum = hash_bytes(hash_bytes(hash_start, bytes->data, size), trailer, offsetof(Trailer, checksum));
     if (checksum != trailer->checksum || trailer->frame < 1 || trailer->frame > INT_MAX || trailer->step > INT_MAX)
         return checkpoint_refuse(path, SINGE_ERROR_FORMAT, "the checkpoint is damaged (its checksum differs)", error);
+
     const Progress progress = {(int)trailer->frame, (int)trailer->step};
     if (trailer->hash.result != hash_so_far(hash.result, assets, progress))
         return checkpoint_refuse(
             path, SINGE_ERROR_STATE,
             "the checkpoint belongs to another scene (the scene, its --set or a file it names has changed)", error);
+
     return SINGE_OK;
 }
 
@@ -216,6 +225,7 @@ bool checkpoint_peek(const char *path, Progress *progress) {
            trailer.frame <= INT_MAX && trailer.step <= INT_MAX;
     if (file >= 0) close(file);
     if (good) *progress = (Progress){(int)trailer.frame, (int)trailer.step};
+
     return good;
 }
 
@@ -224,6 +234,7 @@ SingeResult checkpoint_read_file(const char *path, const SingeSimDef *hooks, Sce
     Bytes bytes = {0};
     SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
     if (result) return result;
+
     Trailer trailer;
     result = read_trailer(path, &bytes, hash, assets, &trailer, error);
     if (!result) {
@@ -231,10 +242,12 @@ SingeResult checkpoint_read_file(const char *path, const SingeSimDef *hooks, Sce
         uint32_t sheet;
         result = singe_sim_load(hooks, bytes.data, (size_t)trailer.snapshot_size, &checkpoint->sim, &inner);
         if (!result) result = scene_bind_meshes(assets, checkpoint->sim, &sheet, &inner);
+
         if (result) {
             singe_sim_destroy(checkpoint->sim);
             checkpoint->sim = NULL;
         }
+
         if (result)
             checkpoint_refuse(path, result, inner.message[0] ? inner.message : singe_result_name(result), error);
         else checkpoint->progress = (Progress){(int)trailer.frame, (int)trailer.step};

@@ -69,6 +69,7 @@ static void bash_value(const char *name) {
 static void bash_command(const Command *command) {
     const ArgCommand *arguments = command->arguments;
     printf("    %s)\n        case $previous in\n", command->name);
+
     for (int i = 0; i < arguments->option_count; i++) {
         const ArgOption *option = &arguments->options[i];
         if (!option->value || named_before(arguments, i)) continue;
@@ -107,8 +108,10 @@ static void bash(void) {
           "    [[ ${COMP_WORDS[COMP_CWORD]} == = ]] && previous=${COMP_WORDS[COMP_CWORD - 1]}\n"
           "    local commands='help",
           stdout);
+
     for (int i = 0; i < command_table.command_count; i++)
         if (command_table.commands[i].group) printf(" %s", command_table.commands[i].name);
+
     fputs("'\n"
           "    if ((COMP_CWORD == 1)); then\n"
           "        _singe_words \"$commands --help --version\"\n"
@@ -117,6 +120,7 @@ static void bash(void) {
           "    case ${COMP_WORDS[1]} in\n"
           "    help) _singe_words \"$commands\" ;;\n",
           stdout);
+
     for (int i = 0; i < command_table.command_count; i++) bash_command(&command_table.commands[i]);
     fputs("    esac\n"
           "    [[ $current == -* ]] && _singe_words \"$options\"\n"
@@ -131,6 +135,7 @@ static void bash(void) {
 static void zsh_value(const char *name) {
     const CommandValue *value = value_of(name);
     printf(":%s:", name + (*name == '['));
+
     if (value && value->kind == VALUE_WORD) {
         putchar('(');
         put_words(value);
@@ -146,9 +151,11 @@ static void zsh_value(const char *name) {
 static void zsh_command(const Command *command) {
     const ArgCommand *arguments = command->arguments;
     printf("    (%s)\n      _arguments -s '(- *)'{-h,--help}'[prints the options]'", command->name);
+
     for (int i = 0; i < arguments->option_count; i++) {
         const ArgOption *option = &arguments->options[i];
         if (named_before(arguments, i)) continue;
+
         fputs(" \\\n        ", stdout);
         if (strstr(option->help, "may be repeated")) fputs("'*'", stdout);
         else if (option->letter) printf("'(-%c --%s)'", option->letter, option->name);
@@ -177,6 +184,7 @@ static void zsh(void) {
           "  local -a commands=(\n"
           "    'help:shows the options of a command'\n",
           stdout);
+
     for (int i = 0; i < command_table.command_count; i++) {
         const Command *command = &command_table.commands[i];
         if (!command->group) continue;
@@ -194,6 +202,7 @@ static void zsh(void) {
           "    case $words[1] in\n"
           "    (help) _describe -t commands command commands ;;\n",
           stdout);
+
     for (int i = 0; i < command_table.command_count; i++) zsh_command(&command_table.commands[i]);
     fputs("    esac ;;\n"
           "  esac\n"
@@ -230,6 +239,7 @@ static void fish(void) {
           "complete -c singe -n '__fish_use_subcommand; or __fish_seen_subcommand_from help' -a help "
           "-d 'shows the options of a command'\n",
           stdout);
+
     for (int i = 0; i < command_table.command_count; i++) {
         const Command *command = &command_table.commands[i];
         if (!command->group) continue;
@@ -245,6 +255,7 @@ static void fish(void) {
         for (int j = 0; j < arguments->option_count; j++) {
             const ArgOption *option = &arguments->options[j];
             if (named_before(arguments, j)) continue;
+
             printf("complete -c singe -n '__fish_seen_subcommand_from %s'", command->name);
             if (option->letter) printf(" -s %c", option->letter);
             printf(" -l %s -d '", option->name);

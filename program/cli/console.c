@@ -102,6 +102,7 @@ enum { BAR = 24 };
 static void show(Console *console, int frame, int frames, const char *line) {
     double now = console_clock(), gap = console->terminal ? 0.1 : 2.0;
     if (console->quiet || (now - console->last < gap && frame != frames)) return;
+
     console->last = now;
     if (!console->terminal) {
         fprintf(stderr, "%s\n", line);
@@ -112,6 +113,7 @@ static void show(Console *console, int frame, int frames, const char *line) {
     int full = frames > 0 ? (int)((long)frame * BAR / frames) : BAR;
     for (int i = 0; i < BAR; i++) bar[i] = i < full ? '#' : '.';
     bar[BAR] = 0;
+
     const char *colour = console->colour ? "\033[33m" : "", *plain = console->colour ? "\033[0m" : "";
     fprintf(stderr, "\r\033[K%s[%s]%s %s", colour, bar, plain, line);
     console->line_open = frame != frames;
@@ -176,6 +178,7 @@ int console_open(void) {
 static int write_through(const char *path, const char *text, size_t size) {
     int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666);
     if (fd < 0) return errno;
+
     const int flags = fcntl(fd, F_GETFL);
     int reason = flags < 0 || fcntl(fd, F_SETFL, flags & ~O_NONBLOCK) ? errno : 0;
     while (size && !reason) {
@@ -199,6 +202,7 @@ ExitCode console_write_table(Console *console, const char *path, void (*print)(F
     SingeError error = {0};
     FILE *file = open_memstream(&text, &size);
     if (file) print(file, context);
+
     if (text_stream_end(file, &text)) {
         struct stat about;
         const bool ours = lstat(path, &about) ? errno == ENOENT : S_ISREG(about.st_mode);

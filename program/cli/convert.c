@@ -177,6 +177,7 @@ static ExitCode convert(const ConvertOptions *o, Console *console, const Job *jo
     SingeResult result = lock_take(lock, folder->cache_lock, "frames", o->frames[0] > 0, console, &error);
     char *vdb = folder_vdb(folder, first), *fine = folder_gas_detail(folder, first);
     if (!result) result = outputs_open(&outputs, job, folder, o->formats, folder_has(vdb), &error);
+
     outputs.scene.plain = o->plain;
     outputs.scene.gas_detail = job->scene->gas_detail > 1 && (o->gas || folder_has(fine));
     free(vdb);
@@ -184,6 +185,7 @@ static ExitCode convert(const ConvertOptions *o, Console *console, const Job *jo
     if (!result) result = folder_create(folder, (FolderParts){.outputs = o->formats, .gas_detail = o->gas}, &error);
     interrupt_watch();
     if (!result) result = convert_all(&outputs, o, console, first, last, &error);
+
     const bool interrupted = result && interrupt_asked();
     console_clear(console);
     if (result && !interrupted) console_result(console, &error);
@@ -218,6 +220,7 @@ int command_convert(int argc, char **argv) {
     Job job = {0};
     Folder folder = {0};
     Lock lock = LOCK_NONE;
+
     code = job_reopen(&job, &console, options.folder, &options.sets, 1);
     if (!code) {
         folder = folder_name(options.folder, job.scene->name);

@@ -73,6 +73,7 @@ static char *manifest_write(PreviewMatte *seen, size_t count, bool pieces, const
         text_json_string(out, name);
         fprintf(out, ":\"%08x\"", cryptomatte_id(name));
     }
+
     fputc('}', out);
     if (fclose(out) == 0) return text;
     free(text);
@@ -88,6 +89,7 @@ bool cryptomatte_make(Cryptomatte *layer, const char *name, bool pieces, const c
     for (size_t i = 0; layer->values && seen && i < pixels; i++) {
         PreviewMatte here[PREVIEW_MATTES];
         gather(mattes[i], pieces, here);
+
         for (int k = 0; k < PREVIEW_MATTES && here[k].share > 0; k++) {
             char text[300];
             if (!pieces) here[k].piece = 0;
@@ -118,6 +120,7 @@ bool cryptomatte_make(Cryptomatte *layer, const char *name, bool pieces, const c
                  rows[i][0]);
         layer->texts[i] = (ExrText){layer->text_names[i], rows[i][1]};
     }
+
     return true;
 }
 

@@ -135,6 +135,7 @@ static bool read_rows(StatsTable *table, Text *text) {
 ExitCode stats_table_read(StatsTable *table, const char *path, Console *console) {
     Bytes bytes = {0};
     SingeError error = {0};
+
     if (access(path, F_OK) != 0 && errno == ENOENT) {
         console_warn(console, "%s is missing, so inverted cells cannot be counted", path);
         return EXIT_GOOD;
@@ -160,6 +161,7 @@ ExitCode stats_table_read(StatsTable *table, const char *path, Console *console)
     else if (!good) console_error(console, "%s:%lld: expected a line of statistics", path, (long long)text.line - 1);
     bytes_free(&bytes);
     if (!table->rows) return EXIT_FAILED;
+
     return good ? EXIT_GOOD : EXIT_INPUT;
 }
 

@@ -255,6 +255,7 @@ SingeResult folder_sweep(const Folder *folder, SingeError *error) {
             const size_t length = strlen(run_files[i].name);
             ours = ours || (strncmp(file, run_files[i].name, length) == 0 && is_temporary(file + length));
         }
+
         const size_t length = strlen(folder->name);
         for (int i = 0; i < OUTPUT_COUNT && strncmp(file, folder->name, length) == 0; i++) {
             const char *ending = output_formats[i].root_ending, *rest = file + length;

@@ -57,6 +57,7 @@ static ExitCode book_open(Book *book, Console *console, const char *folder) {
     char *path = text_format("%s/run.json", folder);
     const SingeResult result = file_read(path, (SingeAllocator){0}, &book->bytes, &error);
     if (result) console_result(console, &error);
+
     const char *json = (const char *)book->bytes.data;
     const size_t size = book->bytes.size;
     if (!result) {
@@ -153,6 +154,7 @@ int command_info(int argc, char **argv) {
         Kind kind = {0};
         result = folder_each(&folder, k, take_file, &kind, &error);
         if (kind.no_memory) result = error.code = SINGE_ERROR_MEMORY;
+
         if (!result && kind.count) {
             qsort(kind.frames, kind.count, sizeof *kind.frames, by_number);
             printf("%-13s ", folder_kind(k));
@@ -213,6 +215,7 @@ int command_clean(int argc, char **argv) {
     Console console = console_make(options.quiet);
     Book book;
     SingeError error = {0};
+
     code = book_open(&book, &console, path);
     if (!code && book.done < 1) {
         console_error(&console, "%s/run.json lists no frames: the run is unfinished; complete it with --resume",
@@ -233,9 +236,11 @@ int command_clean(int argc, char **argv) {
     if (!result) result = folder_thin(&folder, options.every, (int)book.done, &removed, &error);
     if (result) console_result(&console, &error);
     else console_note(&console, "removed %d files of %ld frames in %s", removed, book.done, folder.path);
+
     lock_release(&pictures);
     lock_release(&cache);
     folder_free(&folder);
     book_close(&book);
+
     return result ? EXIT_FAILED : EXIT_GOOD;
 }

@@ -138,21 +138,25 @@ char *job_scene_path(Console *console, const char *path) {
     for (struct dirent *entry; (entry = readdir(folder));) {
         const char *dot = strrchr(entry->d_name, '.');
         if (!dot || dot == entry->d_name || (strcmp(dot, ".yaml") != 0 && strcmp(dot, ".yml") != 0)) continue;
+
         const bool named = strcmp(entry->d_name, own) == 0;
         if (named || count == 0) {
             free(found);
             found = text_format(path[strlen(path) - 1] == '/' ? "%s%s" : "%s/%s", path, entry->d_name);
         }
+
         if (named) {
             count = 1;
             break;
         }
+
         if (count++ < 5) {
             char *longer = text_format("%s%s%s", names, *names ? ", " : "", shown(entry->d_name).text);
             free(names);
             names = longer;
         }
     }
+
     closedir(folder);
     free(whole);
     free(own);
@@ -232,6 +236,7 @@ char *job_recorded_path(const char *folder) {
         bytes_free(&bytes);
     }
     free(record);
+
     return path;
 }
 
@@ -262,6 +267,7 @@ ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetLis
     } else {
         job_refuse_record(console, record);
     }
+
     bytes_free(&bytes);
     free(record);
     return code;

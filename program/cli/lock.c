@@ -27,6 +27,7 @@ static SingeResult refuse_held(int fd, const char *path, const char *what, bool 
     struct flock found = whole_file(shared);
     const ssize_t size = pread(fd, noted, sizeof noted - 1, 0);
     noted[size > 0 ? strcspn(noted, "\n") : 0] = 0;
+
     const bool known = fcntl(fd, F_GETLK, &found) == 0 && found.l_type != F_UNLCK && found.l_pid > 0;
     const char *noted_host = strchr(noted, ' ');
     if (known && (!noted_host || atol(noted) != (long)found.l_pid)) {

@@ -47,6 +47,7 @@ static void put_head(FILE *page, const char *command, const char *summary) {
     for (const char *c = command ? command : ""; *c; c++)
         if (*c == '-') fputs("\\-", page);
         else fputc(*c >= 'a' && *c <= 'z' ? *c - 'a' + 'A' : *c, page);
+
     fprintf(page, " 1 \"\" \"singe %s\" \"Singe\"\n.SH NAME\nsinge", singe_version());
     fprintf(page, command ? "\\-" : " \\- ");
     for (const char *c = command ? command : ""; *c; c++) fprintf(page, *c == '-' ? "\\-" : "%c", *c);
@@ -101,6 +102,7 @@ static void print_page(FILE *page, const void *command) {
     fputs("\n.I COMMAND\n[options]\n.SH DESCRIPTION\nSinge takes a mesh, a material and a fire, and simulates a thin "
           "shell that heats, chars, shrinks, wrinkles, tears and turns to ash.\n.SH COMMANDS\n",
           page);
+
     for (int i = 0; i < command_table.command_count; i++) {
         const Command *one = &command_table.commands[i];
         if (!one->group) continue;
@@ -124,6 +126,7 @@ int command_manual(int argc, char **argv) {
     const int count = command_table.command_count;
     const char *const word = options.command;
     const char *const folder = options.folder && !*options.folder ? "." : options.folder;
+
     for (int i = 0; i < count && word; i++)
         if (strcmp(word, commands[i].name) == 0) command = &commands[i];
     if (word && !command)

@@ -137,6 +137,7 @@ static bool is_cold(const float *rest, uint32_t count, float (*burnt)[3], const 
         double gap = 0;
         for (int k = 0; k < 3; k++)
             gap += pow(fmax(0, fmax((double)box->low[k] - (double)rest[k], (double)rest[k] - (double)box->high[k])), 2);
+
         for (uint32_t i = first; i < count && i < first + RUN && gap < square; i++) {
             double distance = 0;
             for (int k = 0; k < 3; k++) distance += pow((double)burnt[i][k] - (double)rest[k], 2);
@@ -154,12 +155,14 @@ static bool moment_take(const SingeSurface *surface, double time, Moment *moment
         if (surface->source_vertex[v] >= 0 && (uint32_t)surface->source_vertex[v] >= count)
             count = (uint32_t)surface->source_vertex[v] + 1;
     moment_free(moment);
+
     moment->position = malloc(((size_t)count + 1) * sizeof *moment->position);
     moment->velocity = malloc(((size_t)count + 1) * sizeof *moment->velocity);
     moment->there = calloc((size_t)count + 1, sizeof *moment->there);
     moment->cold = calloc((size_t)count + 1, sizeof *moment->cold);
     moment->count = count;
     moment->time = time;
+
     float(*burnt)[3] = malloc(((size_t)surface->vertex_count + 1) * sizeof *burnt);
     Box *boxes = malloc(((size_t)surface->vertex_count / RUN + 1) * sizeof *boxes);
     const bool good = moment->position && moment->velocity && moment->there && moment->cold && burnt && boxes;
@@ -168,6 +171,7 @@ static bool moment_take(const SingeSurface *surface, double time, Moment *moment
     uint32_t burnt_count = 0;
     for (uint32_t v = 0; v < surface->vertex_count && good; v++) {
         if (surface->time_ignited[v] < 0) continue;
+
         Box *box = &boxes[burnt_count / RUN];
         const bool first = burnt_count % RUN == 0;
         for (int k = 0; k < 3; k++) {
@@ -219,6 +223,7 @@ static double degrees(double power) { return sqrt(power) * 180 / acos(-1); }
 static void fill_row(const Wrinkles *frame, const Folds *folds, const Rim *rim, double area, double *row) {
     double bend = 0;
     for (int b = 0; b < WRINKLE_BINS; b++) bend += frame->crease[b];
+
     row[BIAS] = wrinkles_bias(frame);
     row[BEND] = area > 0 ? bend / area : (double)NAN;
     row[BURNT] = degrees(wrinkles_burnt(frame));
@@ -247,6 +252,7 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
                                : frame_read_surface(&measure->folder, frame, &read, error);
     const SingeSurface *surface = &read.surface;
     measure->times[index] = read.time;
+
     Wrinkles wrinkles = {0};
     Folds folds = {0};
     Rim *rim = &measure->rims[index];
@@ -289,6 +295,7 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
         const uint8_t *rgb;
         result = pictures_ember_width(measure->embers, surface, read.time, &width, error);
         if (!result) result = frame_draw(&read, measure->flames, &rgb, error);
+
         if (!result) {
             const FlameShares shares = pictures_flame_shares(measure->flames);
             row[EMBER] = 1e3 * width;
@@ -361,10 +368,12 @@ static void print_summary(const Measure *measure) {
         int frame = 0;
         printf("%-44s", numbers[n].title);
         print_number(numbers[n].format, all[n]);
+
         if (!summary(measure, (Number)n, &median, &worst, &frame)) {
             printf("%10s%10s%7s\n", "-", "-", "-");
             continue;
         }
+
         print_number(numbers[n].format, median);
         print_number(numbers[n].format, worst);
         printf("%7d\n", frame);
@@ -426,6 +435,7 @@ static ExitCode measure_all(Measure *measure) {
     SingeResult result = measure->rows && measure->times && measure->rims ? SINGE_OK : out_of_memory(&error);
     for (int frame = measure->first; frame <= measure->last && !result; frame++)
         result = measure_frame(measure, frame, &error);
+
     ExitCode code = EXIT_GOOD;
     if (result) {
         console_result(&measure->console, &error);
@@ -455,11 +465,13 @@ int command_measure(int argc, char **argv) {
 
     measure.folder = folder_name(options.path, measure.job.scene->name);
     code = folder_span(&measure.folder, &measure.console, &measure.first, &measure.last);
+
     SingeError error = {0};
     const PreviewDef *preview = &measure.job.scene->preview.def;
     int scale = EMBER_SCALE; // embers are thinner than a pixel, unless the pictures are large
     while (scale > 1 && scale * (preview->width > preview->height ? preview->width : preview->height) > EMBER_WIDE)
         scale--;
+
     if (!code && !options.no_preview &&
         (pictures_open_sharp(&measure.job, scale, &measure.embers, &error) ||
          pictures_open_sharp(&measure.job, 1, &measure.flames, &error))) {

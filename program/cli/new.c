@@ -82,11 +82,13 @@ int command_new(int argc, char **argv) {
     const char *before = strcmp(folder, ".") == 0 ? "" : folder, *slash = *before ? "/" : "";
     char *paths[2];
     struct stat info;
+
     for (int i = 0; i < 2; i++) paths[i] = text_format("%s%s%s", before, slash, files[i] ? files[i] : "");
     if (!options.force && lstat(paths[1], &info) == 0) {
         console_error(&console, "%s already exists; --force replaces it", shown_path(paths[1]).text);
         code = EXIT_INPUT;
     }
+
     for (int i = 0; i < 2 && !code; i++) {
         if (!files[i] || (i == 0 && lstat(paths[0], &info) == 0)) continue;
         const SceneBuiltin *found = new_templates;

@@ -24,6 +24,7 @@ static char *path_from(const char *folder, const char *file) {
         for (; from[i] && from[i] == to[i]; i++)
             if (from[i] == '/') same = i + 1;
         if (!from[i] && to[i] == '/') same = i + 1;
+
         const char *rest = strlen(from) < same ? "" : from + same;
         relative = text_format("%s", *rest ? "../" : "./");
         for (const char *c = rest; *c; c++) {
@@ -55,6 +56,7 @@ SingeResult outputs_open(Outputs *outputs, const Job *job, const Folder *folder,
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         const SceneSheet *sheet = &scene->sheets[i];
         const Mesh *mesh = &job->assets.meshes[i];
+
         if (sheet->picture.path) outputs->pictures[i] = path_from(folder->path, sheet->picture.path);
         outputs->sheets[i] = (OutputSheet){.name = sheet->name,
                                            .picture = outputs->pictures[i],
@@ -98,6 +100,7 @@ SingeResult outputs_open(Outputs *outputs, const Job *job, const Folder *folder,
     memcpy(s->light_colour, preview->sun_colour, sizeof s->light_colour);
     memcpy(s->sky, preview->sky_colour, sizeof s->sky);
     memcpy(s->ground_colour, preview->ground_colour, sizeof s->ground_colour);
+
     return SINGE_OK;
 }
 
@@ -172,9 +175,11 @@ static SingeResult whole_open(WholeScene *whole, const Outputs *outputs, int fra
             PreviewShape now;
             poses[frame] = (OutputPose){.rotation = {0, 0, 0, 1}};
             if (!scene_shape(scene, &outputs->job->assets, slot, frame * scene_frame_time(scene), &now)) continue;
+
             ever = poses[frame].visible = true;
             memcpy(poses[frame].position, now.position, sizeof now.position);
             memcpy(poses[frame].rotation, now.rotation, sizeof now.rotation);
+
             *shape = (OutputShape){.kind = now.kind,
                                    .radius = now.radius,
                                    .height = now.height,
@@ -183,6 +188,7 @@ static SingeResult whole_open(WholeScene *whole, const Outputs *outputs, int fra
             memcpy(shape->half_size, now.half_size, sizeof now.half_size);
             memcpy(shape->colour, now.colour, sizeof now.colour);
             if (!now.solid) continue;
+
             shape->vertex_count = now.solid->vertex_count;
             shape->triangle_count = now.solid->triangle_count;
             shape->vertices = now.solid->vertices;
@@ -331,6 +337,7 @@ SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Picture
     if (!result)
         result = pictures_bake(pictures, &frame->surface, coarse, frame->time, detail, fine.extinction,
                                fine.flame_share, error);
+
     if (!result) {
         refine(coarse, detail, &fine);
         gas_decode(&fine);

@@ -40,6 +40,7 @@ static SingeResult open_def(const Job *job, const PreviewDef *def, Pictures **ma
         pictures->starts[s] = (PreviewStart){mesh->vertex_count, mesh->cell_count, mesh->positions,
                                              mesh->cells,        mesh->uv,         mesh->corner_uv};
     }
+
     pictures->def.starts = pictures->starts;
     pictures->shape_max = scene_shapes(job->scene, &job->assets, 0, NULL, 0);
     pictures->shapes = calloc(pictures->shape_max + 1, sizeof *pictures->shapes);
@@ -73,10 +74,12 @@ SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, 
     def.shutter = 0;
     SingeResult result = open_def(job, &def, pictures, error);
     if (!result) result = pictures_keep_layers(*pictures, error);
+
     if (result) {
         pictures_close(*pictures);
         *pictures = NULL;
     }
+
     return result;
 }
 
@@ -93,10 +96,12 @@ const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, co
         pictures->shapes = shapes;
         pictures->shape_max = count;
     }
+
     count = scene_shapes(pictures->scene, pictures->assets, time, pictures->shapes, pictures->shape_max);
     PreviewCamera camera;
     scene_camera(pictures->scene, time, &camera);
     camera.aperture = pictures->def.camera.aperture; // a picture to be measured is sharp
+
     SingeResult result = preview_set_camera(pictures->preview, &camera, error);
     if (!result) result = preview_set_shapes(pictures->preview, pictures->shapes, count, error);
     if (!result) result = preview_set_gas(pictures->preview, gas, error);
@@ -127,6 +132,7 @@ SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error) {
     l->sheet = calloc(count, sizeof *l->sheet);
     l->piece = calloc(count, sizeof *l->piece);
     l->mattes = calloc(count, sizeof *l->mattes);
+
     bool all = l->beauty && l->glow && l->normal && l->coverage && l->fire && l->temperature && l->burn && l->depth &&
                l->sheet && l->piece && l->mattes;
     return all ? SINGE_OK : no_memory(error);
@@ -177,11 +183,13 @@ static SingeResult write_layers(const Pictures *pictures, const char *path, cons
         {"id.sheet", EXR_KIND_ID, sheet, 1},
         {"id.piece", EXR_KIND_ID, piece, 1},
     };
+
     ExrText texts[MATTE_LAYERS * CRYPTOMATTE_TEXTS + 1] = {{NULL, NULL}};
     for (int m = 0; m < MATTE_LAYERS; m++) {
         memcpy(channels + LAYER_CHANNELS + m * CRYPTOMATTE_CHANNELS, mattes[m].channels, sizeof mattes[m].channels);
         memcpy(texts + m * CRYPTOMATTE_TEXTS, mattes[m].texts, sizeof mattes[m].texts);
     }
+
     return exr_write(path, pictures->def.width, pictures->def.height, channels,
                      (int)(sizeof channels / sizeof *channels), texts, error);
 }
@@ -223,6 +231,7 @@ void pictures_size(const Pictures *pictures, int *width, int *height) {
 void pictures_close(Pictures *pictures) {
     if (!pictures) return;
     preview_destroy(pictures->preview);
+
     const PreviewLayers *l = &pictures->layers;
     void *const layers[] = {l->beauty, l->glow,  l->normal, l->coverage, l->fire,  l->temperature,
                             l->burn,   l->depth, l->sheet,  l->piece,    l->mattes};
@@ -257,6 +266,7 @@ SingeResult frame_take_gas(SingeSim *sim, Frame *frame, SingeError *error) {
 SingeResult frame_read_surface(const Folder *folder, int number, Frame *frame, SingeError *error) {
     Bytes bytes = {0};
     *frame = (Frame){0};
+
     char *path = folder_ply(folder, number);
     SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
     if (!result)
@@ -280,6 +290,7 @@ SingeResult frame_read(const Folder *folder, int number, Frame *frame, SingeErro
         bytes_free(&bytes);
     }
     free(path);
+
     return result;
 }
 
@@ -307,6 +318,7 @@ SingeResult contact_sheet_make(ContactSheet *sheet, int columns, int rows, int f
     int shortest = frame_width < frame_height ? frame_width : frame_height;
     if (shrink > shortest) shrink = shortest;
     if (shrink < 1) shrink = 1;
+
     *sheet = (ContactSheet){.columns = columns,
                             .rows = rows,
                             .frame_width = frame_width,
@@ -316,6 +328,7 @@ SingeResult contact_sheet_make(ContactSheet *sheet, int columns, int rows, int f
                             .height = rows * (frame_height / shrink)};
     sheet->rgb = calloc((size_t)sheet->width * 3, (size_t)sheet->height);
     if (sheet->rgb) return SINGE_OK;
+
     return refuse(error, SINGE_ERROR_MEMORY, "sheet.png", -1, "out of memory");
 }
 

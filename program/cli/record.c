@@ -59,6 +59,7 @@ static void write_all(FILE *file, const Record *record, const Job *job) {
     fputs("{\n  \"program\": \"singe\",\n", file);
     member(file, "version", singe_version());
     member(file, "result", record->result);
+
     if (record->error.code) {
         fputs("  \"error\": {\"code\": ", file);
         text_json_string(file, singe_result_name(record->error.code));
@@ -78,6 +79,7 @@ static void write_all(FILE *file, const Record *record, const Job *job) {
     const int length = slash ? (int)(slash - record->scene_path) + (slash == record->scene_path) : 0;
     char *folder = slash ? text_format("%.*s", length, record->scene_path) : text_format(".");
     char *whole = realpath(folder, NULL);
+
     member(file, "scene_file", record->scene_path);
     member(file, "scene_folder", whole ? whole : folder);
     free(whole);
@@ -91,6 +93,7 @@ static void write_all(FILE *file, const Record *record, const Job *job) {
             scene->sim.seed, job->hooks.thread_count);
     fprintf(file, "  \"preview\": %s,\n  \"video\": %s,\n", record->preview ? "true" : "false",
             record->video ? "true" : "false");
+
     write_numbers(file, record);
     fputs("  \"scene\": ", file);
     scene_dump(scene, SCENE_JSON, 2, file);
@@ -103,6 +106,7 @@ SingeResult record_write(const Record *record, const char *path, const Job *job,
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     if (file) write_all(file, record, job);
+
     SingeResult result = SINGE_ERROR_MEMORY;
     if (text_stream_end(file, &text)) result = file_write(path, text, size, error);
     else *error = (SingeError){.code = result, .stage = "run.json", .element = -1};

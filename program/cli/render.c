@@ -60,10 +60,12 @@ static bool render_check(const ArgCommand *command, void *options) {
     if (o->only_sheet && (o->exr || o->gif))
         return args_complain(command, "--only-sheet writes nothing else: not with --%s", o->exr ? "exr" : "gif");
     if (o->exr && !exr_available()) return args_complain(command, "--exr: this singe was built without EXR");
+
     if (o->only_sheet && !o->sheet[0]) {
         o->sheet[0] = 4;
         o->sheet[1] = 2;
     }
+
     return true;
 }
 
@@ -117,6 +119,7 @@ static SingeResult draw_all(Render *render, bool *interrupted, SingeError *error
         SingeResult result = frame_read(&render->folder, number, &frame, error);
         if (!result) result = frame_draw(&frame, render->pictures, &rgb, error);
         frame_free(&frame);
+
         if (!result && !o->only_sheet) {
             char *png = folder_png(&render->drawn, number);
             char *exr = o->exr ? folder_exr(&render->drawn, number) : NULL;
@@ -152,6 +155,7 @@ static ExitCode render_frames(Render *render) {
     if (!result && !o->only_sheet)
         result = lock_take(&render->lock, render->drawn.pictures_lock, "pictures", o->frames[0] > 0, render->console,
                            &error);
+
     const FolderParts parts = {.pictures = !o->only_sheet, .exr = o->exr, .elsewhere = o->output != NULL};
     if (!result) result = folder_create(&render->drawn, parts, &error);
     if (!result && o->exr) result = pictures_keep_layers(render->pictures, &error);
@@ -164,6 +168,7 @@ static ExitCode render_frames(Render *render) {
     interrupt_watch();
     if (!result) result = draw_all(render, &interrupted, &error);
     console_clear(render->console);
+
     if (result) {
         console_result(render->console, &error);
         return result == SINGE_ERROR_FORMAT ? EXIT_INPUT : EXIT_FAILED;
@@ -192,6 +197,7 @@ int command_render(int argc, char **argv) {
         Render render = {.console = &console, .options = &options, .lock = LOCK_NONE};
         code = job_reopen(&render.job, &console, options.folder, &options.sets, options.threads);
         if (!code) code = job_fits(&render.job, &console, scene_picture_memory(render.job.scene, options.exr));
+
         if (!code) {
             render.folder = folder_name(options.folder, render.job.scene->name);
             render.drawn = folder_name(options.output ? options.output : options.folder, render.job.scene->name);

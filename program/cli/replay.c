@@ -47,6 +47,7 @@ int command_replay(int argc, char **argv) {
     SingeError error = {0};
     SingeResult result = file_read(options.path, hooks.allocator, &bytes, &error);
     if (!result) result = singe_replay(&hooks, bytes.data, bytes.size, &replay, &error);
+
     if (result == SINGE_ERROR_FORMAT || result == SINGE_ERROR_VERSION) {
         console_error(&console, "%s: %s", shown(options.path).text, error.message);
         code = EXIT_INPUT;
@@ -61,6 +62,7 @@ int command_replay(int argc, char **argv) {
         else printf("differs first: %s\n", replay.what);
         code = replay.same ? EXIT_GOOD : EXIT_FAILED;
     }
+
     bytes_free(&bytes);
     return code;
 }

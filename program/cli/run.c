@@ -117,6 +117,7 @@ static SingeResult run_frames(Run *run, SingeError *error) {
         const SingeResult stepped = frame > 1 ? run_advance(run, frame, &step_error) : SINGE_OK;
         SingeResult result = end_frame(run, error);
         if (result && interrupt_left_work()) return leave(run);
+
         if (!result && stepped) {
             *error = step_error;
             result = stepped;
@@ -149,6 +150,7 @@ static void print_summary(Run *run) {
     console_duration(run->totals->wall_seconds, took);
     console_note(run->console, "%s: %d of %d frames in %s", record->result, record->frames_done, run->job.scene->frames,
                  took);
+
     char front[100] = ""; // a front that has had several paces has no one speed, nor has what a source has just lit
     const double pace = (double)run->job.scene->sim.pace, speed = 1e3 * stats.front_speed;
     if (pace == 1) snprintf(front, sizeof front, "front %.1f mm/s, ", speed);
@@ -156,12 +158,14 @@ static void print_summary(Run *run) {
     if (run->job.scene->pace_count || stats.burnt_fraction < 0.01 || speed == 0) front[0] = 0;
     console_note(run->console, "%shottest %.0f C, %.0f %% burnt, %u pieces, %u particles left", front,
                  run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces, stats.particles);
+
     bool mapped = false;
     for (uint32_t i = 0; i < run->job.scene->source_count; i++)
         mapped = mapped || run->job.scene->sources[i].def.kind == SINGE_SOURCE_ARRIVAL;
     if (mapped)
         console_note(run->console, "the front kept to its map within %.1f ms, %u of %u particles missed it",
                      1e3 * stats.arrival_error, stats.arrival_missed, singe_sim_counts(run->sim).particles);
+
     const double ignition = scene_ignition(run->job.scene);
     if (strcmp(record->result, "complete") == 0 && run->job.scene->frames > 1 && isfinite(ignition) &&
         run->totals->ignited == 0 && stats.burnt_fraction == 0)
@@ -188,6 +192,7 @@ static void print_summary(Run *run) {
 static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
     Record *record = &run->record;
     SingeError write_error = {0};
+
     if (result) {
         record->result = "failed";
         record->error = *error;
@@ -210,6 +215,7 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
     if (run->begun && run->converted && record->frames_done > 0)
         written = outputs_write_roots(&run->outputs, record->frames_done, &write_error);
     if (!written && ours) written = record_write(record, run->folder.record, &run->job, &write_error);
+
     if (written) {
         console_result(run->console, &write_error);
         return EXIT_FAILED;
@@ -234,6 +240,7 @@ static ExitCode run_scene(Run *run, const RunOptions *options) {
     run->record.counts = singe_sim_counts(run->sim);
     run->record.thickening = singe_sim_stats(run->sim).thickening;
     job_note_meshes(&run->job, run->console);
+
     const SingeCounts *counts = &run->record.counts;
     console_note(run->console, "%u cells of %.3g mm, strands of %.1f springs on average", counts->cells,
                  1e3 * (double)counts->cell_size, counts->mean_strand_length);
@@ -249,6 +256,7 @@ static ExitCode run_scene(Run *run, const RunOptions *options) {
     if (!run->pictures) lock_release(&run->pictures_lock);
     if (!result && whole) result = run_frames(run, &error);
     else if (!result) run->record.result = "interrupted";
+
     return finish(run, result, &error);
 }
 
@@ -264,21 +272,25 @@ int command_run(int argc, char **argv) {
                    .pictures_lock = LOCK_NONE,
                    .started = console_clock()};
         run.checkpoint_time = run.started;
+
         const char *folder = options.scene; // of a run: the scene as it was burnt
         char *scene = job_recorded_path(folder);
         const bool recorded = scene;
         if (!recorded) scene = job_scene_path(&console, options.scene);
         options.scene = scene;
+
         run.record = record_make(scene ? scene : "");
         run.totals = &run.record.totals;
         code = EXIT_INPUT;
         if (recorded) code = job_reopen(&run.job, &console, folder, &options.sets, options.threads);
         else if (scene) code = job_read(&run.job, &console, scene, &options.sets, options.threads);
+
         const double pictures = !code && !options.no_preview ? scene_picture_memory(run.job.scene, options.exr) : 0;
         if (!code) code = (recorded ? job_fits : job_load)(&run.job, &console, pictures);
         if (!code && options.record) code = recording_open(&run.recording, options.record, &console);
         run.job.hooks.record = recording_hook(&run.recording);
         if (!code) code = run_scene(&run, &options);
+
         tables_close(&run.tables);
         frame_free(&run.frame);
         outputs_close(&run.outputs);

@@ -28,6 +28,7 @@ FolderParts run_parts(const Run *run) {
 static ExitCode hold_folder(Run *run) {
     SingeError error = {0};
     if (run->cache_lock.fd >= 0) return EXIT_GOOD;
+
     SingeResult result = folder_make(run->folder.path, &error);
     if (!result) result = lock_take(&run->cache_lock, run->folder.cache_lock, "frames", false, run->console, &error);
     if (!result)
@@ -82,6 +83,7 @@ static ExitCode resume(Run *run) {
     result = tables_open(&run->tables, &run->folder, run->job.scene, &run->job.assets, &error);
     if (!result) result = tables_cut(&run->tables, frame, &checkpoint.totals, &error);
     if (!result && checkpoint.previous) result = checkpoint_promote(&run->folder, &error);
+
     if (result) {
         console_result(run->console, &error);
         return result == SINGE_ERROR_FORMAT ? EXIT_INPUT : EXIT_FAILED;
@@ -96,8 +98,10 @@ static ExitCode resume(Run *run) {
     run->step = checkpoint.progress.step;
     run->begun = true;
     console_note(run->console, "continuing from frame %d", frame);
+
     if (checkpoint.other_looks && run->pictures)
         console_warn(run->console, "the preview has changed; `singe render` draws the earlier frames again");
+
     return EXIT_GOOD;
 }
 
@@ -121,9 +125,11 @@ SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error) {
     *whole = true;
     for (int number = 1; number <= last && count && !result && *whole; number++) {
         if (!lacks_picture(run, number)) continue;
+
         Frame frame;
         const uint8_t *rgb;
         char *png = folder_png(&run->folder, number), *exr = folder_exr(&run->folder, number);
+
         result = frame_read(&run->folder, number, &frame, error);
         if (!result) result = frame_draw(&frame, run->pictures, &rgb, error);
         if (!result) result = frame_write_picture(run->pictures, rgb, png, run->layers ? exr : NULL, error);
@@ -165,10 +171,12 @@ SingeResult run_take_over(Run *run, SingeError *error) {
     int removed = 0;
     char *draft;
     SingeResult result = file_draft(run->folder.record, &draft, error);
+
     interrupt_own(draft);
     if (!result) result = record_write(&run->record, draft, &run->job, error);
     if (!result) result = folder_forget(&run->folder, &removed, error);
     interrupt_disown(draft);
+
     if (result) {
         file_name_target(error, draft, run->folder.record);
         file_discard(draft);
@@ -181,6 +189,7 @@ SingeResult run_take_over(Run *run, SingeError *error) {
     if (removed)
         console_note(run->console, "removed %d files of an earlier run of '%s' in %s", removed, run->folder.name,
                      run->folder.path);
+
     for (int i = 0; i < run->file_count && !result; i++) {
         interrupt_disown(run->files[i].draft);
         result = file_publish(run->files[i].draft, run->files[i].path, error);
@@ -197,10 +206,12 @@ static bool may_replace(const Run *run) {
     const bool asks = folder_has(first) && isatty(STDIN_FILENO) && isatty(STDERR_FILENO);
     free(first);
     if (!asks) return true;
+
     fprintf(stderr, "%s has frames of an earlier run of '%s'. Replace them? [y/N] ", run->folder.path,
             run->folder.name);
     fflush(stderr);
     if (fgets(answer, sizeof answer, stdin) && (answer[0] == 'y' || answer[0] == 'Y')) return true;
+
     console_error(run->console, "nothing was replaced; -o names another folder, --force replaces without asking, and "
                                 "--resume continues a run");
     return false;
@@ -216,6 +227,7 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
     run->first = 1;
     const SceneCheckpoints *kept = &run->job.scene->checkpoints;
     run->keep_every = kept->every ? kept->every : kept->megabytes > 0 ? 10 : 0;
+
     SingeResult result = checkpoint_scene_hash(run->job.scene, &run->job.assets, &run->hash, &error);
     if (options->no_preview) console_note(run->console, "no preview");
     else if (!result) result = pictures_open(&run->job, &run->pictures, &error);
@@ -234,6 +246,7 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
     if (options->resume && access(run->folder.path, F_OK) == 0) {
         if ((code = hold_folder(run)) || (code = resume(run))) return code;
     }
+
     if (options->resume && !run->sim && !options->from) {
         char *lineage = branch_lineage(&run->folder);
         if (lineage)

@@ -50,6 +50,7 @@ char *branch_lineage(const Folder *folder) {
     Ancestor value;
     char *text = NULL;
     if (file_read(folder->record, (SingeAllocator){0}, &bytes, &error)) return NULL;
+
     const Ancestor record = {(const char *)bytes.data, bytes.size};
     if (ancestor_member(record, "from", &value) && ancestor_frame(value))
         text = text_format("%.*s", (int)(value.size < INT_MAX ? value.size : 0), value.json);
@@ -84,6 +85,7 @@ static char *lineage_text(const char *folder, int frame, Ancestor scene) {
         fputs("{\"folder\": ", file);
         text_json_string(file, whole ? whole : folder);
         fprintf(file, ", \"frame\": %d", frame);
+
         for (size_t i = 0; i < sizeof copied / sizeof *copied; i++) {
             Ancestor value;
             if (!ancestor_member(scene, copied[i], &value)) continue;
@@ -116,9 +118,11 @@ static ExitCode read_record(Run *run, const char *folder) {
     const Ancestor record = {(const char *)bytes.data, bytes.size};
     Ancestor value, scene, at;
     if (ancestor_member(record, "name", &value)) name = text_json_unquote(value.json, value.size);
+
     bool good = name && value_names_files(name) && scene_at(record, branch->frame, &at, &branch->first) &&
                 ancestor_member(at, "scene", &scene);
     if (good && ancestor_member(at, "scene_folder", &value)) base = text_json_unquote(value.json, value.size);
+
     if (good && base) {
         branch->folder = folder_name(folder, name);
         code = job_parse(&branch->job, run->console, path, scene.json, scene.size, base, &(SetList){0},
@@ -128,6 +132,7 @@ static ExitCode read_record(Run *run, const char *folder) {
     } else {
         job_refuse_record(run->console, path);
     }
+
     bytes_free(&bytes);
     free(base);
     free(name);
@@ -191,6 +196,7 @@ static ExitCode load_checkpoint(Run *run, Progress *progress) {
         run->sim = checkpoint.sim;
         *progress = checkpoint.progress;
         *run->totals = checkpoint.totals;
+
         // of another scene, an earlier checkpoint would not help
         if (refused == SINGE_ERROR_STATE)
             snprintf(
@@ -213,17 +219,20 @@ static ExitCode load_checkpoint(Run *run, Progress *progress) {
 static SingeResult step_to_frame(Run *run, Progress at, SingeError *error) {
     const Job now = run->job;
     SingeResult result = SINGE_OK;
+
     run->job = run->branch.job;
     run->timers = singe_sim_timers(run->sim);
     if (at.frame == 0) {
         result = run_pass_frame(run, 1, error);
         at.frame = 1;
     }
+
     run->step = at.step;
     for (int frame = at.frame + 1; frame <= run->branch.frame && !result; frame++) {
         result = run_advance(run, frame, error);
         if (!result) result = run_pass_frame(run, frame, error);
     }
+
     run->branch.job = run->job;
     run->job = now;
     run->step = 0;
@@ -237,14 +246,17 @@ static ExitCode compare_frame(Run *run) {
     Frame cached = {0};
     SingeResult result = frame_take_surface(run->sim, &run->frame, &error);
     if (!result) result = frame_read_surface(&branch->folder, branch->frame, &cached, &error);
+
     const SingeSurface *a = &run->frame.surface, *b = &cached.surface;
     const size_t vertices = a->vertex_count;
     const bool same = !result && a->vertex_count == b->vertex_count && a->triangle_count == b->triangle_count &&
                       memcmp(a->position, b->position, vertices * sizeof *a->position) == 0 &&
                       memcmp(a->temperature, b->temperature, vertices * sizeof *a->temperature) == 0 &&
                       memcmp(a->mass, b->mass, vertices * sizeof *a->mass) == 0;
+
     frame_free(&cached);
     if (same) return EXIT_GOOD;
+
     if (result) console_result(run->console, &error);
     else
         console_error(run->console,
@@ -293,6 +305,7 @@ static ExitCode open_branch(Run *run, const char *from) {
     struct stat here, there;
     const char *colon = strrchr(from, ':');
     char *end = NULL;
+
     errno = 0;
     const long frame = colon && colon[1] >= '0' && colon[1] <= '9' ? strtol(colon + 1, &end, 10) : 0;
     if (frame < 1 || frame > 1000000 || *end || errno || colon == from) {
@@ -335,6 +348,7 @@ ExitCode branch_prepare(Run *run, const char *from) {
     if (branch->frame > (at.frame > 0 ? at.frame : 1))
         console_note(run->console, "simulating frames %d to %d again (the scene's `checkpoints` can save this)",
                      at.frame + 1, branch->frame);
+
     SingeError error = {0};
     const SingeResult result = step_to_frame(run, at, &error);
     if (result) {
@@ -350,6 +364,7 @@ ExitCode branch_prepare(Run *run, const char *from) {
         console_result(run->console, &error);
         code = EXIT_INPUT;
     }
+
     const SceneWhole now = {run->job.scene, &run->job.assets}, before = {branch->job.scene, &branch->job.assets};
     SceneMessages messages = {0};
     if (!code) code = job_exit(scene_branch(now, before, branch->frame, run->sim, &messages));
@@ -468,6 +483,7 @@ SingeResult run_keep_checkpoint(Run *run, int frame, SingeError *error) {
         sizes = (KeptSizes){2 * sizes.every, branch, 0, NULL};
         result = folder_each(&run->folder, FOLDER_CHECKPOINTS, visit_kept, &sizes, error);
     }
+
     run->keep_every = sizes.every;
     sizes.folder = &run->folder;
     return result ? result : folder_each(&run->folder, FOLDER_CHECKPOINTS, visit_kept, &sizes, error);

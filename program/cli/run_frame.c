@@ -74,6 +74,7 @@ SingeResult run_advance(Run *run, int frame, SingeError *error) {
     while (run->step < run->job.scene->steps) {
         SingeResult result = scene_begin_step(run->job.scene, run->sim, frame - 1, run->step, error);
         if (result) return result;
+
         result = singe_sim_step(run->sim);
         if (result) {
             *error = *singe_sim_error(run->sim);
@@ -176,6 +177,7 @@ static SingeResult write_checkpoint(Run *run, CheckpointBytes *taken, Progress p
     double clock = console_clock();
     totals->wall_seconds = run->wall_before + clock - run->started;
     memcpy(totals->output_seconds, run->totals->output_seconds, sizeof totals->output_seconds);
+
     SingeResult result = tables_sync(&run->tables, error);
     if (!result && run->converted) result = outputs_write_roots(&run->outputs, progress.frame, error);
     if (!result)
@@ -211,6 +213,7 @@ SingeResult run_begin_frame(Run *run, int frame, bool last, SingeError *error) {
     SingeResult result = frame_take_surface(run->sim, &run->frame, error);
     const double seconds = seconds_since(&clock);
     cost->surface = cost->output = 1e3 * seconds;
+
     run->totals->output_seconds[TOTAL_SURFACE] += seconds;
     cost->triangles = run->record.triangles = run->frame.surface.triangle_count;
     cost->fine_triangles = run->record.fine_triangles = run->frame.surface.fine_triangle_count;
@@ -243,6 +246,7 @@ SingeResult run_end_frame(Run *run, SingeStats *stats, SingeError *error) {
     FrameWriting *writing = &run->writing;
     const int frame = writing->frame;
     if (!frame) return SINGE_OK;
+
     if (writing->threaded) pthread_join(writing->thread, NULL);
     for (int i = 0; i < TOTAL_OUTPUT_COUNT; i++) run->totals->output_seconds[i] += writing->output_seconds[i];
     SingeResult result = writing->result;

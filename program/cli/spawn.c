@@ -24,6 +24,7 @@ int spawn_program(char *const *arguments, const char *log, pid_t *child) {
     sigaddset(&shielded, SIGXFSZ);
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setsigdefault(&attributes, &shielded);
+
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     if (log) {

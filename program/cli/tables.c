@@ -32,6 +32,7 @@ const char *tables_unit(const char *column) {
         {"time", "s"},          {"mass_ledger", ""}, {"mass", "kg"},    {"temperature_", "K"},
         {"heat_", "J"},         {"ms_", "ms"},       {"speed_", "m/s"}, {"front_speed", "m/s of the fire's time"},
         {"arrival_error", "s"}, {"water", "kg"},     {"energy_", "J"}};
+
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
         if (strncmp(column, units[i].begins, strlen(units[i].begins)) == 0) return units[i].unit;
     return "";
@@ -131,6 +132,7 @@ SingeResult tables_open(Tables *tables, const Folder *folder, const Scene *scene
         const int flags = O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
         LineFile *file = &tables->files[i];
         struct stat info;
+
         file->path = table_path(folder, i);
         file->fd = open(file->path, flags, 0666);
         if (file->fd < 0) return folder_fail(file->path, "write", errno == ENXIO ? 0 : errno, error);
@@ -164,6 +166,7 @@ SingeResult tables_cut(Tables *tables, int frames, const Totals *totals, SingeEr
         Bytes bytes = {0};
         size_t size = 0;
         if (file->fd < 0) continue;
+
         result = lines_read(file->path, &extent, &bytes, &size, error);
         if (result) break;
         bytes_free(&bytes);
@@ -276,6 +279,7 @@ static void put_probe(FILE *file, const SingeView *view, const SceneProbe *probe
     const char *quote = strchr(probe->name, ',') ? "\"" : ""; // names contain no quotes
     fprintf(file, "%d,%.9g,%s%s%s,%" PRIu32 ",%d,", frame, view->time, quote, probe->name, quote, probe->sheet_index,
             there);
+
     if (!there) {
         fputs(",,,,,,,,\n", file);
         return;

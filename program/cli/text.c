@@ -20,6 +20,7 @@ char *text_format(const char *format, ...) {
     va_list list, again;
     va_start(list, format);
     va_copy(again, list);
+
     int length = vsnprintf(NULL, 0, format, list);
     char *text = need(length < 0 ? NULL : malloc((size_t)length + 1));
     vsnprintf(text, (size_t)length + 1, format, again);
@@ -73,12 +74,14 @@ static const char *skip_string(const char *p, const char *end) {
 static const char *skip_value(const char *p, const char *end) {
     if (p >= end) return NULL;
     if (*p == '"') return skip_string(p, end);
+
     int depth = 0;
     while (p < end) {
         if (*p == '"') {
             if (!(p = skip_string(p, end))) return NULL;
             continue;
         }
+
         if (*p == '{' || *p == '[') depth++;
         else if (*p == '}' || *p == ']') {
             if (depth == 0) return p;
@@ -100,9 +103,11 @@ bool text_json_member(const char *json, size_t size, const char *name, const cha
     while (p < end && *p == '"') {
         const char *key = p + 1, *after = skip_string(p, end);
         if (!after) return false;
+
         bool found = (size_t)(after - 1 - key) == length && memcmp(key, name, length) == 0;
         p = skip_space(after, end);
         if (p >= end || *p != ':') return false;
+
         const char *begin = skip_space(p + 1, end);
         if (!(p = skip_value(begin, end))) return false;
         if (found) {
@@ -142,9 +147,11 @@ static const char *put_escape(const char *p, const char *end, char **out) {
         return p + 1;
     }
     if (p >= end || *p != 'u') return NULL;
+
     int32_t code = read_hex(p + 1, end), low = -1;
     if (code <= 0) return NULL; // a text ends at 0
     p += 5;
+
     const bool high = code >= 0xd800 && code < 0xdc00;
     if (high && end - p >= 6 && p[0] == '\\' && p[1] == 'u') low = read_hex(p + 2, end);
     if (low >= 0xdc00 && low < 0xe000) {
@@ -156,6 +163,7 @@ static const char *put_escape(const char *p, const char *end, char **out) {
         *(*out)++ = (char)(code - 0xdc00);
         return p;
     }
+
     static const unsigned char heads[] = {0, 0xc0, 0xe0, 0xf0};
     int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
     *(*out)++ = (char)(heads[more] | (unsigned)code >> 6 * more);
@@ -166,6 +174,7 @@ static const char *put_escape(const char *p, const char *end, char **out) {
 char *text_json_unquote(const char *value, size_t size) {
     while (size && (value[size - 1] == ' ' || value[size - 1] == '\n')) size--;
     if (size < 2 || value[0] != '"' || value[size - 1] != '"') return NULL;
+
     char *text = need(malloc(size)), *out = text; // no escape is shorter than its character
     const char *p = value + 1, *end = value + size - 1;
     while (p && p < end) {
@@ -185,6 +194,7 @@ char *text_json_unquote(const char *value, size_t size) {
 char *text_shell_quote(const char *text) {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,";
     if (*text && text[strspn(text, plain)] == 0) return text_format("%s", text);
+
     char *quoted = text_format("''");
     for (const char *c = text; *c; c++) {
         size_t length = strlen(quoted) - 1;

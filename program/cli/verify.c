@@ -84,6 +84,7 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
     findings->near = findings->folded = findings->from_start = 0;
     findings->file = path;
     findings->begins = frame == 1 && verify->crossed;
+
     SingeResult result = cache_read(path, &cache, error);
     if (!result) {
         check_values(&cache, findings);
@@ -98,6 +99,7 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
         if (stats && !isnan(cache.time) && !(fabs(stats->time - cache.time) <= 1e-6 * fmax(1, fabs(cache.time))))
             findings_add(findings, FAULT_STATS, "stats.csv has the time %.9g s, the frame %.9g s", stats->time,
                          cache.time);
+
         if (stats && stats->inverted_cells != 0) {
             findings_add(findings, FAULT_INVERTED, "%.0f inverted cells, by stats.csv", stats->inverted_cells);
             findings->count[FAULT_INVERTED] += (uint64_t)stats->inverted_cells - 1;
@@ -193,6 +195,7 @@ static void print_csv(FILE *file, const void *context) {
     fputs("frame,vertices,triangles", file);
     for (int f = 0; f < FAULT_COUNT; f++) fprintf(file, ",%s", faults[f].key);
     fputs(",near_crossings,folded_edges,initial_crossings\n", file);
+
     for (int i = 0; i < verify->done; i++) {
         const Row *row = &verify->rows[i];
         fprintf(file, "%d,%" PRIu32 ",%" PRIu32, verify->first + i, row->vertices, row->triangles);
@@ -266,6 +269,7 @@ static ExitCode find_folder(Verify *verify, const char *path) {
     if (text_json_member(json, bytes.size, "name", &value, &size)) name = text_json_unquote(value, size);
     if (name) verify->folder = folder_name(path, name);
     else job_refuse_record(&verify->console, record);
+
     verify->crossed = text_json_member(json, bytes.size, "totals", &totals, &size) &&
                       text_json_member(totals, size, "crossed_at_start", &value, &size) && size && *value >= '1' &&
                       *value <= '9';
@@ -288,9 +292,11 @@ int command_verify(int argc, char **argv) {
     if (!code) code = folder_span(&verify.folder, &verify.console, &verify.first, &verify.last);
     if (!code) code = stats_table_read(&verify.stats, verify.folder.stats, &verify.console);
     if (!code) code = verify_all(&verify);
+
     initial_free(&verify.findings.initial);
     stats_table_free(&verify.stats);
     folder_free(&verify.folder);
     free(verify.rows);
+
     return code;
 }

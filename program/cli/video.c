@@ -63,9 +63,11 @@ static VideoResult write_movie(const Movie *movie, char *const *arguments, char 
 
     interrupt_own(draft);
     *output = text_format("file:%s", draft);
+
     VideoResult result = spawn(arguments, why);
     free(*output);
     interrupt_disown(draft);
+
     if (result == VIDEO_MADE && !folder_has(draft)) {
         snprintf(why, WHY_SIZE, "ffmpeg wrote nothing into preview.%s", movie->format);
         result = VIDEO_FAILED;
@@ -95,8 +97,10 @@ static VideoResult movie_make(Console *console, const Folder *folder, const Movi
                                          start,    "-i",     input,        "-frames:v", count};
     int n = 15;
     for (int i = 0; movie->options[i] && i < OPTIONS_MAX; i++) arguments[n++] = (char *)movie->options[i];
+
     arguments[n++] = "-f";
     arguments[n++] = (char *)movie->format;
+
     VideoResult result = write_movie(movie, arguments, &arguments[n], why);
     arguments[n] = final;
 
@@ -104,6 +108,7 @@ static VideoResult movie_make(Console *console, const Folder *folder, const Movi
     const bool missing = result == VIDEO_NO_PROGRAM;
     if (missing) console_warn(console, "no %s: %s; to make it later:", movie->what, why);
     else if (result != VIDEO_MADE) console_error(console, "no %s: %s; to make it later:", movie->what, why);
+
     if (result != VIDEO_MADE && !(missing && console->quiet)) {
         char *line = text_format("ffmpeg");
         for (char *const *a = arguments + 1; *a; a++) {
