@@ -62,6 +62,7 @@ static SceneText *base_builtin(Reader *reader, const YamlNode *node) {
     Nearest nearest = {.word = node->text};
     const SceneBuiltin *builtin = scene_builtins;
     for (; builtin->name && strcmp(builtin->name, node->text) != 0; builtin++) nearest_offer(&nearest, builtin->name);
+
     if (builtin->name) {
         SceneText *known = base_known(reader, builtin->name);
         return known ? known : base_text(reader, builtin->name, builtin->bytes, builtin->size);
@@ -83,9 +84,11 @@ static SceneText *base_file(Reader *reader, const SchemaRow *row, const YamlNode
     Bytes bytes = {0};
     SingeError error;
     SceneText *text = NULL;
+
     value_file(reader, row, node, file); // reports a missing file
     if (message_total(reader->messages) != before || !file->path) return NULL;
     if ((text = base_known(reader, file->path))) return text;
+
     if (file_read_max(file->path, SCENE_BYTES_MAX, (SingeAllocator){0}, &bytes, &error))
         message_add(reader->messages, reader->text, node->location, "a material cannot be read: %s", error.message);
     else text = base_text(reader, file->path, (const char *)bytes.data, bytes.size);
@@ -122,6 +125,7 @@ void read_base(Reader *reader, const SchemaRow *row, const YamlNode *node, Scene
     bool from_file = strchr(word, '/') || ends_in(word, ".yaml") || ends_in(word, ".yml") || ends_in(word, ".json");
     if (from_file && !reader->base_dir) // files are not read
         return;
+
     SceneFile file = {0};
     SceneText *text = from_file ? base_file(reader, row, node, &file) : base_builtin(reader, node);
     BaseChain link = {.outer = reader->chain, .text = text, .depth = reader->chain ? reader->chain->depth + 1 : 1};

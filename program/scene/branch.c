@@ -63,6 +63,7 @@ static SceneLocation location_of(const Scene *scene, const char *path) {
         const size_t length = strcspn(part, ".");
         snprintf(key, sizeof key, "%.*s", (int)length, part);
         part += length + (part[length] == '.');
+
         if (node->kind == NODE_LIST) {
             unsigned long index = strtoul(key, NULL, 10);
             for (node = node->first; node && index; index--) node = node->next;
@@ -71,6 +72,7 @@ static SceneLocation location_of(const Scene *scene, const char *path) {
         }
         if (node) location = node->location;
     }
+
     return location;
 }
 
@@ -93,6 +95,7 @@ static void compare_maps(Comparison *comparison, const Schema *schema, const voi
         char key[160], name[200];
         snprintf(key, sizeof key, "%s%s", path, row->key);
         snprintf(name, sizeof name, "%s%s", shown_as, row->key);
+
         bool may = false;
         for (size_t k = 0; k < sizeof changeable / sizeof *changeable; k++) may |= strcmp(key, changeable[k]) == 0;
         if (may) continue;
@@ -108,6 +111,7 @@ static void compare_maps(Comparison *comparison, const Schema *schema, const voi
                 memcpy(&counts[0], (const char *)now + row->extra, sizeof counts[0]);
                 memcpy(&counts[1], (const char *)before + row->extra, sizeof counts[1]);
             }
+
             const char *value = strchr(was, ':');
             if (row->type == ROW_MAP && whole) {
                 snprintf(key, sizeof key, "%s%s.", path, row->key);
@@ -128,6 +132,7 @@ static void compare_maps(Comparison *comparison, const Schema *schema, const voi
                               row->type == ROW_MAP || row->type == ROW_LIST || !value ? "" : value + 2);
             }
         }
+
         if (!was || !is) comparison->no_memory = true;
         free(was);
         free(is);
@@ -170,6 +175,7 @@ SingeResult scene_may_branch(SceneWhole scene, SceneWhole before, SceneMessages 
     for (uint32_t i = 0; message_total(messages) == found && i < scene.scene->sheet_count; i++) {
         char path[40];
         snprintf(path, sizeof path, "sheets.%u.mesh", (unsigned)i);
+
         const Mesh *a = &scene.assets->meshes[i], *b = &before.assets->meshes[i];
         bool equal = a->vertex_count == b->vertex_count && a->cell_count == b->cell_count &&
                      a->source_count == b->source_count && a->attribute_count == b->attribute_count &&
@@ -188,6 +194,7 @@ SingeResult scene_may_branch(SceneWhole scene, SceneWhole before, SceneMessages 
     if (scene.scene->output.events && !before.scene->output.events)
         refuse_change(&comparison, "output.events", "false");
     if (comparison.no_memory) return SINGE_ERROR_MEMORY;
+
     return message_total(messages) == found ? SINGE_OK : SINGE_ERROR_ARGUMENT;
 }
 
@@ -205,6 +212,7 @@ bool scene_looks_alike(SceneWhole scene, SceneWhole before) {
                 images_equal(&scene.assets->images[i], &before.assets->images[i]) &&
                 images_equal(&scene.assets->images[back], &before.assets->images[back]);
     }
+
     return alike;
 }
 
@@ -263,6 +271,7 @@ static SingeResult branch_objects(const SceneBuilder *builder, SceneWhole now, S
         if (!no_memory && list == 0) singe_sim_sources(sim, sources, was);
         if (!no_memory && list == 1) singe_sim_colliders(sim, colliders, was);
         if (!no_memory && list == 2) singe_sim_pins(sim, pins, was);
+
         for (uint32_t i = 0; i < most && !no_memory && !result; i++) {
             equal[i] = entries_equal(list, now, before, i, &no_memory);
             if (equal[i] || i >= was) continue;
@@ -285,6 +294,7 @@ static SingeResult branch_objects(const SceneBuilder *builder, SceneWhole now, S
             const SceneSequence *motion = list == 1 ? &now.assets->collider_motions[i] : NULL;
             if (result || !motion || !motion->frame_count) continue;
             const uint32_t last = motion->frame_count - 1, at = (uint32_t)frame - 1 < last ? (uint32_t)frame - 1 : last;
+
             singe_sim_colliders(sim, colliders, i + 1);
             result = singe_sim_set_collider_vertices(sim, colliders[i], motion->frames[at].vertices, 0);
             if (result) fault->error = *singe_sim_error(sim);
@@ -295,6 +305,7 @@ static SingeResult branch_objects(const SceneBuilder *builder, SceneWhole now, S
         free(pins);
         if (no_memory) result = fault->error.code = SINGE_ERROR_MEMORY;
     }
+
     return result;
 }
 
@@ -306,6 +317,7 @@ static SingeResult branch_settings(SceneWhole scene, SceneWhole before, SingeSim
             winds[0] = dump_row_text(&schema_scene.rows[i], ~0u, scene.scene);
             winds[1] = dump_row_text(&schema_scene.rows[i], ~0u, before.scene);
         }
+
     bool no_memory = false;
     const bool wind = !texts_equal(winds[0], winds[1], &no_memory);
 
@@ -324,10 +336,12 @@ static SingeResult branch_settings(SceneWhole scene, SceneWhole before, SingeSim
         path = "pace";
         result = singe_sim_set_pace(sim, now->pace);
     }
+
     if (!result && now->ambient_temperature != was->ambient_temperature) {
         path = "ambient_temperature";
         result = singe_sim_set_ambient_temperature(sim, now->ambient_temperature);
     }
+
     if (result)
         message_add(messages, scene.scene->text, location_of(scene.scene, path), "%s", singe_sim_error(sim)->message);
     return result;
@@ -354,14 +368,17 @@ SingeResult scene_branch(SceneWhole scene, SceneWhole before, int frame, SingeSi
         result = no_memory ? SINGE_ERROR_MEMORY
                            : follow_material(scene.scene, scene.assets, sim, i, last, true, &fault.error);
         if (!result) continue;
+
         char path[40];
         snprintf(path, sizeof path, "sheets.%u.material", (unsigned)i);
         message_add(messages, scene.scene->text, location_of(scene.scene, path), "the material cannot change: %s",
                     no_memory ? "out of memory" : fault.error.message);
     }
+
     const uint32_t found = message_total(messages);
     if (!result) result = branch_settings(scene, before, sim, messages);
     if (!result) result = branch_objects(&builder, scene, before, frame, &fault);
+
     if (result && message_total(messages) == found) {
         fault.error.code = result;
         fault_report(scene.scene, scene.assets, &fault, messages);

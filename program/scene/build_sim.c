@@ -12,6 +12,7 @@
 void scene_sheet_def(const Scene *scene, const SceneAssets *assets, uint32_t index, SingeSheetDef *def) {
     const SceneSheet *sheet = &scene->sheets[index];
     const Mesh *mesh = &assets->meshes[index];
+
     *def = singe_default_sheet();
     def->name = sheet->name;
     def->vertex_count = mesh->vertex_count;
@@ -89,6 +90,7 @@ SingeResult builder_add_collider(const SceneBuilder *builder, uint32_t index) {
     const SceneSequence *sequence = &builder->assets->collider_motions[index];
     const PreviewSolid *surface = sequence->frame_count ? &sequence->frames[0] : &solid->surface;
     if (sequence->frame_count) def.kind = SINGE_COLLIDER_DEFORMING;
+
     def.vertex_count = surface->vertex_count;
     def.vertices = surface->vertices;
     def.triangle_count = surface->triangle_count;

@@ -44,6 +44,7 @@ void finish_material(Reader *reader, const YamlNode *map, void *object) {
     for (const YamlNode *child = map->first; child && !measured && node_find(map, "base"); child = child->next)
         if (strcmp(child->key, "base") != 0 && strcmp(child->key, "name") != 0 && strcmp(child->key, "look") != 0)
             material->measured = (SceneMeasured){0};
+
     const float *ranges[] = {material->measured.speed, material->measured.temperature, material->measured.residue};
     static const char *const keys[] = {"speed", "temperature", "residue"};
 
@@ -51,6 +52,7 @@ void finish_material(Reader *reader, const YamlNode *map, void *object) {
         if (measured && node_find(measured, keys[i]) && ranges[i][0] > ranges[i][1])
             message_add(reader->messages, reader->text, node_find(measured, keys[i])->location,
                         "%s must be a range from low to high", keys[i]);
+
     const YamlNode *thickening = node_find(map, "thickening");
     float value = material->def.thickening;
     if (thickening && value > 0 && value < 1)
@@ -69,9 +71,11 @@ void finish_sheet(Reader *reader, const YamlNode *map, void *object) {
 void finish_source(Reader *reader, const YamlNode *map, void *object) {
     SceneSource *source = object;
     if (!node_find(map, "kind")) return;
+
     const bool movable = SOURCES_MOVABLE & BIT(source->def.kind);
     if (movable && !check_path(reader, map, source->keys, source->key_count))
         complain(reader, map->location, "a source of this kind needs 'path' or 'position'");
+
     const YamlNode *end = node_find(map, "end");
     if (source->def.end < source->def.start)
         complain(reader, end ? end->location : map->location, "a source must not end before its start");
@@ -136,6 +140,7 @@ void finish_preview(Reader *reader, const YamlNode *map, void *object) {
     preview->camera_given = camera_given(node_find(map, "camera"));
     check_times(reader, node_find(map, "camera_path"), preview->camera_keys, sizeof *preview->camera_keys,
                 preview->camera_key_count);
+
     const YamlNode *place = preview->camera_key_count ? node_find(map, "camera_path") : NULL;
     place = place && place->kind == NODE_LIST ? place->first : NULL;
     for (uint32_t i = 0; place && i < preview->camera_key_count; i++, place = place->next) {
@@ -144,6 +149,7 @@ void finish_preview(Reader *reader, const YamlNode *map, void *object) {
         memcpy(then.def.camera.target, preview->camera_keys[i].target, sizeof then.def.camera.target);
         finish_camera(reader, place, &then);
     }
+
     preview->camera_given = preview->camera_given || preview->camera_key_count > 0;
     const YamlNode *light = node_find(map, "light"), *direction = node_find(light, "direction");
     const float *d = preview->def.sun_direction;

@@ -42,6 +42,7 @@ bool default_sheet(SceneArena *arena, void *object) {
     set3(sheet->colour, 1, 1, 1);
     sheet->transmittance = PREVIEW_TRANSMITTANCE;
     sheet->scale = 1;
+
     return true;
 }
 

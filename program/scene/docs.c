@@ -97,6 +97,7 @@ static void put_type(FILE *file, const SchemaRow *row) {
         [ROW_ORDER] = "4 colours",     [ROW_FORMATS] = "list of formats",
         [ROW_POINTS] = "points, m",    [ROW_INDICES] = "whole numbers",
     };
+
     const char *unit = quantity_unit(row->dimension);
     if (row->sub) {
         if (row->type != ROW_MAP) fputs(row->type == ROW_STRENGTH ? "number, or list of " : "list of ", file);
@@ -134,6 +135,7 @@ static void put_table(FILE *file, const Schema *schema, const void *object, unsi
         put_type(file, row);
         fprintf(file, " | %s%s%s | ", range, row->flags & ROW_INF ? ", inf" : "",
                 row->flags & ROW_NONE ? ", none" : "");
+
         bool has_default = object && !(row->flags & (ROW_REQUIRED | ROW_SHORT)) && !row->sub;
         static const int without[] = {ROW_POSITION, ROW_ROTATION, ROW_TEXT,   ROW_NAME,
                                       ROW_FILE,     ROW_POINTS,   ROW_INDICES};
@@ -150,6 +152,7 @@ static void put_section(FILE *file, const Schema *schema, const void *object) {
     fprintf(file, "\n## %c%s\n\n%s\n\n", title[0] + 'A' - 'a', title + 1, schema->doc);
     put_table(file, schema, object, ~0u, true);
     if (!schema->kind_offset) return;
+
     const char *const *names = schema->rows[0].names;
     for (int kind = 0; names[kind]; kind++) {
         bool any = false;
@@ -163,6 +166,7 @@ static void put_section(FILE *file, const Schema *schema, const void *object) {
 // An object of a schema with its defaults, found through the objects that contain it.
 static const void *default_object(SceneArena *arena, const Schema *wanted, const Schema *schema, void *object) {
     if (wanted == schema) return object;
+
     for (int i = 0; i < schema->row_count && object; i++) {
         const SchemaRow *row = &schema->rows[i];
         SchemaRow noise = {.type = ROW_LIST, .sub = &schema_noise}; // the list that a ROW_PARAM may have
@@ -181,6 +185,7 @@ void scene_document(FILE *file) {
     if (scene && default_scene(arena, scene)) {
         char units[80];
         fputs(introduction, file);
+
         for (int d = 0; d < DIM_COUNT; d++) {
             quantity_units((Dimension)d, units, sizeof units);
             if (units[0])

@@ -69,10 +69,12 @@ static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param,
         put_number(file, param->value, row->dimension);
         return;
     }
+
     fputs("{\"from\": ", file);
     put_number(file, param->value, row->dimension);
     fputs(", \"to\": ", file);
     put_number(file, param->to, row->dimension);
+
     if (field->kind == SINGE_FIELD_NOISE) {
         fputs(", \"noise\": {\"scale\": ", file);
         put_number(file, field->noise.scale, DIM_LENGTH);
@@ -156,6 +158,7 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
 // Short keys and absent values are left out.
 static bool row_present(const SchemaRow *row, unsigned kind, const void *object) {
     if (!row_allowed(row, kind) || (row->flags & ROW_SHORT)) return false;
+
     switch (row->type) {
     case ROW_TEXT:
     case ROW_NAME: return *(char *const *)dump_at(object, row->offset) != NULL;
@@ -202,6 +205,7 @@ static void dump_map(const Dumper *dumper, const Schema *schema, const void *obj
     bool first = true;
     const char *keyed = ""; // a list that stands for the number of this key
     if (dumper->json) fputc('{', dumper->file);
+
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
         if (!row_present(row, kind, object) || strcmp(row->key, keyed) == 0) continue;

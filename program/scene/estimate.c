@@ -39,6 +39,7 @@ static double gas_cells(const Scene *scene, const SceneAssets *assets) {
         const SceneSheet *sheet = &scene->sheets[i];
         double turned[9], low[3], high[3];
         rotation_matrix(sheet->rotate, turned);
+
         for (int c = 0; c < 3 && sheet->grid.given; c++) {
             const float *size = sheet->grid.size;
             double half = fabs(turned[3 * c]) * (double)size[0] + fabs(turned[3 * c + 1]) * (double)size[1];

@@ -20,6 +20,7 @@ static void mesh_fault(const Scene *scene, uint32_t index, const Mesh *mesh, con
     uint32_t cell = mesh->cell_count;
     char words[40], face[40] = "";
     snprintf(words, sizeof words, "cell %lld", (long long)error->element);
+
     if (error->element >= 0 && strstr(error->message, words)) {
         cell = (uint32_t)error->element;
     } else if (error->element >= 0) {
@@ -41,9 +42,11 @@ bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scop
     bool any = false;
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         if (!assets->meshes[i].positions) continue;
+
         SingeSheetDef def;
         scene_sheet_def(scene, assets, i, &def);
         def.name = "mesh";
+
         SceneParam which;
         for (int p = 0; scope == FAULTS_OF_MESHES && scene_param(p, &which); p++) {
             SingeParam *param = scene_param_at(&def.material, &which);
@@ -65,6 +68,7 @@ bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scop
 
         bool mesh = result == SINGE_ERROR_MESH;
         if (!result || result == SINGE_ERROR_MEMORY || (scope == FAULTS_OF_MESHES && !mesh)) continue;
+
         const char *what = error.message;
         if (strncmp(what, prefix, sizeof prefix - 1) == 0) what += sizeof prefix - 1;
         if (mesh) mesh_fault(scene, i, &assets->meshes[i], &error, what, messages);

@@ -45,6 +45,7 @@ static double carried(const SceneKey *keys, uint32_t count) {
 static void add_motion(const Scene *scene, uint32_t index, Place *place) {
     const double time = fmax((scene->frames - 1) / (double)scene->fps, 1); // a trial of few frames is no miss
     bool held = false;
+
     place->slack = place->diagonal;
     for (uint32_t i = 0; i < scene->pin_count; i++) {
         const ScenePin *pin = &scene->pins[i];
@@ -122,6 +123,7 @@ static double path_distance(const SceneSource *source, const Place *place) {
         // before its first key and after its last the source stands still
         const double begin = i == 0 ? -INFINITY : (double)a->time, end = b == a ? INFINITY : (double)b->time;
         if (end < from || begin > to) continue;
+
         const double length = b == a ? 1 : fmax((double)b->time - (double)a->time, 1e-9);
         double low = fmin(fmax((from - (double)a->time) / length, 0), 1);
         double high = fmin(fmax((to - (double)a->time) / length, 0), 1);
@@ -158,6 +160,7 @@ static double heat_of(const Scene *scene, const SceneSource *source, const Place
     const SingeSourceDef *def = &source->def;
     double pace = (double)scene->sim.pace; // the highest
     for (uint32_t i = 0; i < scene->pace_count; i++) pace = fmax(pace, (double)scene->paces[i].value);
+
     const double time = fmax((double)def->end - fmax((double)def->start, 0), 0) * pace;
     if (def->kind == SINGE_SOURCE_TEXTURE) {
         double strength = source->strength_count ? 0 : 1;
@@ -200,6 +203,7 @@ static bool source_lights(const Scene *scene, const SceneAssets *assets, const S
                           bool lit, const SingeLog *log) {
     const bool mapped = source->def.kind == SINGE_SOURCE_ARRIVAL;
     if (source_wets_or_blows(&source->def)) return false; // it puts fires out, or fans them
+
     const bool everywhere = mapped || source->def.kind == SINGE_SOURCE_TEXTURE;
     // a flame of its own is some 0.24 m high at 1 kW, and its hot gas rises farther
     const bool flame = !everywhere && scene->sim.gas.enabled && source->def.power > 0;
@@ -261,6 +265,7 @@ double scene_ignition(const Scene *scene) {
 void scene_warn_of_fires(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
     Place *places = calloc(scene->sheet_count + 1, sizeof *places);
     if (!places) return; // it is only a warning
+
     bool any = false, lit = false;
     double largest = 0;
 
@@ -269,6 +274,7 @@ void scene_warn_of_fires(const Scene *scene, const SceneAssets *assets, const Si
         places[i] = place_of(scene, assets, i);
         any = any || places[i].burns;
         largest = fmax(largest, places[i].diagonal);
+
         const double hot = fmax(places[i].start, (double)scene->sim.ambient_temperature);
         lit = lit || (places[i].burns && hot >= places[i].ignition);
         for (uint32_t k = 0; k < scene->collider_count; k++) {

@@ -58,6 +58,7 @@ static void mark_held(const ScenePin *pin, const Mesh *mesh, uint32_t *parent) {
         const uint32_t v = pin->vertices[i], at = mesh->became && v < mesh->source_count ? mesh->became[v] : v;
         if (at < mesh->vertex_count) parent[at] = HELD;
     }
+
     for (uint32_t i = 0; i < pin->point_count && mesh->vertex_count; i++) {
         uint32_t nearest = 0;
         double least = INFINITY;
@@ -70,11 +71,13 @@ static void mark_held(const ScenePin *pin, const Mesh *mesh, uint32_t *parent) {
         }
         parent[nearest] = HELD;
     }
+
     for (size_t k = 0; k < 4 * (size_t)mesh->cell_count; k++) {
         const uint32_t *cell = mesh->cells + k / 4 * 4;
         for (int i = 0; i < 4 && parent[cell[k % 4]] == HELD; i++)
             if (parent[cell[i]] == FREE) parent[cell[i]] = cell[i];
     }
+
     for (uint32_t v = 0; v < mesh->vertex_count; v++)
         if (parent[v] == HELD) parent[v] = v;
 }
@@ -97,6 +100,7 @@ static Side *find_sides(const Mesh *mesh, uint32_t *parent, uint32_t *count) {
         const uint32_t *cell = mesh->cells + 4 * (size_t)c;
         Float3 middle = {0, 0, 0};
         for (int k = 0; k < 4; k++) middle = float3_mad(middle, vertex_at(mesh, cell[k]), 0.25f);
+
         const Float3 normal = float3_cross(float3_sub(vertex_at(mesh, cell[2]), vertex_at(mesh, cell[0])),
                                            float3_sub(vertex_at(mesh, cell[3]), vertex_at(mesh, cell[1])));
         for (int k = 0; k < 4; k++) {
@@ -104,6 +108,7 @@ static Side *find_sides(const Mesh *mesh, uint32_t *parent, uint32_t *count) {
             if (a == b || parent[a] == FREE || parent[b] == FREE) continue;
             parent[root_of(parent, a)] = root_of(parent, b);
             if (!store_grow((SingeAllocator){0}, &sides, &room, used + 1, sizeof *sides)) return NULL;
+
             Side *side = &sides[used++];
             *side = (Side){.ends = {a < b ? a : b, a < b ? b : a}, .normal = normal};
             side->along = float3_sub(vertex_at(mesh, b), vertex_at(mesh, a));
@@ -112,6 +117,7 @@ static Side *find_sides(const Mesh *mesh, uint32_t *parent, uint32_t *count) {
             if (float3_dot(side->out, float3_sub(side->middle, middle)) < 0) side->out = float3_scale(side->out, -1);
         }
     }
+
     if (used) qsort(sides, used, sizeof *sides, by_part);
     for (size_t i = 0, next; i < used; i = next) {
         for (next = i + 1; next < used && by_part(&sides[i], &sides[next]) == 0;) next++;
@@ -119,6 +125,7 @@ static Side *find_sides(const Mesh *mesh, uint32_t *parent, uint32_t *count) {
         sides[kept] = sides[i];
         sides[kept++].root = root_of(parent, sides[i].ends[0]);
     }
+
     if (kept) qsort(sides, kept, sizeof *sides, by_part);
     *count = (uint32_t)kept;
     return sides ? sides : calloc(1, sizeof *sides);
@@ -150,6 +157,7 @@ static bool held_of(const Side *sides, uint32_t count, PreviewHeld *held) {
         length += weight;
     }
     middle = float3_scale(middle, 1 / length);
+
     const Float3 along = float3_unit(float3_cross(normal, out));
     for (uint32_t i = 0; i < count; i++) {
         if (float3_dot(sides[i].out, out) <= 0.8f) continue;
@@ -158,6 +166,7 @@ static bool held_of(const Side *sides, uint32_t count, PreviewHeld *held) {
         low = fminf(low, at - half);
         high = fmaxf(high, at + half);
     }
+
     float3_store(held->at, float3_mad(middle, along, 0.5f * (low + high)));
     float3_store(held->along, along);
     float3_store(held->over, float3_cross(out, along));
@@ -182,6 +191,7 @@ static Float3 carry(const ScenePin *pin, double time, Float3 p, Float3 axes[2]) 
 void holder_pose(const Scene *scene, const SceneHolder *holder, double time, PreviewShape *shape) {
     *shape = holder->part.shape;
     if (holder->pin < 0) return;
+
     const ScenePin *pin = &scene->pins[holder->pin];
     Float3 axes[2] = {quat_rotate(shape->rotation, float3(1, 0, 0)), quat_rotate(shape->rotation, float3(0, 1, 0))};
     Float3 at = carry(pin, time, float3_load(shape->position), holder->swings ? NULL : axes);
@@ -194,11 +204,13 @@ void holder_pose(const Scene *scene, const SceneHolder *holder, double time, Pre
             axes[1] = float3_dot(axis, axes[1]) < 0 ? float3_scale(axis, -1) : axis;
             at = float3_load(rod.position);
         }
+
         const Float3 p = carry(pin, time, float3_load(holder->at), NULL);
         at = float3_mad(at, axes[1], float3_dot(float3_sub(p, at), axes[1]));
         const Float3 x = float3_sub(at, p);
         if (float3_dot(x, x) > 0) axes[0] = float3_unit(x);
     }
+
     float3_store(shape->position, at);
     quat_of_axes(axes[0], axes[1], float3_cross(axes[0], axes[1]), shape->rotation);
 }
@@ -211,12 +223,15 @@ static void hang(const Scene *scene, Grip *grip) {
     const Float3 p = float3_load(held->at);
     Float3 axis = float3_load(held->along), at = float3_mad(p, float3_load(held->out), 0.015f * held->scale);
     float nearest = ROD_NEAR;
+
     grip->rod = -1;
     grip->hangs = p;
+
     held->rod = 0.005f * held->scale;
     for (uint32_t i = 0; i < scene->collider_count; i++) {
         const SceneCollider *collider = &scene->colliders[i];
         if (collider->def.kind != SINGE_COLLIDER_CAPSULE) continue;
+
         PreviewShape pose;
         keys_pose(collider->keys, collider->key_count, 0, &pose);
         const Float3 way = quat_rotate(pose.rotation, float3(0, 0, 1)),
@@ -225,18 +240,21 @@ static void hang(const Scene *scene, Grip *grip) {
         if (!(away < nearest) || !(away > collider->def.radius) ||
             fabsf(along) > 0.5f * collider->def.height + ROD_NEAR)
             continue;
+
         nearest = away;
         grip->rod = (int32_t)i;
         axis = float3_dot(way, float3_load(held->along)) < 0 ? float3_scale(way, -1) : way;
         at = float3_mad(float3_load(pose.position), way, along);
         held->rod = collider->def.radius;
     }
+
     const ScenePin *pin = &scene->pins[grip->pin];
     held->drop = 0;
     for (uint32_t k = 0; k <= pin->key_count; k++) {
         const Float3 d = float3_sub(carry(pin, k ? (double)pin->keys[k - 1].time : 0, p, NULL), at);
         held->drop = fmaxf(held->drop, float3_length(float3_mad(d, axis, -float3_dot(d, axis))));
     }
+
     const Float3 out = float3_unit(float3_sub(at, p));
     float3_store(held->along, axis);
     float3_store(held->out, out);
@@ -252,10 +270,12 @@ static bool find_grips(Holding *h, uint32_t index, uint32_t *parent) {
     const Mesh *mesh = &h->assets->meshes[pin->sheet_index];
     uint32_t count = 0;
     mark_held(pin, mesh, parent);
+
     Side *sides = find_sides(mesh, parent, &count);
     bool good = sides;
     Box box = BOX_EMPTY;
     box_add_points(&box, mesh->positions, mesh->vertex_count);
+
     const double *low = box.low, *high = box.high;
     const float diagonal =
         float3_length(float3((float)(high[0] - low[0]), (float)(high[1] - low[1]), (float)(high[2] - low[2])));
@@ -265,6 +285,7 @@ static bool find_grips(Holding *h, uint32_t index, uint32_t *parent) {
         if (!held_of(sides + i, next - i, &held)) continue;
         good = store_grow((SingeAllocator){0}, &h->grips, &h->grip_room, h->grip_count + (size_t)1, sizeof *h->grips);
         if (!good) break;
+
         Grip *grip = &h->grips[h->grip_count++];
         *grip = (Grip){.held = held, .pin = index, .rod = -1};
         const float size = fmaxf(grip->held.width, 2 * pin->radius) / 0.012f;
@@ -273,18 +294,21 @@ static bool find_grips(Holding *h, uint32_t index, uint32_t *parent) {
         if (pin->holder == PREVIEW_HOLDER_RING) hang(h->scene, grip);
     }
     free(sides);
+
     return good;
 }
 
 static bool add_part(Holding *h, const PreviewHolderPart *part, const Grip *grip, bool still) {
     SceneAssets *assets = h->assets;
     const bool ring = h->scene->pins[grip->pin].holder == PREVIEW_HOLDER_RING;
+
     if (!part->solid.triangle_count || !store_grow((SingeAllocator){0}, &assets->holders, &h->holder_room,
                                                    assets->holder_count + (size_t)1, sizeof *assets->holders)) {
         free(part->solid.vertices);
         free(part->solid.triangles);
         return !part->solid.triangle_count;
     }
+
     SceneHolder *holder = &assets->holders[assets->holder_count++];
     *holder = (SceneHolder){
         .part = *part, .pin = still ? -1 : (int32_t)grip->pin, .rod = grip->rod, .swings = ring && !still};
@@ -297,6 +321,7 @@ static bool share_line(const Scene *scene, const Grip *a, const Grip *b) {
     const ScenePin *one = &scene->pins[a->pin], *other = &scene->pins[b->pin];
     const bool moves = one->holder != PREVIEW_HOLDER_RING && (one->key_count || other->key_count);
     if (one->holder != other->holder || a->rod != b->rod || (moves && a->pin != b->pin)) return false;
+
     const Float3 along = float3_load(a->held.along),
                  from = float3_mad(float3_load(a->held.at), float3_load(a->held.out), a->held.drop),
                  to = float3_mad(float3_load(b->held.at), float3_load(b->held.out), b->held.drop);
@@ -317,12 +342,14 @@ static bool add_line(Holding *h, Grip *grip, PreviewHeld *held) {
     const ScenePin *pin = &scene->pins[grip->pin];
     uint32_t count = 0;
     if (grip->lined) return true;
+
     for (uint32_t i = 0; i < h->grip_count; i++) {
         if (h->grips[i].lined || !share_line(scene, grip, &h->grips[i])) continue;
         h->grips[i].lined = true;
         held[count] = h->grips[i].held;
         memcpy(held[count++].along, grip->held.along, sizeof held->along);
     }
+
     if (grip->rod >= 0 && scene->colliders[grip->rod].visible) return true;
     qsort(held, count, sizeof *held, by_place);
     PreviewHolderPart part;
@@ -342,6 +369,7 @@ static bool add_grips(Holding *h, uint32_t first, uint32_t count, PreviewHeld *h
         for (int k = 0; k < PREVIEW_HOLDER_PARTS; k++)
             good = add_part(h, &parts[k], &h->grips[first + i], false) && good;
     }
+
     return good;
 }
 
@@ -350,6 +378,7 @@ bool holders_make(const Scene *scene, SceneAssets *assets) {
     uint32_t most = 0;
     for (uint32_t s = 0; s < scene->sheet_count; s++)
         most = assets->meshes[s].vertex_count > most ? assets->meshes[s].vertex_count : most;
+
     uint32_t *parent = malloc((most + (size_t)1) * sizeof *parent);
     bool good = parent;
     for (uint32_t i = 0; i < scene->pin_count && good; i++)
@@ -361,6 +390,7 @@ bool holders_make(const Scene *scene, SceneAssets *assets) {
         for (next = i + 1; next < h.grip_count && h.grips[next].pin == h.grips[i].pin;) next++;
         good = add_grips(&h, i, next - i, held);
     }
+
     for (uint32_t i = 0; i < h.grip_count && good; i++) good = add_line(&h, &h.grips[i], held);
     free(held);
     free(parent);

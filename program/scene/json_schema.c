@@ -112,6 +112,7 @@ static void put_param(Definitions *definitions, const SchemaRow *row) {
     put_quantity(file, row);
     fputs(", \"to\": ", file);
     put_quantity(file, row);
+
     fputs(", \"texture\": {\"type\": \"string\"}, \"attribute\": {\"type\": \"string\"}, \"noise\": ", file);
     put_reference(definitions, &schema_noise);
     fputs("}, \"required\": [\"from\", \"to\"], \"minProperties\": 3, \"maxProperties\": 3, "
@@ -206,12 +207,14 @@ static void put_property(Definitions *definitions, const Schema *schema, int fir
     const SchemaRow *row = &schema->rows[first];
     char range[80];
     row_range(row, range, sizeof range);
+
     const char *unit = quantity_unit(row->dimension);
     put_string(file, row->key);
     fputs(": {\"description\": \"", file);
     for (const char *c = row->doc; *c; c++) fprintf(file, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
     if (range[0]) fprintf(file, "; %s%s%s", range, unit[0] ? " " : "", unit);
     fputs("\", \"anyOf\": [", file);
+
     for (int i = first, count = 0; i < schema->row_count; i++) {
         if (strcmp(schema->rows[i].key, row->key) != 0) continue;
         if (count++) fputs(", ", file);
@@ -229,6 +232,7 @@ static void put_kind(FILE *file, const Schema *schema, int kind) {
         if ((schema->rows[i].flags & ROW_REQUIRED) && (schema->rows[i].kinds & 1u << kind))
             fprintf(file, ", \"%s\"", schema->rows[i].key);
     fputs("], \"properties\": {", file);
+
     for (int i = 0, count = 0; i < schema->row_count; i++) {
         bool allowed = false;
         for (int j = 0; j < schema->row_count; j++)
@@ -262,6 +266,7 @@ static void put_map(Definitions *definitions, const Schema *schema) {
 
     if (!schema->kind_offset) return;
     fputs(",\n \"allOf\": [", file);
+
     for (int kind = 0, count = 0; schema->rows[0].names[kind]; kind++) {
         if (!schema->rows[0].names[kind][0]) continue;
         fputs(count++ ? ",\n  " : "\n  ", file);
@@ -276,6 +281,7 @@ void scene_json_schema(FILE *file) {
     fputs("{\"$schema\": \"http://json-schema.org/draft-07/schema#\",\n ", file);
     put_map(&definitions, &schema_scene);
     fputs(",\n\"$defs\": {", file);
+
     for (int i = 0; i < definitions.count; i++) { // each may add others
         fprintf(file, "%s\n\"%d\": {", i ? "," : "", i);
         put_map(&definitions, definitions.items[i]);

@@ -93,6 +93,7 @@ static bool transform(const SceneSheet *sheet, bool file, float *positions, uint
         for (int i = 0; i < 3; i++)
             near = fabsf(p[i] = (float)(q[i] + (double)sheet->translate[i])) < coordinate_max && near;
     }
+
     return near;
 }
 
@@ -131,6 +132,7 @@ static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshR
     MeshOptions options = mesh_default_options();
     options.weld = sheet->weld;
     options.quads = (MeshQuads)sheet->quads;
+
     const char *path = sheet->mesh.path;
     SingeResult result = read_polygons(sheet, path, &polygons, &error);
     if (!result) result = mesh_make(path, &polygons, &options, (SingeAllocator){0}, mesh, report, &error);
@@ -144,6 +146,7 @@ static void load_render_mesh(Loader *loader, const SceneSheet *sheet, RenderFile
     Polygons polygons = {0};
     SingeError error = {0};
     if (!given->mesh.name) return;
+
     SingeResult result = read_polygons(sheet, given->mesh.path, &polygons, &error);
     if (!result) result = render_file_make(given->mesh.path, &polygons, file, &error);
     polygons_free(&polygons);
@@ -163,10 +166,12 @@ static void load_sheet(Loader *loader, uint32_t index) {
     load_mesh(loader, sheet, mesh, &assets->reports[index]);
     load_render_mesh(loader, sheet, &assets->renders[index]);
     memcpy(assets->colours[index], sheet->colour, sizeof sheet->colour);
+
     assets->transmittances[index] = sheet->transmittance;
     assets->looks[index] = sheet->material.look;
     if (sheet->picture.name && !load_image(loader, &sheet->picture, &assets->images[index]))
         assets->pictures[index] = &assets->images[index];
+
     const uint32_t back = scene->sheet_count + index;
     if (sheet->back.name && !load_image(loader, &sheet->back, &assets->images[back]))
         assets->pictures[back] = &assets->images[back];
@@ -183,6 +188,7 @@ static void load_sheet(Loader *loader, uint32_t index) {
         const SceneFile *file = &followed->texture;
         changes = changes || followed->key_count || (file->name && sequence_name_fits(file->name));
         if (!field) continue;
+
         if (field->kind == SINGE_FIELD_ATTRIBUTE) attribute = file;
         assets->fields[index][row.slot] = *field;
         if (field->kind == SINGE_FIELD_TEXTURE) {
@@ -199,12 +205,14 @@ static void load_sheet(Loader *loader, uint32_t index) {
             nearest_offer(&nearest, mesh->attributes[a].name);
         char hint[80];
         if (a < mesh->attribute_count) continue;
+
         if (file->location.file) // the contents of files other than the scene are not shown
             message_add(loader->messages, scene->text, file->location, "%s: the mesh has no such attribute", row.key);
         else
             message_add(loader->messages, scene->text, file->location, "%s: the mesh has no attribute '%s'%s", row.key,
                         shown(field->attribute).text, nearest_hint(&nearest, hint, sizeof hint));
     }
+
     if (changes && attribute)
         message_add(
             loader->messages, scene->text, attribute->location,
@@ -250,11 +258,13 @@ static void check_formats(const Loader *loader) {
     const Scene *scene = loader->scene;
     uint32_t with_uv = 0;
     if (!output_has(scene->output.formats, OUTPUT_textures)) return;
+
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         const Mesh *mesh = &loader->assets->meshes[i];
         if (!mesh->positions) return; // its file has a fault, and perhaps uv
         with_uv += mesh->uv || mesh->corner_uv;
     }
+
     if (!with_uv)
         message_add(loader->messages, scene->text, scene->output.location,
                     "the format 'textures' needs a sheet with uv; no sheet has any");
@@ -272,6 +282,7 @@ static void *many(Loader *loader, size_t count, size_t size) {
 SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *messages) {
     Loader loader = {scene, assets, messages, false};
     uint32_t before = message_total(messages), first = messages->count;
+
     *assets = (SceneAssets){.sheet_count = scene->sheet_count,
                             .source_count = scene->source_count,
                             .collider_count = scene->collider_count,
@@ -299,6 +310,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     for (uint32_t i = 0; i < scene->collider_count && !loader.no_memory; i++) load_solid(&loader, i);
     for (uint32_t i = 0; i < scene->pin_count && !loader.no_memory; i++)
         if (scene->pins[i].motion.given) load_motion(&loader, &scene->pins[i].motion, &assets->pin_motions[i]);
+
     if (scene->preview.environment_picture.name && !loader.no_memory)
         (void)load_image(&loader, &scene->preview.environment_picture, &assets->sky);
     if (!loader.no_memory) check_formats(&loader);
@@ -308,6 +320,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
         message_add(messages, scene->text, (SceneLocation){0}, "out of memory");
     }
     if (message_total(messages) == before && !loader.no_memory) return SINGE_OK;
+
     if (!loader.no_memory) sheet_faults(scene, assets, FAULTS_OF_MESHES, messages);
     messages_sort(messages, first);
     scene_assets_free(assets);

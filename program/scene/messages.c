@@ -22,6 +22,7 @@ static char *text_printable(const char *text, size_t length) {
         } else {
             used += printable_character(&text, end, copy + used);
         }
+
     copy[used] = 0;
     char *fit = realloc(copy, used + 1);
 
@@ -119,6 +120,7 @@ void message_add(SceneMessages *messages, const SceneText *text, SceneLocation l
     bool complete = message.text && message.origin, known = false;
     for (uint32_t i = 0; i < messages->count && complete && location.file && !known; i++)
         known = !strcmp(items[i].origin, message.origin) && !strcmp(items[i].text, message.text);
+
     if (!complete || known) {
         free(message.text);
         free(message.origin);
@@ -138,6 +140,7 @@ void message_warn(const SingeLog *log, const SceneText *text, SceneLocation loca
     va_start(arguments, format);
     char *what = text_format(format, arguments), *origin = text_origin(text, location);
     va_end(arguments);
+
     const size_t size = what && origin ? strlen(what) + strlen(origin) + 3 : 0;
     char *line = size ? malloc(size) : NULL;
     if (line) snprintf(line, size, "%s: %s", origin, what);

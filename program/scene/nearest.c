@@ -13,6 +13,7 @@ static int word_distance(const char *a, const char *b) {
     int m = (int)strlen(a), n = (int)strlen(b), d[WORD_MAX + 1][WORD_MAX + 1];
     for (int i = 0; i <= m; i++) d[i][0] = i;
     for (int j = 0; j <= n; j++) d[0][j] = j;
+
     for (int i = 1; i <= m; i++)
         for (int j = 1; j <= n; j++) {
             bool same = lower(a[i - 1]) == lower(b[j - 1]);

@@ -41,6 +41,7 @@ static SingeResult parse_into(SceneArena *arena, const SceneText *given, const c
     const char **sets = arena_new(arena, (size_t)given->set_count + 1, sizeof *sets);
     for (int i = 0; sets && i < given->set_count; i++)
         sets[i] = arena_text(arena, given->sets[i], strlen(given->sets[i]));
+
     if (arena_failed(arena)) return SINGE_ERROR_MEMORY;
     *text = (SceneText){.name = name, .bytes = bytes, .size = given->size, .sets = sets, .set_count = given->set_count};
 
@@ -103,6 +104,7 @@ SingeResult scene_read(const char *path, const char *const *sets, int set_count,
     Bytes bytes = {0};
     SingeError error;
     *scene = NULL;
+
     if (mesh_name_is_stage(path)) {
         message_add(messages, &text, (SceneLocation){0}, MESH_STAGE_HELP);
         return SINGE_ERROR_FORMAT;

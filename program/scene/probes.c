@@ -18,6 +18,7 @@ static double nearest_in_cell(const double p[3], const double corners[4][3], dou
         memcpy(triangle[0], centre, sizeof centre);
         memcpy(triangle[1], corners[i], sizeof centre);
         memcpy(triangle[2], corners[j], sizeof centre);
+
         const double gap = closest_on_triangle(p, (const double(*)[3])triangle, share);
         if (!(gap < best)) continue;
         best = gap;

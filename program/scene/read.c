@@ -19,10 +19,12 @@ static void *list_new(Reader *reader, void *object, const SchemaRow *row, uint32
 static void read_list(Reader *reader, const SchemaRow *row, const YamlNode *node, void *object) {
     const Schema *schema = row->sub;
     const bool keyed = (row->flags & ROW_KEYED) || row->type == ROW_STRENGTH;
+
     if (node->kind != NODE_LIST) {
         value_wrong(reader, node, row);
         return;
     }
+
     if (keyed && !node->count)
         message_add(reader->messages, reader->text, node->location,
                     "'%s' is an empty list: it needs at least one entry", row->key);
@@ -30,6 +32,7 @@ static void read_list(Reader *reader, const SchemaRow *row, const YamlNode *node
     char *items = list_new(reader, object, row, node->count, schema->size);
     for (const YamlNode *child = node->first; items && child; child = child->next, items += schema->size) {
         if (schema->defaults && !schema->defaults(reader->arena, items)) return;
+
         if (schema->located) memcpy(items, &child->location, sizeof child->location);
         if (child->kind == NODE_MAP) {
             schema_read(reader, schema, child, items);
@@ -105,16 +108,19 @@ static void read_keys(Reader *reader, const SchemaRow *row, const YamlNode *list
         {"value", ROW_FLOAT, row->dimension, AT(SingeValueKey, value), .min = row->min, .max = row->max,
          .flags = ROW_REQUIRED | (row->flags & (ROW_OPEN_MIN | ROW_OPEN_MAX)), .doc = row->doc},
     };
+
     const Schema schema = {.title = row->key, .size = sizeof(SingeValueKey), ROWS(rows)};
     const SchemaRow keys = {
         row->key,           ROW_LIST,      DIM_NONE, AT(SceneFollowed, keys), EXTRA(SceneFollowed, key_count),
         .flags = ROW_KEYED, .sub = &schema};
+
     if (scene_param_lasts(row->key))
         message_add(reader->messages, reader->text, list->location, "%s is fixed at the start: it accepts no keys",
                     row->key);
     read_list(reader, &keys, list, followed);
     check_times(reader, list, followed->keys, sizeof *followed->keys, followed->key_count);
     if (!followed->key_count) return;
+
     *param = singe_param(followed->keys[0].value);
     for (uint32_t i = 1; i < followed->key_count; i++)
         if (fabsf(followed->keys[i].value - param->value) > fabsf(param->to - param->value))
@@ -131,6 +137,7 @@ static void read_param(Reader *reader, const SchemaRow *row, const YamlNode *nod
         read_keys(reader, row, node, param, followed);
         return;
     }
+
     if (node->kind != NODE_MAP) {
         if (value_float(reader, row, node, &result.value)) {
             result.to = result.value;
@@ -144,6 +151,7 @@ static void read_param(Reader *reader, const SchemaRow *row, const YamlNode *nod
         Nearest nearest = {.word = child->key};
         int i = 0;
         for (; i < 5 && strcmp(child->key, keys[i]) != 0; i++) nearest_offer(&nearest, keys[i]);
+
         char hint[80], key[NODE_WORDS];
         if (i == 5)
             message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
@@ -163,6 +171,7 @@ static void read_param(Reader *reader, const SchemaRow *row, const YamlNode *nod
 
     SingeField *field = arena_new(reader->arena, 1, sizeof *field);
     if (!field) return;
+
     int fields = read_field(reader, row, node, field, &followed->texture);
     result.field = field;
     if (!from || !to || fields != 1)
@@ -317,6 +326,7 @@ void schema_read(Reader *reader, const Schema *schema, const YamlNode *map, void
 
     for (const YamlNode *child = map->first; child; child = child->next)
         if (child != first && !arena_failed(reader->arena)) read_child(reader, schema, kind, child, object, &given);
+
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
         bool due = (row->flags & ROW_REQUIRED) && row_allowed(row, kind) && (kind != ~0u || !row->kinds);
@@ -339,6 +349,7 @@ void schema_spell_out(SceneArena *arena, const Schema *schema, YamlNode *map) {
             YamlNode *word = arena_new(arena, 1, sizeof *word);
             char *key = arena_text(arena, row->sub->choice, strlen(row->sub->choice));
             if (!word || !key) return;
+
             *word = *child;
             word->next = NULL;
             word->key = key;

@@ -33,10 +33,12 @@ SingeResult render_file_make(const char *name, const Polygons *polygons, RenderF
     uint32_t *first = malloc((polygons->vertex_count + (size_t)1) * sizeof *first);
     uint32_t *next = malloc((corners + 1) * sizeof *next), *left = malloc((corners + 1) * sizeof *left);
     SolidEar *ears = malloc((corners + 1) * sizeof *ears);
+
     *file = (RenderFile){.def = singe_default_render_mesh()};
     file->positions = malloc(3 * (corners + 1) * sizeof *file->positions);
     file->triangles = malloc(3 * (corners + 1) * sizeof *file->triangles);
     if (polygons->uv) file->uv = malloc(2 * (corners + 1) * sizeof *file->uv);
+
     const bool good =
         first && next && left && ears && file->positions && file->triangles && (!polygons->uv || file->uv);
 
@@ -48,6 +50,7 @@ SingeResult render_file_make(const char *name, const Polygons *polygons, RenderF
             solid_cut_face(file->positions, left, ears, count, file->triangles + 3 * (size_t)file->def.triangle_count);
             file->def.triangle_count += count - 2;
         }
+
         file->def.positions = file->positions;
         file->def.uv = file->uv;
         file->def.triangles = file->triangles;
@@ -72,5 +75,6 @@ SingeResult scene_bind_meshes(const SceneAssets *assets, SingeSim *sim, uint32_t
             return result;
         }
     }
+
     return SINGE_OK;
 }

@@ -115,11 +115,13 @@ static bool param_in(const Schema *schema, const char *prefix, int *index, Scene
         snprintf(inner, sizeof inner, "%s.", row->key);
         if (row->type == ROW_MAP && param_in(row->sub, inner, index, param)) return true;
         if (row->type != ROW_PARAM || (*index)--) continue;
+
         snprintf(param->key, sizeof param->key, "%s%s", prefix, row->key);
         param->offset = row->offset - offsetof(SceneMaterial, def);
         param->slot = (row->extra - offsetof(SceneMaterial, followed)) / sizeof(SceneFollowed);
         return true;
     }
+
     return false;
 }
 

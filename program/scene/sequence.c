@@ -52,8 +52,10 @@ SingeResult sequence_length(const char *path, int first, int most, int *length, 
     *length = 1;
     while (*length < most && sequence_has(path, first + *length)) ++*length;
     if (*length >= most || !sequence_has(path, first + *length + 1)) return SINGE_OK;
+
     char *missing = sequence_path(path, first + *length);
     if (!missing) return sequence_no_memory(error);
+
     SingeResult result = refuse(error, SINGE_ERROR_FILE, "scene", -1,
                                 "%s: there is no such file, but the next one exists", short_name(missing));
     free(missing);
@@ -113,6 +115,7 @@ static SingeResult sequence_read_frame(const SceneMotion *motion, const char *pa
 SingeResult sequence_read(const SceneMotion *motion, int frames, SceneSequence *sequence, SingeError *error) {
     int length = 0; // the frames with files: the motion stops after the last
     *sequence = (SceneSequence){0};
+
     SingeResult result = sequence_length(motion->mesh.path, motion->first, frames, &length, error);
     for (int frame = 0; !result && frame < length; frame++) {
         char *path = sequence_path(motion->mesh.path, motion->first + frame);
@@ -210,6 +213,7 @@ static SingeResult follow_pin(SingeSim *sim, SingePinId pin, SceneSequence *sequ
         double v[3][3], e[3][3];
         corners_of(&sequence->frames[frame], made->triangle, v);
         axes_of((const double(*)[3])v, e);
+
         for (int k = 0; k < 3; k++) {
             double x = 0;
             for (int i = 0; i < 3; i++) x += made->weights[i] * v[i][k] + made->away[i] * e[i][k];
@@ -239,6 +243,7 @@ static SingeResult follow_burn_by(const Scene *scene, SingeSim *sim, int frame, 
             area += (double)view.area[i];
             if (view.particle_flags[i] & SINGE_ALIVE) rate += (double)view.burn_rate[i] * (double)view.area[i];
         }
+
         const SingeStats stats = singe_sim_stats(sim);
         const double left = (double)by->fraction - stats.burnt_fraction;
         const double needed = left * (double)scene->fps / (by->frame - frame), now = area > 0 ? rate / area : 0;
@@ -298,6 +303,7 @@ SingeResult follow_material(const Scene *scene, const SceneAssets *assets, Singe
     SingeResult result = SINGE_OK;
     scene_sheet_def(scene, assets, sheet, &def);
     for (int k = 0; k < SCENE_PARAM_SLOTS; k++) fields[k].texture.values = NULL;
+
     for (int i = 0; scene_param(i, &param) && !result; i++) {
         const SceneFollowed *by = &followed[param.slot];
         SingeParam *value = scene_param_at(&def.material, &param);
@@ -309,6 +315,7 @@ SingeResult follow_material(const Scene *scene, const SceneAssets *assets, Singe
         SingeField *field = &fields[param.slot];
         *field = assets->fields[sheet][param.slot];
         field->texture = (SingeTexture){0};
+
         char *path = sequence_path(by->texture.path, number);
         result = path ? luminance_read(path, &field->texture, error) : sequence_no_memory(error);
         free(path);
@@ -317,6 +324,7 @@ SingeResult follow_material(const Scene *scene, const SceneAssets *assets, Singe
 
     SingeSheetId *ids = calloc((size_t)scene->sheet_count + 1, sizeof *ids);
     if (!result && !ids) result = sequence_no_memory(error);
+
     if (!result) {
         singe_sim_sheets(sim, ids, scene->sheet_count);
         result = singe_sim_set_material(sim, ids[sheet], &def.material, NULL);

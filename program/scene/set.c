@@ -20,6 +20,7 @@ typedef struct Setter {
 static bool setter_step(Setter *setter, char step[STEP_MAX], bool *bad) {
     const char *c = setter->rest;
     if (c == setter->stop) return false;
+
     bool bracket = *c == '[';
     if (bracket || (*c == '.' && c > setter->path)) c++;
     size_t length = 0;
@@ -49,6 +50,7 @@ static YamlNode *setter_walk(Setter *setter, YamlNode *root) {
             const size_t digits = strspn(step, "0123456789");
             unsigned long index = digits < 10 && !step[digits] ? strtoul(step, NULL, 10) : ULONG_MAX;
             for (child = node->first; child && index; child = child->next) index--;
+
             if (!child) {
                 char last[40];
                 snprintf(last, sizeof last, node->count == 1 ? "only entry 0" : "entries 0 to %u",
@@ -90,6 +92,7 @@ bool tree_set(SceneArena *arena, const SceneText *text, YamlNode *root, SceneMes
         char step[STEP_MAX];
         bool bad = false, any = false;
         while (setter_step(&setter, step, &bad)) any = true;
+
         if (!any || bad) {
             message_add(messages, text, setter.location,
                         "expected PATH=VALUE, such as sheets.0.material.grammage=60 g/m2");

@@ -40,6 +40,7 @@ static double solid_turn(const float *vertices, uint32_t a, uint32_t b, uint32_t
         int e = (k + 1) % 3, f = (k + 2) % 3;
         sum += normal[k] * (u[e] * v[f] - u[f] * v[e]);
     }
+
     return sum;
 }
 
@@ -49,6 +50,7 @@ static void look_at_ear(const float *vertices, const uint32_t *left, uint32_t co
     const uint32_t a = left[(i + count - 1) % count], b = left[i], c = left[(i + 1) % count];
     *ear = (SolidEar){INFINITY, UINT32_MAX};
     if (!(solid_turn(vertices, a, b, c, normal) > 0)) return;
+
     for (uint32_t k = from; k < count; k++) {
         const uint32_t p = left[k];
         if (p == a || p == b || p == c) continue;
@@ -74,6 +76,7 @@ static void clip_ear(const float *vertices, uint32_t *left, SolidEar *ears, uint
     memmove(left + clipped, left + clipped + 1, (count - clipped - 1) * sizeof *left);
     memmove(ears + clipped, ears + clipped + 1, (count - clipped - 1) * sizeof *ears);
     count--;
+
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t blocker = ears[i].blocker;
         const bool beside = i == clipped % count || i == (clipped + count - 1) % count;
@@ -126,6 +129,7 @@ SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size,
     surface->vertices = malloc(3 * (size_t)polygons.vertex_count * sizeof *surface->vertices);
     surface->triangles = malloc(3 * count * sizeof *surface->triangles);
     surface->vertex_count = polygons.vertex_count;
+
     uint32_t *left = malloc((max + 1) * sizeof *left); // corners of a face
     SolidEar *ears = malloc((max + 1) * sizeof *ears);
     if (count > INT32_MAX / 4) result = solid_fail(error, SINGE_ERROR_LIMIT, -1, "the collider's mesh is too large");
@@ -186,12 +190,14 @@ static void draw_heights(SceneSolid *solid, const float size[2]) {
             put_vertex(surface, size[0] * ((float)i / (float)(columns - 1) - 0.5f),
                        size[1] * ((float)j / (float)(rows - 1) - 0.5f), h);
         }
+
     for (size_t j = 0; j + 1 < rows; j++)
         for (size_t i = 0; i + 1 < columns; i++) {
             size_t a = j * columns + i, c = a + columns + 1;
             put_triangle(surface, a, a + 1, c);
             put_triangle(surface, a, c, a + columns);
         }
+
     low -= 1e-3f * (size[0] + size[1]);
     for (size_t k = 0; k < border; k++) {
         const float *top = surface->vertices + 3 * border_node(solid, k);
@@ -212,6 +218,7 @@ SingeResult solid_make_heights(const SingeTexture *picture, const float size[2],
         return solid_fail(error, SINGE_ERROR_FORMAT, -1, "a heightfield's picture needs 2 pixels along each side");
     if (nodes > INT32_MAX / 8)
         return solid_fail(error, SINGE_ERROR_LIMIT, -1, "a heightfield's picture has at most 268 million pixels");
+
     size_t border = 2 * (columns + rows) - 4;
     solid->columns = (uint32_t)columns;
     solid->rows = (uint32_t)rows;

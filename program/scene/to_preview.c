@@ -18,6 +18,7 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
         def->sky = PREVIEW_SKY_PICTURE;
         def->sky_picture = &assets->sky;
     }
+
     def->pictures = assets->pictures;
     def->backs = assets->pictures + assets->sheet_count;
     def->colours = (const float(*)[3])assets->colours;
@@ -56,8 +57,10 @@ void scene_camera(const Scene *scene, double time, PreviewCamera *camera) {
     at[2] = next < count ? next : count - 1;
     at[0] = at[1] && next < count ? at[1] - 1 : at[1];
     at[3] = next && at[2] + 1 < count ? at[2] + 1 : at[2];
+
     double t[4];
     for (int k = 0; k < 4; k++) t[k] = (double)keys[at[k]].time;
+
     const size_t members[] = {offsetof(SceneCameraKey, eye), offsetof(SceneCameraKey, target),
                               offsetof(SceneCameraKey, fov), offsetof(SceneCameraKey, focus)};
     float *const into[] = {camera->eye, camera->target, &camera->fov, &camera->focus};
@@ -72,6 +75,7 @@ void scene_camera(const Scene *scene, double time, PreviewCamera *camera) {
             }
             into[m][c] = at[2] > at[1] ? camera_between(t, p, time) : p[1];
         }
+
     camera->fov = fmaxf(1e-3f, fminf(camera->fov, 3.1f)); // a cubic may overshoot
     camera->focus = fmaxf(0, camera->focus);
 }
@@ -164,6 +168,7 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
 void keys_pose(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
     uint32_t next = 0;
     while (next < count && (double)keys[next].time <= time) next++;
+
     const SceneKey *a = &keys[next ? next - 1 : 0], *b = &keys[next < count ? next : count - 1];
     double span = (double)b->time - (double)a->time, s = span > 0 ? (time - (double)a->time) / span : 0;
     float qa[4], qb[4];
@@ -215,6 +220,7 @@ bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, d
         bool drawn = def->kind == SINGE_SOURCE_BALL && source->visible && source->key_count && def->radius > 0 &&
                      time >= (double)def->start && time <= (double)def->end;
         if (!drawn) return false;
+
         *shape = (PreviewShape){.kind = SINGE_COLLIDER_SPHERE,
                                 .radius = def->radius,
                                 .colour = {0.05f, 0.05f, 0.05f},

@@ -175,6 +175,7 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
         bool mark = c == (const unsigned char *)bytes && length == 3 && memcmp(c, "\xef\xbb\xbf", 3) == 0;
         begins = *c == '\n' || *c == '\r' || mark;
         column++;
+
         if (*c == '\n') {
             line++;
             column = 1;

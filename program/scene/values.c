@@ -38,6 +38,7 @@ bool value_float(Reader *reader, const SchemaRow *row, const YamlNode *node, flo
         value_wrong(reader, node, row);
         return false;
     }
+
     if ((row->flags & ROW_INF) && strcmp(node->text, "inf") == 0) {
         *result = INFINITY;
         return true;
@@ -46,6 +47,7 @@ bool value_float(Reader *reader, const SchemaRow *row, const YamlNode *node, flo
         *result = -INFINITY;
         return true;
     }
+
     NumberFault fault = quantity_read(node->text, row->dimension, &value);
     if (fault == NUMBER_BAD_UNIT) {
         char units[80], seen[NODE_WORDS];
@@ -61,12 +63,14 @@ bool value_float(Reader *reader, const SchemaRow *row, const YamlNode *node, flo
         value_wrong(reader, node, row);
         return false;
     }
+
     float narrow = (float)value;
     // the bounds are floats like the value, so that the bound itself, as printed, is inside
     if (!isfinite(narrow) || !between(row, (double)narrow, (double)(float)row->min, (double)(float)row->max)) {
         out_of_range(reader, row, node);
         return false;
     }
+
     *result = narrow;
     return true;
 }
@@ -89,11 +93,13 @@ static bool read_whole(Reader *reader, const SchemaRow *row, const YamlNode *nod
         value_wrong(reader, node, row);
         return false;
     }
+
     int64_t number = large ? 0 : minus ? -(int64_t)value : (int64_t)value;
     if (large || (row->max > row->min && !between(row, (double)number, row->min, row->max))) {
         out_of_range(reader, row, node);
         return false;
     }
+
     *result = number;
     return true;
 }
@@ -103,8 +109,10 @@ bool value_vector(Reader *reader, const SchemaRow *row, const YamlNode *node, fl
         value_wrong(reader, node, row);
         return false;
     }
+
     SchemaRow element = *row;
     element.type = ROW_FLOAT;
+
     bool good = true;
     int i = 0;
     for (const YamlNode *child = node->first; child; child = child->next, i++)
@@ -152,6 +160,7 @@ bool value_word(Reader *reader, const SchemaRow *row, const YamlNode *node, cons
         value_wrong(reader, node, row);
         return false;
     }
+
     const char *word = node->text;
     Nearest nearest = {.word = word};
     for (int i = 0; names[i]; i++) {
@@ -178,6 +187,7 @@ void value_order(Reader *reader, const SchemaRow *row, const YamlNode *node, Sin
         value_wrong(reader, node, row);
         return;
     }
+
     int seen = 0;
     for (const YamlNode *child = node->first; child; child = child->next) {
         int colour = 0;
@@ -198,8 +208,10 @@ void value_formats(Reader *reader, const SchemaRow *row, const YamlNode *node, O
         value_wrong(reader, node, row);
         return;
     }
+
     const char *names[OUTPUT_COUNT + 1] = {NULL};
     for (int i = 0; i < OUTPUT_COUNT; i++) names[i] = output_formats[i].name;
+
     OutputSet set = 0;
     for (const YamlNode *child = node->first; child; child = child->next) {
         int format = 0;
@@ -244,6 +256,7 @@ void value_file(Reader *reader, const SchemaRow *row, const YamlNode *node, Scen
         value_wrong(reader, node, row);
         return;
     }
+
     if (row->flags & ROW_NUMBERED && !sequence_name_fits(node->text)) {
         message_add(reader->messages, reader->text, node->location,
                     "%s: the file's name needs one run of # for the number of the frame, as in 'body.####.ply'",
@@ -254,10 +267,12 @@ void value_file(Reader *reader, const SchemaRow *row, const YamlNode *node, Scen
     field->location = node->location;
     field->name = field->path = value_join(reader->arena, reader->prefix, "", node->text);
     if (!reader->base_dir || !field->name) return;
+
     if (reader->base_dir[0]) field->path = value_join(reader->arena, reader->base_dir, "/", field->name);
     struct stat status;
     const char *fault = NULL;
     if (!field->path || row->flags & ROW_NUMBERED) return;
+
     if (stat(field->path, &status)) fault = "there is no such file";
     else if (S_ISDIR(status.st_mode)) fault = "this is a folder";
     else if (access(field->path, R_OK)) fault = "the file cannot be read";

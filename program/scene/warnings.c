@@ -22,16 +22,19 @@ const char *source_heats_nothing(const Scene *scene, const SceneSource *source) 
 
     if (def->kind == SINGE_SOURCE_TEXTURE && (def->flux == 0 || weak)) return "its flux is 0";
     if (def->kind == SINGE_SOURCE_ARRIVAL || source_wets_or_blows(def)) return NULL;
+
     const bool flame = def->kind != SINGE_SOURCE_TEXTURE && scene->sim.gas.enabled && def->power > 0;
     if (def->kind != SINGE_SOURCE_TEXTURE && def->conductance == 0 && !flame) return "its conductance is 0";
     if (def->kind != SINGE_SOURCE_TEXTURE && def->radius + def->falloff == 0 && !flame)
         return "its radius and its falloff are 0";
     if (def->end <= def->start) return "it ends when it starts";
+
     return scene->frames > 1 && (double)def->start >= end ? "it starts after the last frame" : NULL;
 }
 
 void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
     if (!log->write) return;
+
     for (uint32_t i = 0; i < scene->source_count; i++) {
         const char *why = source_heats_nothing(scene, &scene->sources[i]);
         if (why) message_warn(log, scene->text, scene->sources[i].location, "the source heats nothing: %s", why);
@@ -61,6 +64,7 @@ void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *l
         double farthest = 0, shortest = INFINITY;
         for (size_t k = 0; k < 3 * (size_t)mesh->vertex_count; k++)
             farthest = fmax(farthest, fabs((double)mesh->positions[k]));
+
         for (uint32_t c = 0; c < mesh->cell_count; c++) {
             const float *from = mesh->positions + 3 * (size_t)mesh->cells[4 * (size_t)c];
             const float *to = mesh->positions + 3 * (size_t)mesh->cells[4 * (size_t)c + 1];
@@ -83,6 +87,7 @@ void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *l
         const SingeParam thickness = scene->sheets[i].material.def.thickness;
         thickest = fmaxf(thickest, fmaxf(thickness.value, thickness.to));
     }
+
     for (uint32_t i = 0; i < scene->sheet_count && scene->sim.contact.enabled; i++) {
         const SingeParam distance = scene->sheets[i].material.def.smother_distance;
         const float reach = fmaxf(distance.value, distance.to), kept = scene->sim.contact.thickness;

@@ -57,6 +57,7 @@ static void write_param(FILE *out, const PresetRow *row, int colour, const Singe
 
     fprintf(out, "    def->%s = singe_param%s(", name, param->field ? "_field" : "");
     write_float(out, param->value);
+
     if (param->field) {
         fprintf(out, ", ");
         write_float(out, param->to);
@@ -85,6 +86,7 @@ static void write_material(FILE *out, const char *name, const SingeMaterialDef *
 
             if (!same) write_param(out, &params[i], colour, a);
         }
+
     if (def->reference_grammage != standard.reference_grammage) {
         fprintf(out, "    def->reference_grammage = ");
         write_float(out, def->reference_grammage);
@@ -114,12 +116,14 @@ int main(int argc, char **argv) {
         out,
         "// Made by scene_presets from the files of this folder. Do not edit: change those and run\n"
         "// `build/program/scene/scene_presets > src/materials/presets.c`.\n#include \"materials/preset.h\"\n\n#include <math.h>\n\n");
+
     for (int i = 0; (name = scene_material_name(i)); i++) {
         // read as a scene does
         Scene *scene;
         char sheet[200];
         SceneMessages messages = {0};
         snprintf(sheet, sizeof sheet, "sheets: [{grid: {size: [10 cm, 10 cm], cells: [2, 2]}, material: %s}]\n", name);
+
         SingeResult result = scene_parse("presets", sheet, strlen(sheet), NULL, NULL, 0, &scene, &messages);
         scene_messages_print(&messages, stderr);
         scene_messages_free(&messages);
@@ -145,6 +149,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "%s\n", error.message);
         return 1;
     }
+
     bool equal = bytes.size == size && memcmp(bytes.data, text, size) == 0;
     if (!equal) fprintf(stderr, "%s: differs from the material files; run scene_presets > %s\n", argv[1], argv[1]);
     bytes_free(&bytes);

@@ -40,6 +40,7 @@ static size_t scalar_unquote(const char *c, const char *end, char *out) {
             c += *c == '\'' && end - c > 1 ? 2 : 1;
             continue;
         }
+
         while (length > line && is_blank(out[length - 1])) length--;
         int breaks = 0;
         for (; (width = line_break(c, end)) > 0; breaks++) {
@@ -203,6 +204,7 @@ static bool sink_take(Sink *sink, const struct fy_event *event) {
     const struct fy_mark *mark = fy_event_start_mark((struct fy_event *)event);
     if (!mark && (tag || anchor)) mark = fy_token_start_mark(tag ? tag : anchor);
     sink_mark(sink, mark);
+
     enum fy_scalar_style style = value ? fy_token_scalar_style(value) : FYSS_PLAIN;
     bool behind = style == FYSS_SINGLE_QUOTED || style == FYSS_DOUBLE_QUOTED || event->type == FYET_ALIAS;
     if (mark && behind && sink->column > 1) sink->column--;
@@ -240,6 +242,7 @@ static SingeResult sink_work(void *context, IsolateAnswer *answer, SingeError *e
     struct fy_diag *diag = fy_diag_create(&diag_config);
     struct fy_parse_cfg config = {.flags = FYPCF_QUIET | FYPCF_JSON_NONE | FYPCF_DEFAULT_VERSION_AUTO, .diag = diag};
     struct fy_parser *parser = NULL;
+
     errno = 0;
     if (diag) fy_diag_set_collect_errors(diag, true);
     if (diag && sink->arena) parser = fy_parser_create(&config);
