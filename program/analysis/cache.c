@@ -33,6 +33,7 @@ static SingeResult read_header(const Ply *ply, CacheFrame *frame) {
     const PlyElement *vertices = ply_element(ply, "vertex"), *faces = ply_element(ply, "face");
     if (ply->header.format != PLY_LITTLE || ply->header.element_count != 2 || !vertices || !faces || vertices > faces)
         return ply_refuse(ply, SINGE_ERROR_FORMAT, "not a cache: a binary_little_endian PLY of vertices and faces");
+
     const PlyProperty *list = &ply->header.properties[faces->first_property];
     if (faces->property_count != 1 || !list->is_list || list->count_type != PLY_UINT8 || list->type != PLY_INT32 ||
         !text_word_is(list->name, list->name_end, "vertex_indices"))
@@ -43,6 +44,7 @@ static SingeResult read_header(const Ply *ply, CacheFrame *frame) {
     for (size_t i = 0; i < vertices->property_count; i++) {
         const PlyProperty *property = &ply->header.properties[vertices->first_property + i];
         if (property->is_list) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a vertex of a cache has no lists");
+
         for (int c = 0; c < CACHE_COLUMNS; c++) {
             const PlyType type = cache_column_is_integer(c) ? PLY_INT32 : PLY_FLOAT32;
             const bool named = text_word_is(property->name, property->name_end, names[c]) ||
@@ -73,6 +75,7 @@ static SingeResult read_header(const Ply *ply, CacheFrame *frame) {
     const uint64_t needed = (uint64_t)frame->row * vertices->count + (uint64_t)FACE_SIZE * faces->count;
     const uint64_t actual = (uint64_t)(ply->text.end - ply->text.at);
     if (actual == needed) return SINGE_OK;
+
     return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file has %llu bytes of data where its counts need %llu",
                       (unsigned long long)actual, (unsigned long long)needed);
 }
@@ -91,6 +94,7 @@ SingeResult cache_read(const char *path, CacheFrame *frame, SingeError *error) {
     frame->rest = malloc(((size_t)frame->vertex_count + 1) * sizeof *frame->rest);
     frame->triangles = malloc(((size_t)frame->triangle_count + 1) * sizeof *frame->triangles);
     if (!frame->position || !frame->rest || !frame->triangles) return refuse_memory(error, "ply", path);
+
     frame->rows = ply.text.at;
     for (uint32_t v = 0; v < frame->vertex_count; v++)
         for (int k = 0; k < 3; k++) {

@@ -123,6 +123,7 @@ int exact_orient2(const float a[3], const float b[3], const float c[3], int x, i
         exact_add(&sum, (double)pairs[i][0][x] * (double)pairs[i][1][y]);
         exact_add(&sum, -(double)pairs[i][0][y] * (double)pairs[i][1][x]);
     }
+
     return expansion_sign(&sum);
 }
 

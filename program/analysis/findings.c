@@ -32,11 +32,13 @@ static void findings_say(const Findings *findings, bool fault, const char *forma
 void findings_add(Findings *findings, Fault fault, const char *format, ...) {
     char text[300];
     va_list list;
+
     findings->count[fault]++;
     if (findings->reported[fault]++ >= REPORTED) return;
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
+
     const char *more = findings->reported[fault] == REPORTED ? "; further ones are only counted" : "";
     findings_say(findings, true, "%s: %s%s", findings->file, text, more);
 }
@@ -109,6 +111,7 @@ void initial_free(Initial *initial) {
 /// Whether a triangle is near an initial crossing.
 static bool is_near(const Initial *initial, const CacheFrame *frame, uint32_t triangle) {
     if (!initial->count || !is_rest_known(frame)) return false;
+
     const InitialTriangle entry = entry_of(frame, triangle);
     size_t from = 0, to = initial->count;
     while (from < to) {
@@ -121,6 +124,7 @@ static bool is_near(const Initial *initial, const CacheFrame *frame, uint32_t tr
         const InitialTriangle *other = &initial->triangles[from];
         if (other->sheet == entry.sheet && initial_distance(other->at, entry.at) <= other->reach) return true;
     }
+
     return false;
 }
 
@@ -128,6 +132,7 @@ static bool is_near(const Initial *initial, const CacheFrame *frame, uint32_t tr
 static void add_crossing(const CacheFrame *frame, uint32_t a, uint32_t b, Findings *findings) {
     const uint32_t *s = frame->triangles[a], *t = frame->triangles[b];
     const float *p = frame->position[s[0]];
+
     if (is_near(&findings->initial, frame, a) && is_near(&findings->initial, frame, b)) {
         findings->from_start++;
         return;
@@ -157,6 +162,7 @@ static bool check_crossings(const CacheFrame *frame, const uint32_t *sound, uint
 
     for (uint32_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) triangles[i][k] = frame->triangles[sound[i]][k];
+
     const float(*position)[3] = (const float(*)[3])frame->position;
     bool good = crossings_find(position, (const uint32_t(*)[3])triangles, count, &list);
     free(triangles);
@@ -297,6 +303,7 @@ static bool check_edges(const CacheFrame *frame, const uint32_t *sound, uint32_t
     for (size_t i = 0, end; i < side_count; i = end) {
         for (end = i + 1; end < side_count && sides[end].low == sides[i].low && sides[end].high == sides[i].high;)
             end++;
+
         const Side *at = &sides[i]; // the triangles at one edge
         const uint32_t near = (uint32_t)(end - i), low = at->low, high = at->high;
         if (near > 2)
@@ -334,6 +341,7 @@ bool check_surface(const CacheFrame *frame, Findings *findings) {
         for (int k = 0; k < 3 && whole; k++)
             whole = v[k] < frame->vertex_count && is_finite_point(frame->position[v[k]]);
         if (!whole) continue;
+
         const float *a = frame->position[v[0]];
         if (exact_collinear(a, frame->position[v[1]], frame->position[v[2]]))
             findings_add(findings, FAULT_DEGENERATE,

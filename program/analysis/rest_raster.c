@@ -24,6 +24,7 @@ static bool find_plane(const SingeSurface *surface, int32_t sheet, Plane *plane)
         const uint32_t *t = surface->triangles[f];
         double a[3], b[3], own[3], d[3], u[2], v[2];
         if (surface->sheet[t[0]] != sheet) continue;
+
         for (int k = 0; k < 3; k++) {
             plane->origin[k] = (double)surface->rest_position[t[0]][k];
             a[k] = (double)surface->rest_position[t[1]][k] - plane->origin[k];
@@ -48,6 +49,7 @@ static bool find_plane(const SingeSurface *surface, int32_t sheet, Plane *plane)
 
     double lift = dot3(along, normal);
     for (int k = 0; k < 3; k++) along[k] -= lift * normal[k];
+
     if (!unit3(along)) { // no uv: x, or y if x is too close to the normal
         int axis = fabs(normal[0]) < 0.9 ? 0 : 1;
         for (int k = 0; k < 3; k++) along[k] = (k == axis) - normal[axis] * normal[k];
@@ -172,6 +174,7 @@ static void blur_rows(const float *from, float *to, int width, int height, const
         int part[2];
         line_part(line, width, part);
         memset(sum, 0, (size_t)width * sizeof *sum);
+
         for (int k = -reach; k <= reach; k++) {
             const int begin = part[0] + k < 0 ? -k : part[0], end = part[1] + k > width ? width - k : part[1];
             if (begin < end) line_add(sum + begin + k, line + begin, kernel[abs(k)], end - begin);
@@ -199,6 +202,7 @@ void rest_raster_smooth(const RestRaster *raster, const float *field, double dev
     const double pixel = deviation / raster->spacing;
     int reach = (int)ceil(3 * pixel);
     reach = reach < REACH_MAX ? reach : REACH_MAX;
+
     double total = 1;
     for (int k = 1; k <= reach; k++) total += 2 * exp(-0.5 * k * k / (pixel * pixel));
     for (int k = 0; k <= reach; k++) kernel[k] = (float)(exp(-0.5 * k * k / (pixel * pixel)) / total);
@@ -232,6 +236,7 @@ void rest_raster_distance(const RestRaster *raster, float min, float *distance) 
             if (j > 0 && i > 0) nearer(distance, p, p - w - 1, across);
             if (j > 0 && i + 1 < width) nearer(distance, p, p - w + 1, across);
         }
+
     for (int j = height; j-- > 0;)
         for (int i = width; i-- > 0;) {
             size_t p = (size_t)j * w + (size_t)i;

@@ -35,6 +35,7 @@ static bool strip_mesh(Strip *strip, const StripSetup *setup) {
     if (strip->across < 3) strip->across = 3;
     strip->first = gate_first * (double)setup->length;
     strip->last = gate_last * (double)setup->length;
+
     uint32_t n = strip->along, row = n + 1, vertices = row * (strip->across + 1), count = n * strip->across;
     strip->positions = malloc((size_t)3 * vertices * sizeof *strip->positions);
     strip->lit = malloc(vertices * sizeof *strip->lit);
@@ -114,6 +115,7 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
     static const SingeField lit = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "lit"};
     const SingeParam cold = material.temperature, damp = material.moisture;
     material.temperature = singe_param_field(cold.field ? 0.5f * (cold.value + cold.to) : cold.value, 1100, &lit);
+
     const float water = damp.field ? 0.5f * (damp.value + damp.to) : damp.value;
     if (water > 0) material.moisture = singe_param_field(water, 0, &lit);
     return material;
@@ -193,9 +195,11 @@ static SingeResult strip_run(Strip *strip, const StripSetup *setup, StripResult 
     for (int since = 0; reached <= strip->last && since < setup->patience && strip_work(strip) < setup->work_max;) {
         SingeResult failed = singe_sim_step(strip->sim);
         if (failed) return failed;
+
         SingeView view = singe_sim_view(strip->sim);
         double front = strip_front(strip, &view);
         since++;
+
         if (front > reached) {
             reached = front;
             since = 0;
@@ -222,6 +226,7 @@ SingeResult strip_burn(const StripSetup *setup, StripResult *result, SingeError 
     SingeResult code = strip_mesh(&strip, setup) ? SINGE_OK : SINGE_ERROR_MEMORY;
     if (!code) code = singe_sim_create(&def, &strip.sim, error);
     else *error = (SingeError){.code = code, .element = -1};
+
     if (strip.sim) {
         code = strip_fill(&strip, setup);
         if (!code) code = strip_run(&strip, setup, result);

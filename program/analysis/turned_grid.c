@@ -22,6 +22,7 @@ SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error) {
     const float size = (float)(cut->size * wide / cut->cells);
     TRY(mesh_grid(size, size, wide, wide, (SingeAllocator){0}, mesh, error));
     mesh_grid_wear(mesh, wide, wide, &cut->wear);
+
     const double c = cos(cut->angle), s = sin(cut->angle), half = cut->size / 2;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         float *position = mesh->positions + 3 * (size_t)v;

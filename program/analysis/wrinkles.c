@@ -57,12 +57,14 @@ static bool fields_make(const RestRaster *raster, Fields *fields) {
     const size_t pixels = (size_t)raster->width * (size_t)raster->height;
     fields->scratch = calloc(10 * pixels, sizeof *fields->scratch);
     if (!fields->scratch) return false;
+
     fields->weight = fields->scratch + 2 * pixels;
     fields->distance = fields->scratch + 3 * pixels;
     for (size_t k = 0; k < 3; k++) {
         fields->smooth[k] = fields->scratch + (4 + k) * pixels;
         fields->rough[k] = fields->scratch + (7 + k) * pixels;
     }
+
     return true;
 }
 
@@ -70,6 +72,7 @@ static bool fields_make(const RestRaster *raster, Fields *fields) {
 static void bends_at(const RestRaster *raster, const Fields *fields, int p, double *xx, double *xy, double *yy) {
     const int w = raster->width;
     const double step = 2 * raster->spacing;
+
     *xx = *xy = *yy = 0;
     for (int k = 0; k < 3; k++) {
         const float *n = fields->smooth[k];
@@ -99,6 +102,7 @@ static void add_creases(const RestRaster *raster, Fields *fields, Wrinkles *wrin
     for (int k = 0; k < 3; k++)
         rest_raster_smooth(raster, raster->normal[k], crease_deviation, fields->scratch, fields->weight,
                            fields->smooth[k]);
+
     for (int j = 1; j + 1 < raster->height; j++)
         for (int i = 1; i + 1 < w; i++) {
             const int p = j * w + i;
@@ -138,8 +142,10 @@ static void add_roughness(const RestRaster *raster, Fields *fields, Wrinkles *wr
     rest_raster_distance(raster, burnt_min, fields->distance);
     for (int p = 0; p < raster->width * raster->height; p++) {
         if (!(raster->cover[p] > 0) || fields->weight[p] < covered_min) continue;
+
         double square = 0;
         for (int k = 0; k < 3; k++) square += pow((double)fields->rough[k][p] - (double)fields->smooth[k][p], 2);
+
         if (fields->distance[p] <= around_burnt) {
             wrinkles->burnt_power += square * area;
             wrinkles->burnt_area += area;
@@ -155,6 +161,7 @@ static bool wrinkles_add_sheet(const SingeSurface *surface, int32_t sheet, void 
     Fields fields = {0};
     if (!rest_raster_draw(surface, sheet, spacing, &raster)) return false;
     if (raster.width == 0) return true;
+
     const bool good = fields_make(&raster, &fields);
     if (good) {
         add_creases(&raster, &fields, sums);
@@ -183,6 +190,7 @@ double wrinkles_unburnt(const Wrinkles *wrinkles) { return over(wrinkles->unburn
 static bool normal_at(const RestRaster *raster, const Fields *fields, double x, double y, double normal[3]) {
     int i = (int)floor(x), j = (int)floor(y);
     if (i < 0 || j < 0 || i + 1 >= raster->width || j + 1 >= raster->height) return false;
+
     double u = x - i, v = y - j, weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
     normal[0] = normal[1] = normal[2] = 0;
     for (int corner = 0; corner < 4; corner++) {
@@ -216,6 +224,7 @@ static void add_line(const RestRaster *raster, const Fields *fields, int i, int 
 
             power += pow(normal[n + WINDOW / 2][k] - mean / total, 2);
         }
+
     folds->power += power / MIDDLE;
     folds->count += 1;
 }
@@ -228,6 +237,7 @@ static bool folds_add_sheet(const SingeSurface *surface, int32_t sheet, void *su
     double area = 0, vertices = 0;
     for (uint32_t v = 0; v < surface->vertex_count; v++)
         vertices += surface->sheet[v] == sheet && surface->source_vertex[v] >= 0;
+
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
         const uint32_t *at = surface->triangles[t];
         double twice[3];
@@ -241,6 +251,7 @@ static bool folds_add_sheet(const SingeSurface *surface, int32_t sheet, void *su
 
     if (!rest_raster_draw(surface, sheet, cell / SAMPLES_A_CELL, &raster)) return false;
     if (raster.width == 0) return true;
+
     const bool good = fields_make(&raster, &fields);
     for (int k = 0; k < 3 && good; k++)
         rest_raster_smooth(&raster, raster.normal[k], cell, fields.scratch, fields.weight, fields.smooth[k]);
@@ -264,6 +275,7 @@ static bool folds_add_sheet(const SingeSurface *surface, int32_t sheet, void *su
         }
     free(fields.scratch);
     rest_raster_free(&raster);
+
     return good;
 }
 

@@ -91,6 +91,7 @@ static void note_refused(Source *source, const char *why) {
 static struct aiFile *source_open(struct aiFileIO *io, const char *name, const char *mode) {
     Source *source = (void *)io->UserData;
     if (!mode || strchr(mode, 'w') || strchr(mode, 'a') || strchr(mode, '+')) return NULL;
+
     struct aiFile *file = calloc(1, sizeof *file);
     Opened *opened = calloc(1, sizeof *opened);
     bool good = file && opened;
@@ -213,6 +214,7 @@ static SingeResult count_mesh(Walk *walk, const struct aiMesh *mesh, const struc
         return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1,
                       "%s: too large: its nodes repeat meshes, which come to more than %llu MB", short_name(walk->name),
                       (unsigned long long)walk->max / 1000000);
+
     return SINGE_OK;
 }
 
@@ -321,6 +323,7 @@ static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeErro
     MeshCounts counts = walk.counts;
     if (counts.vertices > MESH_COUNT_LIMIT || counts.corners > MESH_COUNT_LIMIT)
         return refuse(walk.error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: is too large", short_name(walk.name));
+
     put(&walk, &counts, sizeof counts);
     TRY(walk_scene(&walk, put_positions));
     TRY(walk_scene(&walk, put_sizes));
@@ -366,6 +369,7 @@ SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, Sin
     Bytes answer;
     TRY(isolate_run(name, read_in_child, &source, limits, allocator, &answer, error));
     SingeResult result = mesh_answer_take(name, answer.data, answer.size, allocator, polygons, error);
+
     bytes_free(&answer);
     return result;
 }

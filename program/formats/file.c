@@ -82,6 +82,7 @@ size_t file_read_head(const char *path, uint8_t *bytes, size_t max) {
     struct stat about;
     int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return 0;
+
     size_t done = 0;
     ssize_t count = fstat(file, &about) || !S_ISREG(about.st_mode) ? 0 : 1;
 
@@ -143,6 +144,7 @@ static int put_in_place(const char *temporary, const char *target) {
         (void)fsync(file);
         close(file);
     }
+
     return 0;
 }
 
@@ -205,6 +207,7 @@ SingeResult file_publish(char *draft, const char *path, SingeError *error) {
     int reason = file < 0 ? errno : fsync(file) && errno != EINVAL && errno != ENOTSUP ? errno : 0;
     if (file >= 0) close(file);
     if (!reason) reason = put_in_place(draft, path);
+
     if (reason) {
         file_discard(draft);
         return refuse_system(error, "write", path, reason);

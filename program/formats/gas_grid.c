@@ -25,6 +25,7 @@ float gas_coolest(const SingeGas *gas) {
 bool gas_block_holds(const SingeGas *gas, const uint32_t block[3], float coolest) {
     uint32_t low[3], high[3];
     gas_block_box(gas, block, low, high);
+
     for (uint32_t z = low[2]; z < high[2]; z++)
         for (uint32_t y = low[1]; y < high[1]; y++)
             for (uint32_t x = low[0]; x < high[0]; x++) {
@@ -33,6 +34,7 @@ bool gas_block_holds(const SingeGas *gas, const uint32_t block[3], float coolest
                     gas->temperature[i] - coolest > GAS_WARM_MIN)
                     return true;
             }
+
     return false;
 }
 
@@ -53,12 +55,14 @@ SingeResult gas_make(Gas *gas, const char *name, float coolest, SingeError *erro
     gas->velocity = store_new(gas->allocator, count, sizeof *gas->velocity);
     if (!gas->temperature || !gas->smoke || !gas->flame || !gas->extinction || !gas->flame_share || !gas->velocity)
         return refuse_memory(error, "gas", name);
+
     gas_fill(gas, coolest);
     memset(gas->smoke, 0, count * sizeof *gas->smoke);
     memset(gas->flame, 0, count * sizeof *gas->flame);
     memset(gas->extinction, 0, count * sizeof *gas->extinction);
     memset(gas->flame_share, 0, count * sizeof *gas->flame_share);
     memset(gas->velocity, 0, count * sizeof *gas->velocity);
+
     gas->view.temperature = gas->temperature;
     gas->view.smoke = gas->smoke;
     gas->view.flame = gas->flame;
@@ -110,6 +114,7 @@ SingeResult gas_copy(const SingeGas *gas, SingeAllocator allocator, Gas *copy, S
 
     size_t count = gas_cells(gas);
     if (!count) return SINGE_OK;
+
     float sum = 0; // of zeros, unless something is not finite
     for (size_t i = 0; i < count; i++) {
         const float *v = gas->velocity[i];

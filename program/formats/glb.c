@@ -106,6 +106,7 @@ static SingeResult put_pictures(GlbFile *f, const char *path, SingeError *error)
         Bytes bytes;
         uint32_t before;
         if (!f->scene->sheets[i].picture || picture_of(f->scene, i, &before) != i) continue;
+
         TRY(output_picture_read(path, f->scene->sheets[i].picture, &bytes, error));
         sink_text(&f->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}", f->view_count++ ? "," : "",
                   f->data.size, bytes.size);
@@ -122,6 +123,7 @@ static uint32_t put_images(GlbFile *f, const char *up) {
     uint32_t pictures = 0;
     for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
         if (!f->scene->sheets[i].picture) continue;
+
         sink_text(&f->text, pictures++ ? ",{" : ",\"images\":[{");
         if (f->pictures_inside) {
             uint32_t before;
@@ -164,6 +166,7 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
         put_part(f, "]}],\"nodes\":[", &f->nodes);
         put_part(f, "],\"meshes\":[", &f->meshes);
         sink_text(&f->text, "],\"materials\":[");
+
         uint32_t textures = 0; // a material for each sheet: paper, with the sheet's picture if it has one
         for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
             const bool pictured = f->scene->sheets[i].picture != NULL;
@@ -207,6 +210,7 @@ SingeResult glb_finish(GlbFile *f, const char *up, const char *extras, const cha
     put_scene(f, up, extras);
     if (f->data.size + f->text.size > UINT32_MAX / 2)
         return refuse(error, SINGE_ERROR_LIMIT, "glb", -1, "%s: too large for a GLB", short_name(path));
+
     Sink sink = {.allocator = f->text.allocator};
     const uint32_t head = 12 + 8 + (uint32_t)f->text.size, body = f->mesh_count ? 8 + (uint32_t)f->data.size : 0;
     sink_reserve(&sink, head + body);
@@ -244,6 +248,7 @@ static GlbRounding rounding_of(const GlbFile *f, const char *name) {
         const char *name;
         int bits;
     } grids[] = {{"TEXCOORD_0", -13}, {"COLOR_0", -9}, {"_TEMPERATURE", 0}, {"_VELOCITY", -8}};
+
     if (strcmp(name, "POSITION") == 0) return (GlbRounding){GLB_GRID, f->grid, 0};
     if (strcmp(name, "NORMAL") == 0) return (GlbRounding){GLB_DIRECTION, 0, 0};
     for (size_t i = 0; i < sizeof grids / sizeof *grids; i++)
@@ -288,6 +293,7 @@ static void list_corners(GlbMeshes *w, SheetPart *part) {
 
     uint32_t *corners = (uint32_t *)(void *)w->file->corners.bytes;
     glb_sort_triangles(w->file, corners, 3 * (size_t)part->triangle_count, p->surface->vertex_count);
+
     uint32_t *vertices = p->vertices + p->vertex_first[part->sheet], count = 0;
     for (uint32_t i = 0; i < part->count; i++) p->local[vertices[i]] = UINT32_MAX;
     for (uint32_t i = 0; i < 3 * part->triangle_count; i++) {
@@ -312,6 +318,7 @@ static void put_field(GlbMeshes *w, const SheetPart *part, const SurfaceField *f
     const size_t begin = w->file->data.size;
     const void *values = surface_field(w->surface, field);
     char key[40] = "_";
+
     for (uint32_t i = 0; i < part->count; i++) {
         const uint32_t vertex = part->vertices[i];
         const float value = field->integer ? (float)((const int32_t *)values)[vertex] : ((const float *)values)[vertex];
@@ -332,6 +339,7 @@ static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
     if (!part.count || !part.triangle_count) return false;
     list_corners(w, &part);
     if (f->corners.failed) return false; // glb_finish says so
+
     sink_text(&f->meshes, "%s{\"name\":", f->mesh_count++ ? "," : "");
     glb_put_string(&f->meshes, f->scene->sheets[sheet].name);
     sink_text(&f->meshes, ",\"primitives\":[{\"material\":%u,\"attributes\":{", sheet);
@@ -374,6 +382,7 @@ static bool put_mesh(GlbMeshes *w, uint32_t sheet) {
     const size_t corner_begin = w->file->data.size;
     const uint32_t *listed = (const uint32_t *)(const void *)w->file->corners.bytes;
     for (uint32_t i = 0; i < 3 * part.triangle_count; i++) sink_u32(&w->file->data, w->parts.local[listed[i]]);
+
     const GlbRounding corners = {GLB_TRIANGLES, 0, part.count};
     sink_text(&f->meshes, "},\"indices\":%u}]}",
               f->packed ? glb_put_packed(f, corner_begin, 3 * part.triangle_count, 1, corners, false)
@@ -424,6 +433,7 @@ static void put_appearance(GlbFile *file, int number, int frames) {
 
     size_t begin = file->data.size;
     sink_words(&file->data, times, count);
+
     const float box[2] = {times[0], times[count - 1]};
     const uint32_t input = glb_put_accessor(file, begin, count, 1, GLB_OF_ANIMATION, box);
     begin = file->data.size;

@@ -49,6 +49,7 @@ void glb_sort_triangles(GlbFile *f, uint32_t *corners, size_t count, uint32_t ve
     f->scratch.size = 0;
     uint8_t *room = sink_room(&f->scratch, most + 64);
     if (!room) return;
+
     arena.next = room + (64 - (uintptr_t)room % 64);
     arena.left = most;
     meshopt_setAllocator(arena_take, arena_give);
@@ -68,6 +69,7 @@ static void round_to_grid(float *values, size_t count, int finest, uint8_t *stre
 
     int exponent = finest;
     while (ldexpf(largest, -exponent) > GRID_LARGEST) exponent++;
+
     for (size_t i = 0; i < count; i++) {
         const int32_t multiple = (int32_t)lrintf(ldexpf(values[i], -exponent));
         const uint32_t bits = ((uint32_t)multiple & 0xffffff) | (uint32_t)exponent << 24;
@@ -90,6 +92,7 @@ uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, Glb
     f->scratch.size = 0;
     sink_zeros(&f->scratch, (size_t)count * stride);
     if (f->scratch.failed) return f->view_count;
+
     uint8_t *stream = f->scratch.bytes;
     if (corners) memcpy(stream, values, 4 * total);
     else if (rounding.kind == GLB_GRID) round_to_grid(values, total, rounding.bits, stream);
@@ -106,10 +109,12 @@ uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, Glb
     meshopt_encodeVertexVersion(0);
     meshopt_encodeIndexVersion(1);
     f->data.size = begin;
+
     const size_t bound = corners ? meshopt_encodeIndexBufferBound(count, rounding.vertices)
                                  : meshopt_encodeVertexBufferBound(count, stride);
     uint8_t *room = sink_room(&f->data, bound);
     if (!room) return f->view_count;
+
     const size_t size = corners ? meshopt_encodeIndexBuffer(room, bound, (const unsigned *)(void *)stream, count)
                                 : meshopt_encodeVertexBuffer(room, bound, stream, count, stride);
     f->data.size = begin + size;
@@ -118,6 +123,7 @@ uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, Glb
     sink_text(&f->views, "%s{\"buffer\":1,\"byteOffset\":%zu,\"byteLength\":%zu", comma, f->unpacked,
               (size_t)count * stride);
     if (!corners) sink_text(&f->views, ",\"byteStride\":%u", (unsigned)stride);
+
     sink_text(&f->views, ",\"target\":%d,\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":%zu,",
               corners ? 34963 : 34962, begin);
     sink_text(&f->views, "\"byteLength\":%zu,\"byteStride\":%u,\"count\":%u,\"mode\":\"%s\"%s}}}", size,

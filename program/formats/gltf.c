@@ -27,11 +27,13 @@ static SingeResult gltf_bad(const Gltf *gltf, const char *list, uint32_t number,
 SingeResult gltf_index(const Gltf *gltf, int64_t object, const char *key, uint32_t count, int64_t *index) {
     int64_t value = json_member(&gltf->json, object, key);
     uint64_t number;
+
     *index = JSON_NONE;
     if (value == JSON_NONE) return SINGE_OK;
     if (!json_count(&gltf->json, value, &number) || number >= count)
         return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "byte %u of its JSON: \"%s\" is not a number below %u",
                            gltf->json.values[value].begin, key, count);
+
     *index = (int64_t)number;
     return SINGE_OK;
 }
@@ -82,10 +84,12 @@ static SingeResult load_file(Gltf *gltf, uint32_t number, const uint8_t *at, con
     if (good) path[length] = 0;
     if (!good || !path_is_inside(gltf->name, path))
         return gltf_bad(gltf, "buffers", number, "it may refer only to files in its folder or below");
+
     SingeError error = {0};
     SingeResult result = file_read_max(path, BUFFERS_LIMIT - gltf->loaded_size, gltf->allocator, bytes, &error);
     if (result == SINGE_ERROR_MEMORY) return refuse_memory(gltf->error, "gltf", gltf->name);
     if (result == SINGE_ERROR_LIMIT) return gltf_bad(gltf, "buffers", number, "buffers exceed 1 GiB");
+
     return result ? gltf_bad(gltf, "buffers", number, "the file that it refers to cannot be read") : SINGE_OK;
 }
 
@@ -106,6 +110,7 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
         bool inside = end - at > 5 && memcmp(at, "data:", 5) == 0;
         if (inside && (!comma || comma - at < 7 || memcmp(comma - 7, ";base64", 7) != 0))
             return gltf_bad(gltf, "buffers", number, "its data is not base64");
+
         if (inside) {
             at = comma + 1;
             static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -122,6 +127,7 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
                 int digit = place ? (int)(place - digits) : *at == '-' ? 62 : *at == '_' ? 63 : -1;
                 if (digit < 0 && *at == '\\' && at + 1 < end && at[1] == '/') continue; // an escaped / of JSON
                 if (digit < 0) return gltf_bad(gltf, "buffers", number, "its data is not base64");
+
                 bits = bits << 6 | (uint32_t)digit;
                 held += 6;
                 if (held >= 8) {
@@ -132,6 +138,7 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
 
             loaded->size = done;
         } else TRY(load_file(gltf, number, at, end, loaded));
+
         gltf->loaded_size += loaded->size;
         if (!inside) gltf->beside_size += loaded->size;
     }
@@ -186,6 +193,7 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
     good = good && take_count(gltf, held, "byteLength", 0, buffer_size - begin, &length) && offset <= length;
     if (!good || !take_count(gltf, held, "byteStride", 0, 252, &slice.stride))
         return gltf_bad(gltf, "bufferViews", (uint32_t)view, "it goes past the end of its buffer");
+
     slice.bytes = from + begin + offset;
     slice.size = length - offset;
 
@@ -193,6 +201,7 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
     if (step < size) return gltf_bad(gltf, "accessors", number, "its elements overlap");
     if (count == 0 || slice.size < size || (slice.size - size) / step < count - 1)
         return gltf_bad(gltf, "accessors", number, "it has no elements, or goes past the end of its view");
+
     *bytes = slice.bytes;
     *stride = (uint32_t)step;
     return SINGE_OK;
@@ -202,17 +211,20 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
 static SingeResult find_accessor(Gltf *gltf, int64_t number) {
     static const char *const widths[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
     if (number < 0 || gltf->read[number].width) return SINGE_OK;
+
     int64_t object = gltf->accessors[number], sparse = json_member(&gltf->json, object, "sparse");
     uint64_t type, count;
     GltfAccessor accessor = {0};
 
     for (uint32_t i = 0; i < 4; i++)
         if (json_is(&gltf->json, json_member(&gltf->json, object, "type"), widths[i])) accessor.width = i + 1;
+
     int64_t normalized = json_member(&gltf->json, object, "normalized");
     accessor.normalized = normalized != JSON_NONE && gltf->json.text[gltf->json.values[normalized].begin] == 't';
     if (!take_count(gltf, object, "componentType", 0, 5126, &type) || !gltf_type_size((uint32_t)type) ||
         !accessor.width || !take_count(gltf, object, "count", 0, MESH_COUNT_LIMIT, &count))
         return gltf_bad(gltf, "accessors", (uint32_t)number, "it has no type or count");
+
     accessor.type = (uint32_t)type;
     accessor.count = (uint32_t)count;
 
@@ -224,15 +236,18 @@ static SingeResult find_accessor(Gltf *gltf, int64_t number) {
                 values = json_member(&gltf->json, sparse, "values");
         uint64_t sparse_count, index_type;
         uint32_t step;
+
         if (!take_count(gltf, sparse, "count", 0, accessor.count, &sparse_count) || sparse_count == 0 ||
             !take_count(gltf, indices, "componentType", 0, 5125, &index_type) ||
             (index_type != 5121 && index_type != 5123 && index_type != 5125))
             return gltf_bad(gltf, "accessors", (uint32_t)number, "its sparse elements have no count or type");
+
         accessor.sparse_type = (uint32_t)index_type;
         TRY(find_elements(gltf, indices, (uint32_t)number, sparse_count, gltf_type_size((uint32_t)index_type),
                           &accessor.sparse_index, &step));
         if (step != gltf_type_size((uint32_t)index_type))
             return gltf_bad(gltf, "accessors", (uint32_t)number, "sparse indices must be contiguous");
+
         TRY(find_elements(gltf, values, (uint32_t)number, sparse_count, size, &accessor.sparse_bytes, &step));
         if (step != size) return gltf_bad(gltf, "accessors", (uint32_t)number, "sparse elements must be contiguous");
         accessor.sparse_count = (uint32_t)sparse_count;
@@ -260,6 +275,7 @@ static SingeResult read_meshes(Gltf *gltf) {
     for (uint32_t m = 0; m < gltf->mesh_count; m++) {
         int64_t list = json_member(&gltf->json, gltf->meshes[m], "primitives"), at = list + 1;
         uint32_t count = json_items(&gltf->json, list);
+
         gltf->ranges[m] = (GltfMesh){(uint32_t)gltf->primitive_count, 0};
         for (uint32_t i = 0; i < count; i++, at = gltf->json.values[at].after) {
             GltfPrimitive primitive = {.number = i, .mesh = m};
@@ -267,10 +283,12 @@ static SingeResult read_meshes(Gltf *gltf) {
             int64_t attributes = json_member(&gltf->json, at, "attributes");
             int64_t extensions = json_member(&gltf->json, at, "extensions");
             uint64_t mode;
+
             if (json_member(&gltf->json, extensions, "KHR_draco_mesh_compression") != JSON_NONE)
                 return gltf_bad(gltf, "meshes", primitive.mesh, "compressed data is not supported");
             if (!take_count(gltf, at, "mode", 4, 6, &mode))
                 return gltf_bad(gltf, "meshes", primitive.mesh, "a primitive's mode is not known");
+
             primitive.mode = (uint32_t)mode;
             TRY(gltf_index(gltf, attributes, "POSITION", gltf->accessor_count, &primitive.position));
             TRY(gltf_index(gltf, attributes, "TEXCOORD_0", gltf->accessor_count, &primitive.uv));
@@ -284,6 +302,7 @@ static SingeResult read_meshes(Gltf *gltf) {
             const GltfAccessor *position = &gltf->read[primitive.position],
                                *uv = primitive.uv < 0 ? NULL : &gltf->read[primitive.uv];
             const GltfAccessor *indices = primitive.indices < 0 ? NULL : &gltf->read[primitive.indices];
+
             if (position->width != 3) return gltf_bad(gltf, "meshes", primitive.mesh, "positions are not VEC3");
             if (uv && (uv->width != 2 || uv->count < position->count))
                 return gltf_bad(gltf, "meshes", primitive.mesh,
@@ -309,6 +328,7 @@ static SingeResult read_meshes(Gltf *gltf) {
 static SingeResult find_chunks(Gltf *gltf, const uint8_t *bytes, size_t size, const uint8_t **json, size_t *json_size) {
     if (size < 20 || load_u32_little(bytes + 8) > size || load_u32_little(bytes + 8) < 20)
         return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "byte 8: the file is shorter than its header states");
+
     const uint8_t *end = bytes + load_u32_little(bytes + 8), *at = bytes + 12;
     size_t length = load_u32_little(at);
     if (load_u32_little(at + 4) != 0x4e4f534a || length > (size_t)(end - at) - 8)
@@ -369,6 +389,7 @@ SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, Singe
     SingeAllocator a = gltf.allocator;
     for (uint32_t i = 0; gltf.loaded && i < gltf.buffer_count; i++)
         if (gltf.loaded[i].data) bytes_free(&gltf.loaded[i]);
+
     store_free(a, gltf.loaded, gltf.buffer_count, sizeof *gltf.loaded);
     store_free(a, gltf.read, gltf.accessor_count, sizeof *gltf.read);
     store_free(a, gltf.ranges, gltf.mesh_count, sizeof *gltf.ranges);

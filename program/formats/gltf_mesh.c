@@ -53,6 +53,7 @@ static bool take_numbers(const Json *json, int64_t object, const char *key, uint
     int64_t list = json_member(json, object, key), at = list + 1;
     if (list == JSON_NONE) return true;
     if (json_items(json, list) != count) return false;
+
     for (uint32_t i = 0; i < count; i++, at = json->values[at].after) {
         double number;
         if (!json_number(json, at, &number) || !(fabs(number) < 3e38)) return false;
@@ -84,6 +85,7 @@ static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at
                          {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0},
                          {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), 0}}};
     Transform scaled = {{{scale[0], 0, 0, 0}, {0, scale[1], 0, 0}, {0, 0, scale[2], 0}}};
+
     *at = chain(&moved, &turned);
     *at = chain(at, &scaled);
     return SINGE_OK;
@@ -113,6 +115,7 @@ static SingeResult walk_nodes(Walk *walk, int64_t roots) {
 
         const uint32_t node = (uint32_t)number;
         int64_t object = gltf->nodes[node], mesh, extensions = json_member(&gltf->json, object, "extensions");
+
         if (walk->seen[node])
             return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: it contains itself, or has two parents", node);
         if (depth > NODE_DEPTH)
@@ -136,6 +139,7 @@ static SingeResult walk_nodes(Walk *walk, int64_t roots) {
                 if (primitive->mode == 4 && corners % 3)
                     return gltf_refuse(gltf, SINGE_ERROR_MESH, "meshes[%u]: primitive %u: triangles have %llu corners",
                                        primitive->mesh, primitive->number, (unsigned long long)corners);
+
                 if (primitive->mode == 4) faces = corners / 3;
                 else if (primitive->mode > 4) faces = corners > 2 ? corners - 2 : 0;
                 walk->vertices += vertices;
@@ -143,6 +147,7 @@ static SingeResult walk_nodes(Walk *walk, int64_t roots) {
                 walk->corners += 3 * faces;
                 walk->uv = walk->uv || primitive->uv >= 0;
                 walk->primitives++;
+
                 if (12 * walk->vertices + 12 * walk->corners + 100 * walk->primitives > walk->max)
                     return gltf_refuse(gltf, SINGE_ERROR_LIMIT,
                                        "too large: its nodes repeat meshes, which come to more than %llu MB",
@@ -192,6 +197,7 @@ static float load_value(const uint8_t *p, uint32_t type, bool normalized) {
     case 5125: return (float)bits;
     default: memcpy(&value, &bits, sizeof value); return value;
     }
+
     return normalized ? fmaxf(value / max, -1) : value;
 }
 
@@ -254,8 +260,10 @@ static SingeResult fill_primitive(Fill *fill, const GltfPrimitive *primitive, co
                     fill->gltf, SINGE_ERROR_MESH,
                     "meshes[%u]: primitive %u: index %llu (from 0): vertex %u is out of range: there are %u",
                     primitive->mesh, primitive->number, (unsigned long long)at_corner, vertex, position->count);
+
             mesh->corners[i] = mesh->vertex_count + vertex;
             if (!mesh->uv) continue;
+
             const float none[2] = {0, 1}, *uv = primitive->uv < 0 ? none : fill->uv + 2 * (size_t)vertex;
             float *to = mesh->uv + 2 * (size_t)i;
             to[0] = uv[0], to[1] = 1 - uv[1]; // glTF's v runs down
@@ -278,6 +286,7 @@ static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
 
     Polygons made = {.allocator = a};
     Fill fill = {.gltf = gltf, .mesh = &made};
+
     made.positions = store_new(a, walk->vertices, 3 * sizeof *made.positions);
     made.first = store_new(a, walk->faces + 1, sizeof *made.first);
     made.corners = store_new(a, walk->corners, sizeof *made.corners);
@@ -321,6 +330,7 @@ SingeResult gltf_make(Gltf *gltf, uint64_t max, Polygons *polygons) {
 
     const bool room = walk.levels && walk.seen;
     if (room) memset(walk.seen, 0, gltf->node_count);
+
     SingeResult result = room ? walk_nodes(&walk, json_member(&gltf->json, at, "nodes"))
                               : refuse_memory(gltf->error, "gltf", gltf->name);
     if (!result) result = make_polygons(&walk, polygons);

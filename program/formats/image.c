@@ -98,6 +98,7 @@ static bool png_decode(PngJob *job) {
 
     int colour = png_get_color_type(png, job->info);
     bool clear = (colour & PNG_COLOR_MASK_ALPHA) || png_get_valid(png, job->info, PNG_INFO_tRNS);
+
     png_set_expand(png);
     png_set_scale_16(png);
     png_set_gray_to_rgb(png);
@@ -211,6 +212,7 @@ SingeResult png_write(const char *path, int width, int height, const uint8_t *rg
     if (width < 1 || height < 1 || width > IMAGE_SIDE_LIMIT || height > IMAGE_SIDE_LIMIT)
         return refuse(error, SINGE_ERROR_ARGUMENT, "png", -1, "%s: a picture of %d by %d pixels cannot be written",
                       short_name(path), width, height);
+
     PngJob job;
     memset(&job, 0, sizeof job);
     job.width = width;
@@ -255,6 +257,7 @@ static void jpeg_fail_with(JpegJob *job, const char *message) {
 // Warnings after which pixels are invented count as errors; the others are harmless.
 static void jpeg_notice(j_common_ptr jpeg, int level) {
     if (level >= 0) return;
+
     switch (jpeg->err->msg_code) {
     case JWRN_JPEG_EOF: jpeg_fail_with((JpegJob *)jpeg->err, "the file ends too soon"); break;
     case JWRN_HIT_MARKER:
@@ -277,6 +280,7 @@ static void jpeg_watch(j_common_ptr jpeg) {
 static bool jpeg_decode(JpegJob *job, const uint8_t *bytes, size_t size) {
     struct jpeg_decompress_struct *jpeg = &job->jpeg;
     if (setjmp(job->jump)) return false;
+
     jpeg_create_decompress(jpeg);
     job->created = true;
     jpeg->progress = &job->progress;
@@ -407,6 +411,7 @@ SingeResult image_luminance(const Image *image, SingeAllocator allocator, SingeT
     size_t pixels = (size_t)image->width * (size_t)image->height;
     float *values = store_new(allocator, pixels, sizeof *values);
     if (!values) return refuse(error, SINGE_ERROR_MEMORY, "image", -1, "out of memory for a picture's luminance");
+
     const uint8_t *p = image->rgb;
     for (size_t i = 0; i < pixels; i++, p += 3)
         values[i] = (float)(2126 * p[0] + 7152 * p[1] + 722 * p[2]) / 2550000.0f;

@@ -208,6 +208,7 @@ static SingeResult isolate_look(Child *child) {
     child->looked = now;
     child->waited += passed < 1 ? passed : 1;
     if (child->waited > 4 * child->limits.seconds) return refuse_time(child);
+
     size_t room = child->limits.memory;
     if (ISOLATE_SANITIZED) room = 2 * room + (300u << 20); // red zones, shadow, quarantine
     size_t memory = memory_of(child->process);
@@ -231,6 +232,7 @@ static SingeResult isolate_judge(const Child *child, Bytes *answer, int status) 
     if (WEXITSTATUS(status) != 0 || ending.magic != ENDING_MAGIC)
         return refuse(child->error, SINGE_ERROR_FORMAT, "file", -1, "%s: cannot be read: its reader stopped (exit %d)",
                       short_name(child->name), WEXITSTATUS(status));
+
     answer->size -= sizeof ending;
     if (ending.error.code == SINGE_OK) return SINGE_OK;
     if (ending.no_memory) return refuse_size(child);
@@ -259,6 +261,7 @@ static SingeResult wait_for(Child *child, Bytes *answer) {
                             short_name(child->name));
         else result = isolate_look(child);
         if (result || count <= 0) continue;
+
         if (answer->size > child->limits.memory) result = refuse_size(child);
         else if (!store_grow(answer->allocator, &answer->data, &capacity, answer->size + (1u << 16) + 1, 1))
             result = refuse_memory(child->error, "file", child->name);

@@ -39,10 +39,12 @@ static SingeResult json_add(Parser *parser, JsonKind kind, const uint8_t *begin,
 static SingeResult take_string(Parser *parser) {
     if (parser->at == parser->end || *parser->at != '"') return json_bad(parser, "a string is missing");
     const uint8_t *begin = ++parser->at;
+
     for (; parser->at < parser->end && *parser->at != '"'; parser->at++) {
         if (*parser->at < ' ') return json_bad(parser, "a string has a control character");
         if (*parser->at == '\\' && parser->at + 1 < parser->end) parser->at++;
     }
+
     if (parser->at == parser->end) return json_bad(parser, "unterminated string");
     TRY(json_add(parser, JSON_STRING, begin, parser->at));
     parser->at++;
@@ -53,6 +55,7 @@ static SingeResult take_string(Parser *parser) {
 static SingeResult take_value(Parser *parser) {
     skip_blanks(parser);
     if (parser->at == parser->end) return json_bad(parser, "unexpected end of the text");
+
     uint8_t c = *parser->at;
     if (c == '"') return take_string(parser);
 

@@ -42,11 +42,13 @@ SingeResult polygons_read(const char *name, const uint8_t *bytes, size_t size, S
 
     if (mesh_name_is_stage(name))
         return refuse(error, SINGE_ERROR_FORMAT, "mesh", -1, "%s: " MESH_STAGE_HELP, short_name(name));
+
     char known[96] = "";
     for (size_t i = 0; i < FORMATS; i++) {
         if (i) strcat(known, ", ");
         strcat(known, mesh_formats[i].ending);
     }
+
     return refuse(error, SINGE_ERROR_FORMAT, "mesh", -1, "%s: unknown mesh format; the name must end in one of %s",
                   short_name(name), known);
 }

@@ -51,6 +51,7 @@ static NumberStatus decimal_read(const uint8_t **at, const uint8_t *end, Decimal
         any = true;
         behind += point;
         if (digit == 0 && !number->digits) continue;
+
         if (!number->digits) number->digits = p;
         count++;
         if (kept < FAST_DIGITS) {
@@ -82,6 +83,7 @@ static NumberStatus decimal_read(const uint8_t **at, const uint8_t *end, Decimal
         bool negative = ++p < end && *p == '-';
         if (p < end && (*p == '-' || *p == '+')) p++;
         if (p == end || !is_digit(*p)) return NUMBER_JUNK;
+
         int exponent = 0;
         for (; p < end && is_digit(*p); p++)
             if (exponent < EXPONENT_LIMIT) exponent = 10 * exponent + (*p - '0');

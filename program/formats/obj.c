@@ -71,6 +71,7 @@ static SingeResult obj_numbers(Obj *obj, int min, int max, int kept, float *valu
     for (obj_skip_blanks(obj); !obj_at_end(obj); obj_skip_blanks(obj), count++) {
         float value;
         if (count == max) return obj_refuse(obj, SINGE_ERROR_FORMAT, expected);
+
         const uint8_t *word = obj->text.at;
         NumberStatus status = number_float(&obj->text.at, obj->text.end, &value);
         if (status != NUMBER_OK || !obj_word_ended(obj)) {
@@ -92,6 +93,7 @@ static SingeResult obj_index(Obj *obj, size_t so_far, const char *what, int32_t 
     const uint8_t *word = obj->text.at;
     NumberStatus status = number_integer(&obj->text.at, obj->text.end, &value);
     bool ended = status == NUMBER_OK && (obj_word_ended(obj) || *obj->text.at == '/');
+
     obj->text.at = word;
     if (status == NUMBER_JUNK || (status == NUMBER_OK && !ended)) return obj_refuse_word(obj, "is not an index");
     if (status == NUMBER_OK && value == 0) return obj_refuse_word(obj, "has index 0; OBJ counts from 1");
@@ -111,6 +113,7 @@ static SingeResult obj_face(Obj *obj) {
     if (obj->face_count >= MESH_COUNT_LIMIT) return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many faces");
     if (!store_grow(obj->allocator, &obj->faces, &obj->face_capacity, obj->face_count + 1, sizeof *obj->faces))
         return refuse_memory(obj->error, "obj", obj->name);
+
     size_t first = obj->corner_count;
     Text *text = &obj->text;
     int64_t line = text->line;
@@ -167,6 +170,7 @@ static SingeResult obj_line(Obj *obj) {
         size_t i = 0;
         while (i < sizeof ignored / sizeof *ignored && !text_word_is(word, end, ignored[i])) i++;
         if (i == sizeof ignored / sizeof *ignored) return obj_refuse_word(obj, "is not a directive that Singe knows");
+
         for (; !text_at_line_end(&obj->text); obj->text.at++) {
             size_t length = obj_continuation(obj->text.at, obj->text.end);
             if (!length) continue;
@@ -209,6 +213,7 @@ static SingeResult obj_finish(Obj *obj, Polygons *polygons) {
     SingeAllocator allocator = obj->allocator;
     bool uv = false;
     for (size_t i = 0; i < obj->corner_count && !uv; i++) uv = obj->corners[i].uv >= 0;
+
     polygons->allocator = allocator;
     polygons->face_count = (uint32_t)obj->face_count;
     polygons->corner_count = (uint32_t)obj->corner_count;
@@ -230,6 +235,7 @@ static SingeResult obj_finish(Obj *obj, Polygons *polygons) {
                               "%s:%u: corner %d is out of range: there are %llu vertices, %llu texture coordinates",
                               short_name(obj->name), obj->faces[f].line, (int)(i - obj->faces[f].first) + 1,
                               (unsigned long long)obj->position_count, (unsigned long long)obj->uv_count);
+
             polygons->corners[i] = (uint32_t)corner.vertex;
             if (!polygons->uv) continue;
             if (corner.uv < 0)
@@ -253,10 +259,12 @@ SingeResult obj_read(const char *name, const uint8_t *bytes, size_t size, SingeA
                      SingeError *error) {
     memset(polygons, 0, sizeof *polygons);
     if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "obj", 1, "%s: is empty", short_name(name));
+
     Obj obj = {.text = {bytes, bytes + size, 1}, .begin = bytes, .name = name, .allocator = allocator, .error = error};
     SingeResult result = SINGE_OK;
     Text *text = &obj.text;
     if (size >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0) text->at += 3;
+
     while (text->at < text->end && !result) {
         if (text->line >= UINT32_MAX) {
             result = obj_refuse(&obj, SINGE_ERROR_LIMIT, "too many lines");

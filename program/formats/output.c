@@ -67,6 +67,7 @@ SingeResult sheet_parts_make(SheetParts *p, const SingeSurface *s, uint32_t shee
     p->local = store_new(a, s->vertex_count, 4);
     if (!p->vertex_first || !p->triangle_first || !p->vertices || !p->triangles || !p->local)
         return refuse_memory(error, "output", path);
+
     sort_by_sheet(p, NULL, s->vertex_count, p->vertex_first, p->vertices);
     sort_by_sheet(p, (const uint32_t(*)[3])s->triangles, s->triangle_count, p->triangle_first, p->triangles);
 

@@ -26,6 +26,7 @@ static SingeResult ply_value(Ply *ply, PlyType type, double *value) {
         text_skip_blanks(text);
         const uint8_t *word = text->at, *end = text_word_end(text);
         if (word == end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has too few values");
+
         float single = 0;
         NumberStatus status = number_float(&text->at, end, &single);
         *value = single;
@@ -51,6 +52,7 @@ static SingeResult ply_value(Ply *ply, PlyType type, double *value) {
 
     size_t size = ply_type_size(type);
     if ((size_t)(ply->text.end - ply->text.at) < size) return ply_ended(ply);
+
     uint64_t bits = 0;
     for (size_t i = 0; i < size; i++)
         bits |= (uint64_t)ply->text.at[i] << 8 * (ply->header.format == PLY_BIG ? size - 1 - i : i);
@@ -68,6 +70,7 @@ static SingeResult ply_value(Ply *ply, PlyType type, double *value) {
     case PLY_FLOAT64: memcpy(value, &bits, sizeof *value); break;
     default: *value = (double)bits; break;
     }
+
     if (!isfinite(*value)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a value is not a finite number");
     ply->text.at += size;
     return SINGE_OK;
@@ -167,6 +170,7 @@ static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygo
     uint32_t count = 0;
     for (size_t i = 0; i < element->property_count; i++) count += ply_is_attribute(&properties[i], &targets[i]);
     if (count == 0) return SINGE_OK;
+
     mesh->attributes = store_new(ply->allocator, count, sizeof *mesh->attributes);
     if (!mesh->attributes) return refuse_memory(ply->error, "ply", ply->name);
     memset(mesh->attributes, 0, count * sizeof *mesh->attributes);
@@ -200,10 +204,12 @@ static SingeResult ply_read_vertex(Ply *ply, const PlyElement *element, const Pl
     for (size_t i = 0; i < element->property_count; i++) {
         const PlyProperty *property = &ply->header.properties[element->first_property + i];
         double value;
+
         if (!targets[i].values) {
             TRY(ply_skip_property(ply, property));
             continue;
         }
+
         TRY(ply_value(ply, property->type, &value));
         if (fabs(value) > 3.4028234663852886e38)
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "a value is too large for a float");
@@ -241,6 +247,7 @@ static SingeResult ply_read_face(Ply *ply, const PlyElement *element, PlyFaces *
             if (count < 3)
                 return ply_refuse(ply, SINGE_ERROR_MESH, "face has %llu corner%s; it needs three",
                                   (unsigned long long)count, count == 1 ? "" : "s");
+
             for (; count; count--) {
                 double value;
                 TRY(ply_value(ply, faces->corners->type, &value));
@@ -295,6 +302,7 @@ static SingeResult ply_read_faces(Ply *ply, const PlyElement *element, Polygons 
 
     SingeResult result = SINGE_OK;
     for (uint32_t f = 0; f < element->count && !result; f++) result = ply_read_face(ply, element, &faces, f);
+
     bool trimmed = result || (store_trim(ply->allocator, &mesh->corners, &faces.corner_capacity, mesh->corner_count,
                                          sizeof *mesh->corners) &&
                               (!faces.uvs || store_trim(ply->allocator, &mesh->uv, &faces.uv_capacity,
@@ -332,6 +340,7 @@ static SingeResult ply_read_body(Ply *ply, Polygons *mesh, float **uv) {
             store_free(ply->allocator, targets, element->property_count, sizeof *targets);
             if (result) return result;
         } else if (element == faces) TRY(ply_read_faces(ply, element, mesh));
+
         for (uint32_t row = 0; element != vertices && element != faces && row < element->count; row++) {
             if (element->property_count == 0) break;
             TRY(ply_begin_row(ply));
@@ -356,6 +365,7 @@ SingeResult ply_read(const char *name, const uint8_t *bytes, size_t size, SingeA
     memset(mesh, 0, sizeof *mesh);
     mesh->allocator = allocator;
     if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "ply", 1, "%s: is empty", short_name(name));
+
     Ply ply = {.name = name, .begin = bytes, .text = {bytes, bytes + size, 1}, .allocator = allocator, .error = error};
     SingeResult result = ply_read_header(&ply);
     float *uv = NULL; // of the vertices

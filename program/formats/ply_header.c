@@ -31,6 +31,7 @@ SingeResult ply_refuse(const Ply *ply, SingeResult code, const char *format, ...
     if (ply->text.line > 0)
         return refuse(ply->error, code, "ply", ply->text.line, "%s:%lld: %s", short_name(ply->name),
                       (long long)ply->text.line, what);
+
     return refuse(ply->error, code, "ply", byte, "%s: byte %lld: %s", short_name(ply->name), byte, what);
 }
 
@@ -89,6 +90,7 @@ static SingeResult ply_header_element(Ply *ply) {
     for (size_t i = 0; i < header->element_count; i++)
         if (word_same(name, header->elements[i].name, header->elements[i].name_end))
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "an element is declared twice");
+
     Word number = ply_word(ply);
     const uint8_t *at = number.begin;
     int64_t count;
@@ -100,6 +102,7 @@ static SingeResult ply_header_element(Ply *ply) {
     if (!store_grow(ply->allocator, &header->elements, &header->element_capacity, header->element_count + 1,
                     sizeof(PlyElement)))
         return refuse_memory(ply->error, "ply", ply->name);
+
     header->elements[header->element_count++] =
         (PlyElement){name.begin, name.end, (uint32_t)count, header->property_count, 0};
     return SINGE_OK;
@@ -108,6 +111,7 @@ static SingeResult ply_header_element(Ply *ply) {
 static SingeResult ply_header_property(Ply *ply) {
     PlyHeader *header = &ply->header;
     if (header->element_count == 0) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a property before any element");
+
     PlyElement *element = &header->elements[header->element_count - 1];
     PlyProperty property = {0};
     Word word = ply_word(ply), name;
@@ -133,6 +137,7 @@ static SingeResult ply_header_property(Ply *ply) {
     if (!store_grow(ply->allocator, &header->properties, &header->property_capacity, header->property_count + 1,
                     sizeof property))
         return refuse_memory(ply->error, "ply", ply->name);
+
     header->properties[header->property_count++] = property;
     element->property_count++;
     return SINGE_OK;
@@ -190,17 +195,20 @@ SingeResult ply_read_header(Ply *ply) {
             static const char *const formats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
             Word name = ply_word(ply), version = ply_word(ply);
             if (known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the format is declared twice");
+
             for (int i = 0; i < 3; i++)
                 if (word_is(name, formats[i])) {
                     ply->header.format = (PlyFormat)i;
                     known = true;
                 }
+
             if (!known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a PLY format");
             if (!word_is(version, "1.0"))
                 return ply_refuse(ply, SINGE_ERROR_FORMAT, "only PLY version 1.0 is supported");
         } else if (word_is(word, "element")) TRY(ply_header_element(ply));
         else if (word_is(word, "property")) TRY(ply_header_property(ply));
         else if (!ended) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a line of a PLY header");
+
         text_skip_blanks(&ply->text);
         if (!text_at_line_end(&ply->text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "too many words on the line");
         if (ply->text.at == ply->text.end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header is truncated");

@@ -71,6 +71,7 @@ static bool surface_arrays(SingeSurface *surface) {
         memcpy((uint8_t *)surface + columns[i].array, &array, sizeof array);
         if (!array) return false;
     }
+
     surface->triangles = store_new(surface->allocator, surface->triangle_capacity, sizeof *surface->triangles);
     return surface->triangles;
 }
@@ -106,6 +107,7 @@ SingeResult ply_write_surface(const char *path, const SingeSurface *surface, dou
 
     uint64_t max = HEADER_LIMIT + surface_data_size(surface);
     if (max > SIZE_MAX / 2) return refuse_memory(error, "cache", path);
+
     uint8_t *bytes = store_new(surface->allocator, (size_t)max, 1);
     if (!bytes) return refuse_memory(error, "cache", path);
 
@@ -188,6 +190,7 @@ static SingeResult surface_check_header(const Ply *ply, SingeSurface *surface, d
     if (actual != expected)
         return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file has %llu bytes of data where its counts need %llu",
                           (unsigned long long)actual, (unsigned long long)expected);
+
     return SINGE_OK;
 }
 
@@ -209,6 +212,7 @@ static SingeResult surface_unpack(Ply *ply, SingeSurface *surface) {
     for (uint32_t f = 0; f < surface->triangle_count; f++) {
         if (*ply->text.at != 3)
             return ply_refuse(ply, SINGE_ERROR_MESH, "face %u has %d corners where a cache has 3", f, *ply->text.at);
+
         ply->text.at++;
         for (int k = 0; k < 3; k++, ply->text.at += 4) {
             uint32_t index = load_u32_little(ply->text.at);
@@ -225,6 +229,7 @@ SingeResult ply_read_surface(const char *name, const uint8_t *bytes, size_t size
                              SingeSurface *surface, double *time, SingeError *error) {
     memset(surface, 0, sizeof *surface);
     if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "ply", 1, "%s: is empty", short_name(name));
+
     Ply ply = {.name = name, .begin = bytes, .text = {bytes, bytes + size, 1}, .allocator = allocator, .error = error};
     double seconds = 0;
     SingeResult result = ply_read_header(&ply);

@@ -50,6 +50,7 @@ static SingeResult stl_read_bytes(const char *name, const uint8_t *bytes, size_t
     if (size < HEAD)
         return refuse(error, SINGE_ERROR_FORMAT, "stl", 0, "%s: not an STL file: %llu bytes are too few",
                       short_name(name), (unsigned long long)size);
+
     uint64_t count = load_u32_little(bytes + 80), needed = HEAD + TRIANGLE * count;
     if (size != needed)
         return refuse(error, SINGE_ERROR_FORMAT, "stl", 80,
@@ -113,6 +114,7 @@ static SingeResult stl_solids(Stl *stl, Polygons *mesh, size_t *vertices, size_t
             TRY(stl_expect(stl, "normal", NULL));
             text_next_line(&stl->text); // the normal is often not a number
             TRY(stl_expect(stl, "outer", "loop"));
+
             for (size_t v = 0; v < 3; v++) {
                 TRY(stl_expect(stl, "vertex", NULL));
                 for (size_t i = 0; i < 3; i++) {

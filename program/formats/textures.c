@@ -34,6 +34,7 @@ static bool canvas_make(Canvas *c, SingeAllocator a, int size) {
     c->nearest = store_new(a, c->pixels, 4);
     c->queue = store_new(a, c->pixels, 4);
     if (!c->values || !c->covered || !c->chart || !c->nearest || !c->queue) return false;
+
     memset(c->values, 0, c->pixels * TEXTURE_CHANNELS * sizeof(float));
     memset(c->covered, 0, c->pixels), memset(c->chart, 0, c->pixels);
     return true;
@@ -81,6 +82,7 @@ static void canvas_draw(Canvas *canvas, const OutputScene *scene, const OutputFr
         const uint32_t *v = frame->surface->triangles[t];
         float uv[3][2];
         if (frame->surface->sheet[v[0]] != (int32_t)sheet) continue;
+
         for (int k = 0; k < 3; k++) {
             memcpy(uv[k], frame->surface->uv[v[k]], sizeof uv[k]);
             canvas->corners[k][0] = frame->surface->temperature[v[k]];

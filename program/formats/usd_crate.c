@@ -17,12 +17,14 @@ static uint32_t word_number(Crate *crate, const char *text) {
     for (size_t i = 0; i < crate->word_count; i++)
         if (strcmp((const char *)crate->words.bytes + crate->offsets[i], text) == 0) return (uint32_t)i;
     if (!grow(crate, &crate->offsets, &crate->word_capacity, crate->word_count, sizeof *crate->offsets)) return 0;
+
     crate->offsets[crate->word_count] = (uint32_t)crate->words.size;
     sink_bytes(&crate->words, text, strlen(text) + 1);
     if (crate->words.failed) {
         crate->sink.failed = true;
         return 0;
     }
+
     return (uint32_t)crate->word_count++;
 }
 
@@ -56,6 +58,7 @@ static void put_packed(Crate *crate, Sink *sink, const uint8_t *bytes, size_t si
     sink_u64(sink, 0);
     uint8_t *room = sink_room(sink, 1 + lz4_size_max(size));
     if (!room) return;
+
     *room = 0;
     const size_t length = 1 + lz4_pack(bytes, size, room + 1);
     sink->size = offset + 8 + length;
@@ -135,6 +138,7 @@ CrateValue crate_token_list(Crate *crate, const char *const *texts, size_t count
 CrateValue crate_ints(Crate *crate, const int32_t *values, size_t count) {
     CrateValue value = (uint64_t)CRATE_INT << 48 | flag_array;
     if (!count) return value;
+
     sink_align(&crate->sink, 8);
     value |= crate->sink.size;
     sink_u64(&crate->sink, count);
@@ -142,6 +146,7 @@ CrateValue crate_ints(Crate *crate, const int32_t *values, size_t count) {
         sink_words(&crate->sink, values, count);
         return value;
     }
+
     put_ints(crate, &crate->sink, values, count);
     return value | flag_packed;
 }
@@ -161,6 +166,7 @@ static bool put_table(Crate *crate, const float *values, size_t count) {
     const size_t max = count - count / 3;
     int log = 5;
     while ((size_t)1 << log < 2 * max) log++;
+
     const size_t size = (size_t)1 << log;
     if (log > 31 || !store_grow(crate->sink.allocator, &crate->table, &crate->table_capacity, size, 4)) return false;
     memset(crate->table, 0, size * sizeof *crate->table);
@@ -184,6 +190,7 @@ static bool put_table(Crate *crate, const float *values, size_t count) {
     sink_words(&crate->sink, table, found);
     put_ints(crate, &crate->sink, numbers, count);
     if (crate->sink.size - before < 4 * count) return true;
+
     crate->sink.size = before;
     return false;
 }
@@ -192,6 +199,7 @@ CrateValue crate_floats(Crate *crate, int width, const float *values, size_t cou
     static const CrateType types[] = {[1] = CRATE_FLOAT, [2] = CRATE_VEC2F, [3] = CRATE_VEC3F};
     CrateValue value = (uint64_t)types[width] << 48 | flag_array;
     if (!count) return value;
+
     sink_align(&crate->sink, 8);
     value |= crate->sink.size;
     sink_u64(&crate->sink, count);
@@ -232,6 +240,7 @@ static void put_set(Crate *crate, uint32_t number) {
 
 void crate_spec(Crate *crate, uint32_t path, CrateSpec kind, const CrateField *fields, size_t count) {
     if (!grow(crate, &crate->specs, &crate->spec_capacity, crate->spec_count, sizeof *crate->specs)) return;
+
     crate->specs[crate->spec_count++] = (CrateSpecRow){path, (uint32_t)crate->set_count, kind};
     for (size_t i = 0; i < count; i++) {
         if (!grow(crate, &crate->field_tokens, &crate->field_capacity, crate->field_count, 4) ||
@@ -399,6 +408,7 @@ static uint8_t *put_sequence(uint8_t *out, const uint8_t *literals, size_t count
     memcpy(out, literals, count);
     out += count;
     if (!match) return out;
+
     *out++ = (uint8_t)distance;
     *out++ = (uint8_t)(distance >> 8);
     size_t rest = match - MATCH_MIN;
@@ -414,11 +424,13 @@ size_t lz4_pack(const uint8_t *in, size_t size, uint8_t *out) {
     while (size > MATCH_MARGIN && at < size - MATCH_MARGIN && at < UINT32_MAX) {
         const uint32_t hash = (read_word(in + at) * 2654435761u >> (32 - HASH_BITS)), before = last[hash];
         last[hash] = (uint32_t)at + 1;
+
         const size_t distance = at + 1 - before;
         if (!before || distance > DISTANCE_MAX || read_word(in + before - 1) != read_word(in + at)) {
             at += 1 + (misses++ >> 6);
             continue;
         }
+
         size_t length = 0;
         while (at + length < size - TAIL && in[before - 1 + length] == in[at + length]) length++;
         out = put_sequence(out, in + literals, at - literals, length, distance);

@@ -76,10 +76,12 @@ static void put_colours(UsdWriter *w, const SheetPart *part, CrateValue *palette
         float colour[3];
         uint32_t q[3];
         burn_colour(&w->scene->sheets[part->sheet], w->surface, part->vertices[i], colour);
+
         for (int c = 0; c < 3; c++) {
             const float within = colour[c] < 0 ? 0 : colour[c] > 1 ? 1 : colour[c];
             q[c] = (uint32_t)(sqrtf(within) * steps[c] + 0.5f);
         }
+
         int32_t *entry = &w->palette[q[0] << 11 | q[1] << 5 | q[2]];
         if (*entry < 0) {
             *entry = (int32_t)found;
@@ -144,6 +146,7 @@ static void put_subset(UsdWriter *w, const SheetPart *part, uint32_t mesh, const
     crate_spec(&w->crate, prim, CRATE_PRIM, fields, 3);
     put_uniform(w, prim, names[0], "token", crate_token(&w->crate, "face"));
     put_uniform(w, prim, names[1], "token", crate_token(&w->crate, "materialBind"));
+
     const CrateValue faces = w->kept ? 0 : put_subset_faces(w, part, fresh);
     put_sampled(w, prim, names[2], "int[]", false, put_samples(w, part->sheet, SLOT_SUBSETS + fresh, faces));
 }
@@ -219,6 +222,7 @@ static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
 
     if (pictured) names[count++] = "subsetFamily:materialBind:familyType";
     usd_sheet_name(w->scene, sheet, name);
+
     const uint32_t mesh = crate_path(&w->crate, name, false, sheets);
     CrateField fields[PRIM_FIELDS] = {{"specifier", crate_inline(CRATE_SPECIFIER, 0)},
                                       {"typeName", crate_token(&w->crate, "Mesh")},
@@ -350,6 +354,7 @@ SingeResult usd_write_single(const char *path, const OutputScene *scene, const O
         UsdWriter one = {.crate = writer.crate, .scene = scene, .surface = frame.surface};
         result = sheet_parts_make(&one.parts, frame.surface, scene->sheet_count, path, error);
         if (!result && !writer_make(&one)) result = refuse_memory(error, "usd", path);
+
         for (uint32_t sheet = 0; sheet < scene->sheet_count && !result; sheet++, own += SLOTS) {
             const SheetPart part = sheet_part(&one.parts, sheet);
             put_own(&one, &part, own);

@@ -141,6 +141,7 @@ SingeResult usdz_write(const char *path, const OutputScene *scene, const OutputC
     sink_bytes(sink, zip.directory.bytes, size);
     sink_bytes(sink, "PK\5\6", 4);
     sink_zeros(sink, 4);
+
     sink_u16(sink, zip.count), sink_u16(sink, zip.count);
     sink_u32(sink, (uint32_t)size), sink_u32(sink, (uint32_t)offset);
     sink_u16(sink, 0);

@@ -75,6 +75,7 @@ static SingeResult vat_make(Vat *vat, const char *path, SingeError *error) {
     vat->found = calloc(vat->count, 1);
     vat->table = calloc((size_t)1 << vat->log, 4);
     vat->next = calloc(vat->count, 4);
+
     const bool all =
         vat->position && vat->normal && vat->at && vat->facing && vat->moved && vat->found && vat->table && vat->next;
     return all ? SINGE_OK : refuse_memory(error, "vat", path);
@@ -221,8 +222,10 @@ static uint32_t number_corners(const OutputMesh *mesh, VatCorner *corners, uint3
     for (size_t i = 0; first && next && i < all; i++) {
         VatCorner corner = {.vertex = mesh->cells[i]};
         if (output_mesh_has_uv(mesh)) output_mesh_uv(mesh, (uint32_t)(i / 4), (int)(i & 3), corner.uv);
+
         uint32_t at = first[corner.vertex];
         while (at && memcmp(corners[at - 1].uv, corner.uv, sizeof corner.uv) != 0) at = next[at - 1];
+
         if (!at) {
             corners[count++] = corner;
             next[count - 1] = first[corner.vertex];
@@ -259,6 +262,7 @@ static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
 
         put_attribute(f, "TEXCOORD_0", uv_begin, count, 2, NULL);
         uv_begin = f->data.size;
+
         for (uint32_t k = 0; k < count; k++) {
             const uint32_t v = vat->first[sheet] + corners[k].vertex, width = (uint32_t)vat->width;
             const float uv[2] = {((float)(v % width) + 0.5f) / (float)width,
@@ -270,6 +274,7 @@ static bool put_sheet(GlbFile *f, const Vat *vat, uint32_t sheet) {
 
         f->meshes.size--; // the last comma
         const size_t begin = f->data.size;
+
         for (uint32_t c = 0; c < mesh->cell_count; c++) {
             static const int cut[6] = {0, 1, 2, 0, 2, 3};
             for (int k = 0; k < 6; k++) sink_u32(&f->data, number[4 * (size_t)c + (size_t)cut[k]]);

@@ -75,6 +75,7 @@ typedef struct Fit {
 static ExitCode read_target(FitTarget *target, const PlanTarget *plan, Console *console) {
     *target = (FitTarget){.plan = plan};
     if (!plan->curve.path) return EXIT_GOOD;
+
     FitCurve *curve = &target->curve;
     Csv csv;
     ExitCode code = csv_read(&csv, plan->curve.path, console);
@@ -84,6 +85,7 @@ static ExitCode read_target(FitTarget *target, const PlanTarget *plan, Console *
     uint32_t count = 0;
     curve->times = csv_numbers(&csv, time, (CsvLines){0}, &curve->count);
     curve->temperatures = csv_numbers(&csv, temperature, (CsvLines){0}, &count);
+
     double low = INFINITY, high = -INFINITY;
     bool ascending = true;
     for (uint32_t i = 0; i < count; i++) {
@@ -209,6 +211,7 @@ static bool fit_error(const FitTarget *target, const Sweep *sweep, uint32_t row,
         uint32_t count = 0;
         good = !csv_read(&csv, path, sweep->console);
         double *speeds = csv_numbers(&csv, csv_column(&csv, "front_speed"), (CsvLines){0}, &count);
+
         if (good && count == 0) console_error(sweep->console, "%s has no front_speed", path);
         good = good && count > 0;
         if (good) *error += pow(speeds[count - 1] / target->plan->front_speed - 1, 2);
@@ -224,9 +227,11 @@ static bool fit_error(const FitTarget *target, const Sweep *sweep, uint32_t row,
         Csv csv = {0};
         uint32_t count = 0, times_count = 0;
         good = !csv_read(&csv, path, sweep->console);
+
         const CsvLines lines = {"probe", target->plan->probe, "temperature"}; // none once the paper is gone
         double *values = csv_numbers(&csv, csv_column(&csv, "temperature"), lines, &count);
         double *times = csv_numbers(&csv, csv_column(&csv, "time"), lines, &times_count);
+
         if (good && (count == 0 || times_count != count)) {
             console_error(sweep->console, "%s has no temperatures of probe '%s'", path, target->plan->probe);
             good = false;
@@ -238,11 +243,13 @@ static bool fit_error(const FitTarget *target, const Sweep *sweep, uint32_t row,
             const double time = measured->times[i];
             uint32_t k = 0;
             while (k < count && times[k] < time) k++;
+
             double simulated = values[k < count ? k : count - 1];
             if (k > 0 && k < count) {
                 const double share = (time - times[k - 1]) / (times[k] - times[k - 1]);
                 simulated = values[k - 1] + share * (values[k] - values[k - 1]);
             }
+
             sum += pow(simulated - measured->temperatures[i], 2);
             low = fmin(low, measured->temperatures[i]);
             high = fmax(high, measured->temperatures[i]);
@@ -271,6 +278,7 @@ static char *noted_line(const Plan *plan, uint32_t row) {
     size_t size = 0;
     FILE *file = open_memstream(&line, &size);
     if (file) fprintf(file, "%u", row + 1);
+
     for (uint32_t p = 0; file && p < plan->parameter_count; p++) {
         fputc(',', file);
         text_csv_cell(file, plan_value(plan, row, p));
@@ -307,6 +315,7 @@ static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
         Console *console = fit->sweep->console;
         const bool quiet = console->quiet;
         code = sweep_check_row(fit->sweep, row);
+
         fit->options->row = (int)row + 1;
         fit->options->retry = true;
         console->quiet = true;
@@ -424,11 +433,13 @@ static ExitCode search(Fit *fit) {
         free(fit->noted);
         fit->noted = text_format("%s", (const char *)bytes.data);
     }
+
     bytes_free(&bytes);
     free(path);
 
     nlopt_opt optimiser = fit->optimiser =
         nlopt_create(plan->search == PLAN_SEARCH_GLOBAL ? NLOPT_GN_DIRECT_L : NLOPT_LN_SBPLX, count);
+
     fit->errors = calloc(plan->evaluations, sizeof *fit->errors);
     good = good && fit->errors && optimiser && nlopt_set_lower_bounds1(optimiser, 0) > 0 &&
            nlopt_set_upper_bounds1(optimiser, 1) > 0 && nlopt_set_min_objective(optimiser, objective, fit) > 0 &&
@@ -464,9 +475,11 @@ int command_fit(int argc, char **argv) {
     Console console = console_make(options.quiet);
     Sweep sweep = sweep_make(&console, &options);
     FitTarget target = {0};
+
     code = plan_read(options.plan, true, &console, &sweep.plan);
     if (!code) code = read_target(&target, &sweep.plan.target, &console);
     if (!code) code = sweep_prepare(&sweep);
+
     if (!code) {
         Fit fit = {.sweep = &sweep, .options = &options, .target = &target, .best = HUGE_VAL};
         interrupt_watch();

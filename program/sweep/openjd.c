@@ -43,12 +43,14 @@ ExitCode sweep_print_openjd(const Sweep *sweep) {
     fputs("{\n  \"specificationVersion\": \"jobtemplate-2023-09\",\n  \"name\": ", stdout);
     text_json_string(stdout, sweep->plan.name);
     fputs(",\n  \"steps\": [\n", stdout);
+
     if (*rows) {
         printf("    {\n      \"name\": \"Rows\",\n"
                "      \"parameterSpace\": {\"taskParameterDefinitions\": [{\"name\": \"Row\", \"type\": \"INT\", "
                "\"range\": \"%s\"}]},\n"
                "      \"hostRequirements\": {\"amounts\": [{\"name\": \"amount.worker.vcpu\", \"min\": %d}]},\n",
                rows, sweep->options->threads);
+
         char *row = text_format("\"--row\", \"{{Task.Param.Row}}\", \"--threads\", \"%d\"%s", sweep->options->threads,
                                 sweep->options->no_preview ? ", \"--no-preview\"" : "");
         print_script(sweep, row);

@@ -52,6 +52,7 @@ static bool values_agree(const char *a, const char *b) {
     for (;;) {
         a += strspn(a, " \"");
         b += strspn(b, " \"");
+
         double x, y;
         const uint8_t *after_a = (const uint8_t *)a, *after_b = (const uint8_t *)b;
         if (!in_word && number_double(&after_a, after_a + strlen(a), &x) == NUMBER_OK &&
@@ -77,6 +78,7 @@ static void find_equal_rows(const Plan *plan, uint32_t *parameter, char *message
         const bool list = plan->method == PLAN_LIST;
         const uint32_t count = choices(&plan->parameters[p]);
         *parameter = list ? 0 : p;
+
         for (uint32_t b = 1; b < count && !*message; b++)
             for (uint32_t a = 0; a < b && !*message; a++) {
                 bool same = values_agree(plan_value(plan, a * stride, p), plan_value(plan, b * stride, p));
@@ -86,6 +88,7 @@ static void find_equal_rows(const Plan *plan, uint32_t *parameter, char *message
                     snprintf(message, size, "%s %u and %u are the same: %.60s", list ? "rows" : "values", a + 1, b + 1,
                              shown(plan_value(plan, b * stride, p)).text);
             }
+
         if (list) return;
         stride *= count;
     }
@@ -99,6 +102,7 @@ static void make_chosen(Plan *plan, uint32_t *parameter, char *message, size_t s
     for (uint32_t p = 0; p < plan->parameter_count; p++) {
         const uint32_t count = choices(&plan->parameters[p]);
         *parameter = p;
+
         if (list && count != rows) {
             snprintf(message, size,
                      "a list needs the same number of values for each parameter: %u here, %u for the first", count,

@@ -34,10 +34,12 @@ RowState sweep_row_state(const Sweep *sweep, uint32_t row) {
     const int fd = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     struct flock wanted = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     const bool locked = fd >= 0 && fcntl(fd, F_GETLK, &wanted) == 0 && wanted.l_type != F_UNLCK;
+
     if (fd >= 0) close(fd);
     free(path);
     free(folder);
     if (locked) return ROW_ELSEWHERE;
+
     return row_has(sweep, row, false, "failed.txt") ? ROW_FAILED : ROW_ABSENT;
 }
 
@@ -145,8 +147,10 @@ static ExitCode note_or_compare(Sweep *sweep, const char *name, const char *text
     SingeError error = {0};
     SingeResult result;
     ExitCode code = EXIT_GOOD;
+
     if (access(path, F_OK) != 0) result = file_write(path, text, strlen(text), &error);
     else result = file_read(path, (SingeAllocator){0}, &bytes, &error);
+
     const char *there = (const char *)bytes.data;
     if (result) {
         console_result(sweep->console, &error);
@@ -154,6 +158,7 @@ static ExitCode note_or_compare(Sweep *sweep, const char *name, const char *text
     } else if (there && strcmp(there, text) != 0) {
         int line = 1;
         for (const char *a = there, *b = text; *a && *a == *b; a++, b++) line += *a == '\n';
+
         if (table)
             console_error(sweep->console, "%s belongs to another plan: line %d differs; use another folder (-o)", path,
                           line);
@@ -174,6 +179,7 @@ ExitCode sweep_note_plan(Sweep *sweep) {
     SetList sets = {0};
     Job job;
     for (uint32_t i = 0; i < sweep->plan.set_count; i++) set_add(&sets, sweep->plan.sets[i]);
+
     ExitCode code = job_open(&job, sweep->console, sweep->plan.scene.path, &sets, 1);
     set_free(&sets);
     if (code) return code;
@@ -209,10 +215,12 @@ ExitCode sweep_note_plan(Sweep *sweep) {
     if (file)
         fprintf(file, "{\"frames\": %d, \"scene\": \"%016llx\", \"preview\": \"%016llx\"", frames,
                 (unsigned long long)hash.result, (unsigned long long)hash.looks);
+
     if (file && sweep->plan.from.path) {
         fputs(", \"from\": ", file);
         text_json_string(file, sweep->plan.from.path);
     }
+
     if (file) fputs("}\n", file);
     if (!text_stream_end(file, &note)) code = EXIT_FAILED;
     if (!code) code = note_or_compare(sweep, "plan.csv", table, true);
@@ -239,6 +247,7 @@ char **sweep_run_command(const Sweep *sweep, uint32_t row) {
     command[n++] = text_format("--resume");
     if (plan->from.path) command[n++] = text_format("--from=%s", plan->from.path);
     if (sweep->options->no_preview) command[n++] = text_format("--no-preview");
+
     for (uint32_t i = 0; i < plan->set_count; i++) command[n++] = text_format("--set=%s", plan->sets[i]);
     for (uint32_t p = 0; p < plan->parameter_count; p++)
         command[n++] = text_format("--set=%s=%s", plan->parameters[p].key, plan_value(plan, row, p));

@@ -45,6 +45,7 @@ static void fail_row(Pool *pool, Slot *slot, const char *why) {
     char *path = text_format("%s/failed.txt", folder), *text = text_format("%s\n", why);
     if (file_write(path, text, strlen(text), &error)) console_result(pool->sweep->console, &error);
     console_error(pool->sweep->console, "row %u: %s; its messages are in %s/log.txt", slot->row + 1, why, folder);
+
     pool->failed++;
     slot->stage = STAGE_IDLE;
     free(path);
@@ -122,6 +123,7 @@ static void frame_totals(const Pool *pool, uint64_t *done, uint64_t *all) {
         uint64_t lines = 0;
         for (size_t size; file && (size = fread(block, 1, sizeof block, file)) > 0;)
             for (size_t i = 0; i < size; i++) lines += block[i] == '\n';
+
         if (file) fclose(file);
         free(path);
         free(folder);
@@ -188,10 +190,12 @@ static void run_queue(Pool *pool) {
 
         uint32_t running = 0;
         for (int i = 0; i < pool->slot_count; i++) running += pool->slots[i].stage != STAGE_IDLE;
+
         const bool over = running == 0 && (pool->stopping || pool->next == pool->queued);
         if (over || turn % 10 == 0) {
             uint64_t done, all;
             frame_totals(pool, &done, &all);
+
             const double now = console_clock() - pool->started;
             const double each = done > pool->frames_before ? now / (double)(done - pool->frames_before) : 0;
             console_sweep(pool->sweep->console, &(ConsoleSweep){.complete = pool->complete,
@@ -244,5 +248,6 @@ ExitCode sweep_run_rows(Sweep *sweep) {
                                : "");
     free(pool.slots);
     free(pool.queue);
+
     return pool.complete == pool.due ? EXIT_GOOD : EXIT_FAILED;
 }

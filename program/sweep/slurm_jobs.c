@@ -24,6 +24,7 @@ static const char *const job_names[JOB_KINDS] = {"run", "render", "report"};
 static char *sbatch_quote(const char *text, bool pattern) {
     char *quoted = malloc(2 * strlen(text) + 3), *to = quoted;
     if (!quoted) return text_format("%s", "sweep");
+
     *to++ = '"';
     for (; *text; text++) {
         if (*text == '"' || *text == '\\') *to++ = '\\';
@@ -66,6 +67,7 @@ static char *write_job(const Sweep *sweep, JobKind kind, const char *rows, Singe
         uint32_t frames = 1;
         for (uint32_t row = 0; row < sweep->plan.row_count; row++)
             if (sweep->frames[row] > frames) frames = sweep->frames[row];
+
         const uint32_t part = (uint32_t)o->frames, parts = (frames + part - 1) / part;
         fprintf(file, "#SBATCH --array=0-%u\n#SBATCH --requeue\n#SBATCH --cpus-per-task=%d\n",
                 sweep->plan.row_count * parts - 1, o->threads);
@@ -118,6 +120,7 @@ ExitCode sweep_submit(Sweep *sweep) {
         FILE *answer = popen(line, "r");
         id[0] = 0;
         if (answer && !fgets(id, ID_SIZE, answer)) id[0] = 0;
+
         const int status = answer ? pclose(answer) : -1;
         id[strcspn(id, ";\n")] = 0;
         good = status == 0 && id[0] && !id[strspn(id, "0123456789")];

@@ -89,6 +89,7 @@ ExitCode sweep_prepare(Sweep *sweep) {
     char *named = o->output ? text_format("%s", o->output) : text_format("out/%s", sweep->plan.name);
     SingeError error = {0};
     if (!named[0]) named[0] = '.';
+
     SingeResult result = folder_make(named, &error);
     if (!result) sweep->folder = absolute(named);
     free(named);

@@ -131,6 +131,7 @@ static bool check_once(Reader *reader, const YamlNode *map, const char *what) {
     if (map->count > PLAN_KEYS_MAX)
         message_add(reader->messages, reader->text, map->location, "%s has %u keys; at most %d are possible", what,
                     (unsigned)map->count, PLAN_KEYS_MAX);
+
     for (const YamlNode *node = map->count > PLAN_KEYS_MAX ? NULL : map->first; node; node = node->next) {
         const YamlNode *last = node_find(map, node->key);
         if (last == node) continue;
@@ -162,6 +163,7 @@ static void read_range(Reader *reader, const YamlNode *map, PlanParameter *param
     const char *unit = read_end(reader, map, "from", ends.from, &parameter->from);
     const char *other = read_end(reader, map, "to", ends.to, &parameter->to);
     if (!unit || !other) return;
+
     parameter->unit = unit;
     if (strcmp(unit, other) != 0)
         message_add(reader->messages, reader->text, map->location,
@@ -175,6 +177,7 @@ static void read_sets(Reader *reader, Plan *plan) {
     const YamlNode *node = plan->set;
     if (node->kind != NODE_MAP) plan_complain(reader, node, "set", "a map of keys of the scene");
     if (node->kind != NODE_MAP || !check_once(reader, node, "set")) return;
+
     plan->sets = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->sets);
     plan->set_locations = arena_new(plan->arena, (size_t)node->count + 1, sizeof *plan->set_locations);
     for (const YamlNode *child = node->first; child && plan->sets && plan->set_locations; child = child->next) {
@@ -203,6 +206,7 @@ static void read_parameters(Reader *reader, Plan *plan) {
         parameter->key_location = child->key_location;
         if (strcmp(child->key, "name") == 0)
             message_add(reader->messages, reader->text, child->key_location, "all rows have the scene's name");
+
         if (child->kind == NODE_MAP) {
             read_range(reader, child, parameter);
         } else if (child->kind == NODE_LIST && child->count) {
@@ -242,6 +246,7 @@ static bool path_covers(const char *a, const char *b) {
 static const YamlNode *path_blocked(const YamlNode *node, const char *skipped, const char *path) {
     const char *step;
     while (path_step(&skipped, &step)) path_step(&path, &step);
+
     for (size_t length; node && (length = path_step(&path, &step));) {
         const YamlNode *child = node->first;
         if (node->kind == NODE_VALUE) return node;
@@ -264,6 +269,7 @@ static void check_overlaps(Reader *reader, const Plan *plan) {
         for (uint32_t i = 0; i < plan->set_count; i++, given = given->next) {
             const bool inside = path_covers(plan->sets[i], parameter->key);
             const YamlNode *word = inside ? path_blocked(given, plan->sets[i], parameter->key) : NULL;
+
             if (path_covers(parameter->key, plan->sets[i]))
                 message_add(reader->messages, reader->text, parameter->key_location,
                             "'%s' is already set in line %d; remove one", shown(parameter->key).text,
@@ -335,12 +341,14 @@ ExitCode plan_read(const char *path, bool fit, Console *console, Plan *plan) {
                      .text = &text,
                      .messages = &messages,
                      .prefix = arena_text(plan->arena, path, (size_t)(name - path))};
+
     plan->name = arena_text(plan->arena, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
     if (reader.prefix) read_plan(&reader, plan, fit);
 
     messages_sort(&messages, 0);
     const bool failed = arena_failed(plan->arena);
     const bool bad = message_total(&messages) > 0;
+
     scene_messages_print(&messages, stderr);
     scene_messages_free(&messages);
     bytes_free(&bytes);

@@ -172,11 +172,13 @@ static char *page_data(const Report *report) {
             if (p) fputs(", ", file);
             text_json_string(file, plan_value(plan, row, p));
         }
+
         fputs("], \"numbers\": [", file);
         for (int c = 0; c < report->column_count; c++) {
             if (c) fputs(", ", file);
             text_json_number(file, number_of(report, row, c));
         }
+
         fputc(']', file);
         put_member(file, "picture", row_picture(report, row, 2));
         put_member(file, "video", row_file(report, row, "preview.mp4"));
@@ -198,6 +200,7 @@ static void write_page(const Report *report, FILE *page) {
     const char *begin = sweep_pages[0].bytes, *end = begin + sweep_pages[0].size, *at = begin;
     while (at + sizeof mark <= end && memcmp(at, mark, sizeof mark - 1) != 0) at++;
     fwrite(begin, 1, (size_t)(at - begin), page);
+
     for (const char *c = json; *c; c++)
         if (*c == '<') fputs("\\u003c", page);
         else fputc(*c, page);
@@ -247,6 +250,7 @@ static void write_sheet(const Report *report, FILE *file) {
 
         fprintf(file, "<text x=\"%u\" y=\"%u\"><tspan font-weight=\"bold\">%u</tspan>%s</text>\n", x + 8,
                 y + TILE_HEIGHT + TILE_LINE, row + 1, report->complete[row] ? "" : " not complete");
+
         for (uint32_t p = 0; p < plan->parameter_count; p++) {
             fprintf(file, "<text x=\"%u\" y=\"%u\">", x + 8, y + TILE_HEIGHT + TILE_LINE * (p + 2));
             write_xml(file, plan_label(plan, p));
@@ -267,6 +271,7 @@ static bool write_file(const Report *report, const char *name, void (*write)(con
     SingeError error = {.code = SINGE_ERROR_MEMORY, .stage = "report", .element = -1};
     FILE *file = open_memstream(&text, &size);
     if (file) write(report, file);
+
     const bool good = text_stream_end(file, &text) && !file_write(path, text, size, &error);
     if (!good) console_result(report->sweep->console, &error);
     free(text);

@@ -83,12 +83,14 @@ ExitCode shown_open(View *view, const char *path) {
     scene_preview(shown.job.scene, &shown.job.assets, &def);
     def.width = def.height = 1; // it draws nothing itself
     def.shutter = 0;
+
     SingeError error = {0};
     if (preview_create(&def, (SingeAllocator){0}, &shown.preview, &error)) {
         console_result(view->console, &error);
         shown_close(&shown);
         return EXIT_FAILED;
     }
+
     shown_close(&view->shown);
     view->shown = shown;
     return EXIT_GOOD;
@@ -105,6 +107,7 @@ static int64_t gather_shapes(Exhibit *shown, double time) {
         shown->shapes = shapes;
         shown->shape_max = count;
     }
+
     return scene_shapes(scene, assets, time, shown->shapes, shown->shape_max);
 }
 
@@ -120,8 +123,10 @@ static Answer answer_state(const View *view) {
     char *text = NULL;
     FILE *out = open_memstream(&text, &(size_t){0});
     if (!out) return answer_text(500, "out of memory");
+
     fprintf(out, "{\"version\": \"%s\", \"run\": %d, \"first\": %d, \"last\": %d, \"live\": %s", singe_version(),
             shown->number, first, last, live->scene ? "true" : "false");
+
     if (live->scene) {
         char log[LOG_BYTES + 1] = ""; // its end
         FILE *file = live->log ? fopen(live->log, "rb") : NULL;
@@ -130,11 +135,13 @@ static Answer answer_state(const View *view) {
             log[fread(log, 1, LOG_BYTES, file)] = 0;
             fclose(file);
         }
+
         fprintf(out, ", \"burning\": %s, \"newest\": %d, \"exit\": %d", live->process > 0 ? "true" : "false",
                 live->number, live->exit_code);
         put_text(out, "scene", live->scene);
         put_text(out, "log", log);
     }
+
     put_text(out, "folder", shown->number ? shown->folder.path : "");
     fputs("}", out);
     return answer_stream(out, &text, "application/json");
@@ -159,6 +166,7 @@ static Answer answer_room(const Exhibit *shown) {
     char *text = NULL;
     FILE *out = open_memstream(&text, &(size_t){0});
     if (!out) return answer_text(500, "out of memory");
+
     fputs("{\"name\": ", out);
     text_json_string(out, scene->name);
     fprintf(
@@ -167,9 +175,11 @@ static Answer answer_room(const Exhibit *shown) {
         "\"sparks\": %.9g, \"flakes\": %.9g",
         scene->frames, (double)scene->fps, def.width, def.height, (double)def.camera.fov, (double)def.exposure,
         (double)def.sun_angle, (int)def.ground, (double)def.pace, (double)def.sparks, (double)def.flakes);
+
     fputs(", \"ground_height\": ", out);
     text_json_number(out, (double)def.ground_height); // null: there is none
     fprintf(out, ", \"wall\": %d, \"wall_turn\": %.9g, \"wall_distance\": ", (int)def.wall, (double)def.wall_turn);
+
     text_json_number(out, (double)def.wall_distance); // null: there is none
     put_numbers(out, "wall_colour", def.wall_colour, 3);
     put_numbers(out, "eye", def.camera.eye, 3);
@@ -181,6 +191,7 @@ static Answer answer_room(const Exhibit *shown) {
     put_numbers(out, "towards", towards, 3);
     put_numbers(out, "ambient", &ambient[0][0], 27);
     fputs(", \"sheets\": [", out);
+
     for (uint32_t i = 0; i < def.sheet_count; i++) {
         static const float white[3] = {1, 1, 1};
         fprintf(out, "%s{\"picture\": %s, \"transmittance\": %.9g", i ? ", " : "",
@@ -189,6 +200,7 @@ static Answer answer_room(const Exhibit *shown) {
         put_numbers(out, "colour", def.colours ? def.colours[i] : white, 3);
         fputs("}", out);
     }
+
     fputs("]}", out);
     return answer_stream(out, &text, "application/json");
 }
@@ -211,11 +223,13 @@ static Answer answer_frame(Exhibit *shown, int number) {
         error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
         result = SINGE_ERROR_MEMORY;
     }
+
     if (!result) result = preview_set_shapes(shown->preview, shown->shapes, (uint32_t)shapes, &error);
     if (!result) result = preview_set_gas(shown->preview, &frame.gas.view, &error);
     if (!result) result = preview_pack(shown->preview, &frame.surface, frame.time, &bytes, &size, &error);
     frame_free(&frame);
     if (result) return answer_error(&error);
+
     return (Answer){
         .status = 200, .type = "application/octet-stream", .bytes = (char *)bytes, .size = size, .large = true};
 }
@@ -242,6 +256,7 @@ static Answer answer_solid(Exhibit *shown, int number, int wanted) {
         return answer_pair(solid->vertex_count, solid->triangle_count, solid->vertices,
                            12 * (size_t)solid->vertex_count, solid->triangles, 12 * (size_t)solid->triangle_count);
     }
+
     return answer_nothing();
 }
 
@@ -280,6 +295,7 @@ static Answer answer_cells(const Exhibit *shown) {
         for (size_t k = 0; k < 4 * (size_t)mesh->cell_count; k++) *corner++ = first + mesh->cells[k];
         first += mesh->vertex_count;
     }
+
     return answer_data(bytes, size);
 }
 
@@ -290,6 +306,7 @@ static Answer answer_vertex(Exhibit *shown, int number, int wanted) {
     const SingeSurface *surface = &frame.surface;
     uint32_t i = 0;
     while (!result && i < surface->vertex_count && surface->source_vertex[i] != wanted) i++;
+
     char *text = NULL;
     FILE *out = !result && i < surface->vertex_count ? open_memstream(&text, &(size_t){0}) : NULL;
     if (out) {
@@ -300,8 +317,10 @@ static Answer answer_vertex(Exhibit *shown, int number, int wanted) {
         put_numbers(out, "position", surface->position[i], 3);
         fputs("}", out);
     }
+
     frame_free(&frame);
     if (result) return answer_error(&error);
+
     return out ? answer_stream(out, &text, "application/json") : answer_nothing();
 }
 
@@ -342,8 +361,10 @@ static bool take_all(const char *text, const char *word, int *a, int *b) {
 Answer answer_to(View *view, const char *path) {
     const char *rest = path;
     if (strcmp(path, "state") == 0) return answer_state(view);
+
     for (const SceneBuiltin *page = view_pages; page->name; page++) {
         if (strcmp(page->name, *path ? path : "index.html") != 0) continue;
+
         const char *dot = strrchr(page->name, '.');
         const bool html = dot && strcmp(dot, ".html") == 0, css = dot && strcmp(dot, ".css") == 0;
         return (Answer){.status = 200,
@@ -370,5 +391,6 @@ Answer answer_to(View *view, const char *path) {
     if (take_all(rest, "picture", &a, NULL)) return answer_picture(shown, a);
     if (take_all(rest, "solid", &a, &b)) return answer_solid(shown, a, b);
     if (take_all(rest, "vertex", &a, &b)) return answer_vertex(shown, a, b);
+
     return answer_nothing();
 }

@@ -43,9 +43,11 @@ static int open_lock(const char *folder, int flags) {
 static void remove_left(const char *base) {
     DIR *entries = opendir(base);
     if (!entries) return;
+
     for (struct dirent *entry; (entry = readdir(entries));) {
         struct stat info;
         if (strncmp(entry->d_name, "singe-view-", 11) != 0 || strlen(entry->d_name) != 17) continue;
+
         char *path = text_format("%s/%s", base, entry->d_name);
         const bool ours = lstat(path, &info) == 0 && S_ISDIR(info.st_mode) && info.st_uid == geteuid();
         const int lock = ours ? open_lock(path, 0) : -1;
@@ -86,6 +88,7 @@ static void start(View *view) {
     live->log = text_format("%s/%d.log", live->room, live->number);
     live->exit_code = -1;
     live->stopping = false;
+
     bool changed;
     look_at_file(live, &changed);
 
@@ -101,6 +104,7 @@ static void start(View *view) {
             command[n++] = "--set";
             command[n++] = (char *)live->sets->items[i];
         }
+
         command[n++] = "--";
         command[n++] = live->scene; // and NULL
         reason = spawn_program(command, live->log, &live->process);
@@ -119,6 +123,7 @@ SingeResult live_begin(View *view, SingeError *error) {
     const char *base = getenv("TMPDIR");
     if (!base || !*base) base = "/tmp";
     remove_left(base);
+
     live->room = text_format("%s/singe-view-XXXXXX", base);
     if (!mkdtemp(live->room)) {
         folder_fail(live->room, "make the folder", errno, error);
@@ -146,6 +151,7 @@ void live_attend(View *view) {
         live->process = 0;
         live->exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
+
     if (live->stopping && live->process <= 0) {
         if (view->shown.number != live->number) remove_folder(live->folder); // nothing of it was shown
         start(view);
@@ -158,8 +164,10 @@ void live_attend(View *view) {
     const bool ready = access(record, R_OK) == 0;
     free(record);
     if (!ready) return;
+
     const int before = view->shown.number;
     if (shown_open(view, live->folder)) return;
+
     view->shown.number = live->number;
     if (before) {
         char *old = run_folder(live, before);
@@ -174,6 +182,7 @@ void live_end(View *view) {
         kill(live->process, SIGKILL);
         waitpid(live->process, NULL, 0);
     }
+
     if (live->room) {
         remove_folder(live->room);
         if (live->lock >= 0) close(live->lock);

@@ -78,6 +78,7 @@ static enum MHD_Result respond(void *context, struct MHD_Connection *connection,
 
     Client *client = client_of(server, connection);
     if (client) *client = (Client){connection, console_clock(), true};
+
     const char *host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host");
     const char *origin = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Origin");
     const char *site = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Sec-Fetch-Site");
@@ -97,10 +98,12 @@ static enum MHD_Result respond(void *context, struct MHD_Connection *connection,
     else if (strcmp(method, "GET") != 0) answer = answer_text(MHD_HTTP_METHOD_NOT_ALLOWED, "only GET");
     else if (server->large >= LARGE_MAX) answer = answer_text(MHD_HTTP_SERVICE_UNAVAILABLE, "busy");
     else answer = answer_to(server->view, url + token_size + 2);
+
     if (answer.large) {
         server->large++;
         *large = server;
     }
+
     struct MHD_Response *response = MHD_create_response_from_buffer(
         answer.size, answer.bytes, answer.fixed ? MHD_RESPMEM_PERSISTENT : MHD_RESPMEM_MUST_FREE);
     if (!response) {
@@ -119,6 +122,7 @@ static enum MHD_Result respond(void *context, struct MHD_Connection *connection,
                                     "img-src 'self' blob: data:; base-uri 'none'; form-action 'none'; "
                                     "frame-ancestors 'none'"},
     };
+
     for (size_t i = 0; i < sizeof headers / sizeof *headers; i++)
         MHD_add_response_header(response, headers[i][0], headers[i][1]);
     enum MHD_Result result = MHD_queue_response(connection, answer.status, response);
@@ -131,6 +135,7 @@ SingeResult server_open(View *view, Server **out, SingeError *error) {
     if (!server) {
         return refuse(error, SINGE_ERROR_MEMORY, "view", -1, "out of memory");
     }
+
     server->view = view;
     const struct sockaddr_in address = {
         .sin_family = AF_INET, .sin_port = htons((uint16_t)view->port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
@@ -156,6 +161,7 @@ SingeResult server_open(View *view, Server **out, SingeError *error) {
         snprintf(server->host[i], sizeof server->host[i], "%s:%d", names[i], view->port);
         snprintf(server->origin[i], sizeof server->origin[i], "http://%s:%d", names[i], view->port);
     }
+
     *out = server;
     return SINGE_OK;
 }

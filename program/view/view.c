@@ -47,6 +47,7 @@ static ExitCode show(View *view, const ViewOptions *o) {
     uint8_t bytes[16];
     FILE *file = fopen("/dev/urandom", "rb");
     const bool random = file && fread(bytes, sizeof bytes, 1, file) == 1;
+
     if (file) fclose(file);
     for (size_t i = 0; i < sizeof bytes && random; i++) snprintf(view->token + 2 * i, 3, "%02x", bytes[i]);
     if (!random) {
@@ -57,6 +58,7 @@ static ExitCode show(View *view, const ViewOptions *o) {
     char *record = text_format("%s/run.json", o->what);
     const bool is_cache = access(record, F_OK) == 0;
     free(record);
+
     if (is_cache) {
         if (o->sets.count) {
             console_error(view->console, "%s is a cache: --set and --frames are for scenes", shown_path(o->what).text);
@@ -73,6 +75,7 @@ static ExitCode show(View *view, const ViewOptions *o) {
         const ExitCode code =
             view->live.scene ? job_read(&job, view->console, view->live.scene, &o->sets, 1) : EXIT_INPUT;
         if (code) return code;
+
         job_close(&job);
         view->live.program = spawn_own_path();
         view->live.sets = &o->sets;
@@ -84,6 +87,7 @@ static ExitCode show(View *view, const ViewOptions *o) {
     view->port = o->port;
     SingeResult result = server_open(view, &server, &error);
     if (!result && view->live.scene) result = live_begin(view, &error);
+
     if (result) {
         console_result(view->console, &error);
         server_close(server);
@@ -93,10 +97,12 @@ static ExitCode show(View *view, const ViewOptions *o) {
     printf("http://127.0.0.1:%d/%s/\n", view->port, view->token);
     fflush(stdout);
     console_note(view->console, "open this address in a browser; Ctrl-C ends the view");
+
     while (!interrupt_asked()) {
         server_attend(server, 50);
         if (view->live.scene) live_attend(view);
     }
+
     server_close(server);
     return EXIT_GOOD;
 }

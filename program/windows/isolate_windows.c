@@ -19,6 +19,7 @@ SingeResult isolate_run(const char *name, IsolateWork *work, void *context, Isol
     const int64_t size = _lseeki64(_fileno(stream), 0, SEEK_END);
     if (!result && (given.pipe < 0 || size < 0 || (uint64_t)size > limits.memory))
         result = refuse(error, SINGE_ERROR_LIMIT, "file", (int64_t)limits.memory, "%s: too large", short_name(name));
+
     if (!result) {
         answer->data = store_new(allocator, (size_t)size + 1, 1);
         answer->size = (size_t)size;
@@ -27,6 +28,7 @@ SingeResult isolate_run(const char *name, IsolateWork *work, void *context, Isol
             result = refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: no temporary file", short_name(name));
         if (!result) answer->data[answer->size] = 0;
     }
+
     if (result) bytes_free(answer);
     fclose(stream);
     return result;

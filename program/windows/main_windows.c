@@ -20,6 +20,7 @@ int main(void) {
     _setmode(_fileno(stdout), _O_BINARY);
     _setmode(_fileno(stderr), _O_BINARY);
     SetConsoleOutputCP(CP_UTF8);
+
     const int code = singe_main(count, words);
     for (int i = 0; i < count; i++) free(words[i]);
     free(words);

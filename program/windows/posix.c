@@ -54,6 +54,7 @@ static int outcome(BOOL good) {
                    {ERROR_DIR_NOT_EMPTY, ENOTEMPTY}, {ERROR_DIRECTORY, ENOTDIR},     {ERROR_DISK_FULL, ENOSPC},
                    {ERROR_NOT_ENOUGH_MEMORY, ENOMEM}};
     if (good) return 0;
+
     const DWORD code = GetLastError();
     errno = EIO;
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; i++)
@@ -76,6 +77,7 @@ int windows_open(const char *path, int flags, ...) {
     SECURITY_ATTRIBUTES inherited = {.nLength = sizeof inherited, .bInheritHandle = !(flags & O_CLOEXEC)};
     HANDLE handle = CreateFileW(widen(path).text, access, share, &inherited, made, FILE_FLAG_BACKUP_SEMANTICS, NULL);
     if (handle == INVALID_HANDLE_VALUE) return outcome(FALSE);
+
     return _open_osfhandle((intptr_t)handle, flags & (O_APPEND | O_CLOEXEC));
 }
 
@@ -109,6 +111,7 @@ static int about_handle(HANDLE handle, struct windows_stat *about) {
         .st_size = (int64_t)((uint64_t)found.nFileSizeHigh << 32 | found.nFileSizeLow),
         .st_mtime = (time_t)(since_1601 / 10000000) - 11644473600,
     };
+
     return 0;
 }
 
@@ -168,10 +171,12 @@ ssize_t pwrite(int file, const void *bytes, size_t size, off_t at) {
 int fcntl(int file, int what, ...) {
     HANDLE handle = (HANDLE)_get_osfhandle(file);
     if (what != F_SETLK && what != F_GETLK) return 0;
+
     va_list list;
     va_start(list, what);
     struct flock *lock = va_arg(list, struct flock *);
     va_end(list);
+
     const short wanted = lock->l_type;
     if (what == F_GETLK) lock->l_type = F_UNLCK;
     if (what == F_GETLK) return 0;
@@ -180,6 +185,7 @@ int fcntl(int file, int what, ...) {
     OVERLAPPED place = {.Offset = 0xfffffffe, .OffsetHigh = 0x7fffffff};
     UnlockFileEx(handle, 0, 1, 0, &place);
     if (wanted == F_UNLCK) return 0;
+
     const DWORD kind = LOCKFILE_FAIL_IMMEDIATELY | (wanted == F_WRLCK ? LOCKFILE_EXCLUSIVE_LOCK : 0);
     const int result = outcome(LockFileEx(handle, kind, 0, 1, 0, &place));
     if (result) errno = EAGAIN;
@@ -211,6 +217,7 @@ DIR *fdopendir(int file) {
     errno = S_ISDIR(about.st_mode) ? ENOMEM : ENOTDIR;
     DIR *folder = S_ISDIR(about.st_mode) ? calloc(1, sizeof *folder) : NULL;
     if (!folder) return NULL;
+
     folder->file = file;
     folder->search = FindFirstFileW(path_in(file, L"*").text, &folder->found);
     if (folder->search != INVALID_HANDLE_VALUE) return folder;
@@ -279,6 +286,7 @@ FILE *open_memstream(char **text, size_t *size) {
     FILE *stream = memory ? temporary_stream() : NULL;
     *text = NULL;
     *size = 0;
+
     if (!stream) {
         free(memory);
         return NULL;
@@ -303,6 +311,7 @@ int windows_fclose(FILE *stream) {
     bool good = fflush(stream) == 0;
     const int64_t size = _ftelli64(stream);
     char *text = good && size >= 0 ? malloc((size_t)size + 1) : NULL;
+
     rewind(stream);
     good = text && fread(text, 1, (size_t)size, stream) == (size_t)size;
     if (good) {
@@ -314,6 +323,7 @@ int windows_fclose(FILE *stream) {
     }
     fclose(stream);
     free(memory);
+
     return good ? 0 : EOF;
 }
 
@@ -367,11 +377,13 @@ int getrusage(int whose, struct rusage *used) {
     PROCESS_MEMORY_COUNTERS memory = {.cb = sizeof memory};
     (void)whose;
     if (!GetProcessTimes(GetCurrentProcess(), &begun, &ended, &times[1], &times[0])) return outcome(FALSE);
+
     struct timeval *parts[] = {&used->ru_utime, &used->ru_stime};
     for (int i = 0; i < 2; i++) {
         const uint64_t tenths = (uint64_t)times[i].dwHighDateTime << 32 | times[i].dwLowDateTime; // of a microsecond
         *parts[i] = (struct timeval){(long)(tenths / 10000000), (long)(tenths % 10000000 / 10)};
     }
+
     GetProcessMemoryInfo(GetCurrentProcess(), &memory, sizeof memory);
     used->ru_maxrss = (long)(memory.PeakWorkingSetSize / 1024);
     return 0;

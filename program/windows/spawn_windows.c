@@ -22,11 +22,13 @@ static void put_argument(CommandLine *line, const char *argument) {
     size_t slashes = 0;
     put(line, ' ', line->length > 0);
     put(line, '"', 1);
+
     for (const char *c = argument; *c; c++) {
         put(line, '\\', *c == '"' ? slashes + 1 : 0);
         put(line, *c, 1);
         slashes = *c == '\\' ? slashes + 1 : 0;
     }
+
     put(line, '\\', slashes);
     put(line, '"', 1);
 }
@@ -42,6 +44,7 @@ int spawn_program(char *const *arguments, const char *log, pid_t *child) {
               written = log ? open(log, O_WRONLY | O_CREAT | O_APPEND, 0666) : -1;
     HANDLE out = written >= 0 ? (HANDLE)_get_osfhandle(written) : GetStdHandle(STD_OUTPUT_HANDLE);
     if (written >= 0) SetFilePointer(out, 0, NULL, FILE_END);
+
     STARTUPINFOW start = {.cb = sizeof start,
                           .dwFlags = STARTF_USESTDHANDLES,
                           .hStdInput = (HANDLE)_get_osfhandle(nothing),
@@ -51,6 +54,7 @@ int spawn_program(char *const *arguments, const char *log, pid_t *child) {
     const DWORD group = log ? CREATE_NEW_PROCESS_GROUP : 0;
     const bool good = CreateProcessW(NULL, wide, NULL, NULL, TRUE, group, NULL, NULL, &start, &made);
     const int reason = good ? 0 : GetLastError() == ERROR_FILE_NOT_FOUND ? ENOENT : EACCES;
+
     if (good) {
         CloseHandle(made.hThread);
         *child = (pid_t)(intptr_t)made.hProcess;
