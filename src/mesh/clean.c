@@ -27,6 +27,7 @@ void mesh_leave_out_copies(Work *work) {
         uint32_t min = MESH_NONE;
         for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++)
             if (old->corner[h] < min) min = old->corner[h];
+
         uint32_t g = head[min];
         for (; g != MESH_NONE; g = next[g]) {
             bool same = old->first[g + 1] - old->first[g] == old->first[f + 1] - old->first[f];
@@ -44,6 +45,7 @@ void mesh_leave_out_copies(Work *work) {
             work_did(work, MESH_DUPLICATE, 1, work_face_name(work, old->origin[f]));
             continue;
         }
+
         next[f] = head[min];
         head[min] = f;
     }

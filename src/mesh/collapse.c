@@ -59,6 +59,7 @@ static bool join_ends(Shrink *shrink, uint32_t half) {
     bool first = shrink->open[a] != shrink->open[b] ? shrink->open[a] : shrink->stays[a] < shrink->stays[b];
     uint32_t stays = first ? shrink->stays[a] : shrink->stays[b], root;
     uint8_t open = shrink->open[a] | shrink->open[b];
+
     sets_join(shrink->set, a, b);
     root = sets_find(shrink->set, a);
     shrink->stays[root] = stays;
@@ -81,6 +82,7 @@ static void join_uv(Shrink *shrink, const uint8_t *several) {
     for (uint32_t h = 0; h < faces->corner_count; h++) {
         uint32_t v = faces->corner[h], to = faces_next(faces, work->face, h), g;
         if (!several[v]) continue;
+
         double length = double_max(side_length(work, h), shrink->min), same = 0;
         for (int k = 0; k < 2; k++) same = double_max(same, fabs((double)faces->uv[to][k] - (double)faces->uv[h][k]));
         same *= 4 * shrink->min / length;
@@ -89,6 +91,7 @@ static void join_uv(Shrink *shrink, const uint8_t *several) {
             if (fabs((double)faces->uv[g][0] - (double)faces->uv[h][0]) <= same &&
                 fabs((double)faces->uv[g][1] - (double)faces->uv[h][1]) <= same)
                 break;
+
         if (g != MESH_NONE) memcpy(faces->uv[h], faces->uv[g], sizeof *faces->uv);
         else {
             next[h] = head[v];
@@ -111,6 +114,7 @@ SingeResult mesh_shrink(Work *work) {
 
     for (uint32_t h = 0; h < faces->corner_count; h++) lengths[h] = side_length(work, h);
     qsort(lengths, faces->corner_count, sizeof *lengths, by_size);
+
     const double min = work->smallest * lengths[faces->corner_count / 2];
     uint32_t count = 0, joined = 0;
     for (uint32_t h = 0; h < faces->corner_count; h++) {
@@ -137,6 +141,7 @@ SingeResult mesh_shrink(Work *work) {
     work_mark_open(work, shrink.open);
     memcpy(shrink.low, work->position, vertices * sizeof *shrink.low);
     memcpy(shrink.high, work->position, vertices * sizeof *shrink.high);
+
     for (uint32_t i = 0; i < count; i++) {
         if (!join_ends(&shrink, list[i].half)) continue;
         uint32_t face = work->face[list[i].half];

@@ -38,6 +38,7 @@ static double grid_noise(double x, double y, double wavelength, uint32_t seed) {
 
 void mesh_grid_wear(Mesh *mesh, uint32_t cells_x, uint32_t cells_y, const GridWear *wear) {
     if (!(wear->jitter > 0) && !(wear->displacement > 0)) return;
+
     const double jitter_wavelength = 3.7; // cells: neighbours move nearly alike, so cells stay convex
     uint32_t row = cells_x + 1, last = mesh->vertex_count - 1;
     double size_x = (double)mesh->positions[3 * last] * 2, size_y = (double)mesh->positions[3 * last + 1] * 2;
@@ -61,6 +62,7 @@ void mesh_grid_wear(Mesh *mesh, uint32_t cells_x, uint32_t cells_y, const GridWe
         float *position = mesh->positions + 3 * (size_t)v, *uv = mesh->uv + 2 * (size_t)v;
         uv[0] = (float)x;
         uv[1] = (float)y;
+
         position[0] = (float)((x - 0.5) * size_x);
         position[1] = (float)((y - 0.5) * size_y);
 
@@ -76,6 +78,7 @@ SingeResult mesh_grid(float size_x, float size_y, uint32_t cells_x, uint32_t cel
         return refuse(error, SINGE_ERROR_ARGUMENT, "grid", -1, "grid: both sizes must be positive and finite");
     if (cells_x < 1 || cells_y < 1)
         return refuse(error, SINGE_ERROR_ARGUMENT, "grid", -1, "grid: needs at least one cell each way");
+
     uint64_t vertices = ((uint64_t)cells_x + 1) * ((uint64_t)cells_y + 1);
     if (cells_x > MESH_COUNT_LIMIT || cells_y > MESH_COUNT_LIMIT || vertices > MESH_COUNT_LIMIT)
         return refuse(error, SINGE_ERROR_LIMIT, "grid", -1, "grid: %u by %u cells are too many", cells_x, cells_y);
@@ -111,5 +114,6 @@ SingeResult mesh_grid(float size_x, float size_y, uint32_t cells_x, uint32_t cel
             cell[2] = first + row + 1;
             cell[3] = first + row;
         }
+
     return SINGE_OK;
 }

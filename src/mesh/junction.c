@@ -38,14 +38,17 @@ static void look_along(Junctions *j, uint32_t a, uint32_t b) {
     const int steps = (int)double_min(1e4, ceil(length / j->positions.size));
     double d[3];
     sub3(work->position[b], work->position[a], d);
+
     const double square = dot3(d, d), max = double_max(work->weld, beside * sqrt(square));
     j->count = 0;
 
     for (int s = 0; s <= steps && length > 0; s++) {
         double at[3];
         int64_t own[3];
+
         for (int k = 0; k < 3; k++)
             at[k] = work->position[a][k] + (work->position[b][k] - work->position[a][k]) * s / steps;
+
         positions_box(&j->positions, at, own);
         for (int i = 0; i < 27; i++) {
             const int64_t box[3] = {own[0] + i % 3 - 1, own[1] + i / 3 % 3 - 1, own[2] + i / 9 - 1};
@@ -90,12 +93,14 @@ static bool list_open(Junctions *j) {
     for (int fill = 0; fill < 2; fill++) {
         for (uint32_t h = 0; h < faces->corner_count; h++) {
             if (work->twin[h] != MESH_NONE) continue;
+
             uint32_t a = faces->corner[h], b = faces->corner[faces_next(faces, work->face, h)];
             if (fill) {
                 j->open_to[j->open_first[a + 1]++] = b;
                 j->open_to[j->open_first[b + 1]++] = a;
                 continue;
             }
+
             j->open_first[a + 2]++;
             j->open_first[b + 2]++;
             total += distance3(work->position[a], work->position[b]);
@@ -137,8 +142,10 @@ static uint32_t put_all(Junctions *j, const uint8_t *left, Faces *out) {
                 const bool joined = open_edge(j, before, on->vertex) || open_edge(j, on->vertex, after);
                 before = on->vertex;
                 if (!joined) continue;
+
                 added++;
                 if (!out) continue;
+
                 const uint32_t at = out->corner_count;
                 faces_push(out, on->vertex, old, h);
                 out->id[at] = work->source[on->vertex];
@@ -163,6 +170,7 @@ SingeResult mesh_junctions(Work *work) {
     const Faces before = work->faces;
     const uint32_t added = put_all(j, left, NULL), corners = before.corner_count + added;
     if (!added) return SINGE_OK;
+
     Faces after = work_faces(work, before.count, corners);
     if (work->no_memory) return SINGE_OK;
     (void)put_all(j, left, &after);
@@ -177,6 +185,7 @@ SingeResult mesh_junctions(Work *work) {
             left[f] = !same && loops_find(&loops, f) == FACE_CROSSED;
             crossed = crossed || left[f];
         }
+
     if (crossed) {
         work->faces = before;
         work_edges(work);

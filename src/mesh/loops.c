@@ -43,6 +43,7 @@ static uint32_t leave_out_spikes(const Loops *loops, uint32_t *ring, uint32_t n)
             cross3(p, q, normal);
             spike = dot3(p, q) > 0 && dot3(normal, normal) <= FACE_THIN * FACE_THIN * dot3(p, p) * dot3(q, q);
         }
+
         if (!spike) {
             at++;
             good++;
@@ -89,11 +90,13 @@ static void fall_apart(Loops *loops, uint32_t n, bool all) {
     for (uint32_t i = 0; i < n; i++) {
         for (uint32_t at = depth; at-- > 0;) {
             if (vertex_of(loops, loops->stack[at]) != vertex_of(loops, loops->ring[i])) continue;
+
             double area = 0, part[3]; // along the normal of the whole
             if (depth - at >= 3) {
                 polygon_normal(&loops->cut, loops->stack + at, depth - at, part);
                 area = dot3(part, normal);
             }
+
             if (!all && fabs(area) > min && !(area > 0 && left - area > min)) continue;
             end_loop(loops, loops->stack + at, depth - at);
             left -= area;
@@ -116,6 +119,7 @@ bool loops_is_flat(const Loops *loops, const uint32_t *ring, uint32_t n) {
         cross3(p, q, m);
         area += sqrt(dot3(m, m));
     }
+
     return !(area > FACE_THIN * longest * longest);
 }
 
@@ -128,6 +132,7 @@ static bool cut_loops(Loops *loops) {
         const uint32_t *ring = loops->corner + loops->end[k], n = loops->end[k + 1] - loops->end[k];
         loops->triangles[k] = loops->cut.count;
         polygon_normal(&loops->cut, ring, n, normal);
+
         bool idle = loops_is_flat(loops, ring, n);
         for (uint32_t other = 0; other < k && !idle; other++) {
             idle = loops->end[other + 1] - loops->end[other] == n;
@@ -137,6 +142,7 @@ static bool cut_loops(Loops *loops) {
                 idle = j < n;
             }
         }
+
         if (idle) continue;
         if (!polygon_cut(&loops->cut, ring, n)) return false;
         if (dot3(normal, normal) > dot3(largest, largest)) memcpy(largest, normal, sizeof largest);
@@ -172,6 +178,7 @@ FaceKind loops_find(Loops *loops, uint32_t face) {
         double d[3], nearest = 1;
         uint32_t on = MESH_NONE; // the one nearest to a
         sub3(position_of(loops, b), position_of(loops, a), d);
+
         const double square = dot3(d, d);
         for (uint32_t other = 0; other < n; other++) {
             const uint32_t half = loops->ring[other];
@@ -179,6 +186,7 @@ FaceKind loops_find(Loops *loops, uint32_t face) {
             sub3(position_of(loops, half), position_of(loops, a), e);
             double t = dot3(e, d) / square;
             if (!(t > beside && t < 1 - beside && t < nearest)) continue;
+
             for (int k = 0; k < 3; k++) off[k] = e[k] - t * d[k];
             if (dot3(off, off) <= beside * beside * square) {
                 nearest = t;

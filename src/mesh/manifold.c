@@ -62,6 +62,7 @@ static void join_around(Work *work, const uint32_t *halves, uint32_t size) {
     sub3(b, a, side);
     away_from(work, halves[0], first);
     cross3(side, first, across);
+
     const double length = sqrt(dot3(across, across));
     for (uint32_t i = 0; i < size; i++) {
         away_from(work, halves[i], away);
@@ -87,6 +88,7 @@ static void join_around(Work *work, const uint32_t *halves, uint32_t size) {
         const uint32_t next = (best + 1) % size, p = around[best].half, q = around[next].half;
         work->twin[p] = q;
         work->twin[q] = p;
+
         uint32_t kept = 0;
         for (uint32_t i = 0; i < size; i++)
             if (i != best && i != next) around[kept++] = around[i];
@@ -132,6 +134,7 @@ static void cut_edge(Work *work, const uint32_t *halves, uint32_t size, uint32_t
                 b = halves[i];
             }
         }
+
     if (a == MESH_NONE) return;
     twin[a] = b;
     twin[b] = a;
@@ -156,12 +159,14 @@ static void decide(Work *work, Turn *turn, uint32_t begin, uint32_t end) {
         face_area(work, f, normal);
         area[turn->flip[f]] += sqrt(dot3(normal, normal));
         sub3(work->position[faces->corner[faces->first[f]]], origin, a);
+
         for (uint32_t h = faces->first[f] + 1; h + 1 < faces->first[f + 1]; h++) {
             sub3(work->position[faces->corner[h]], origin, b);
             sub3(work->position[faces->corner[h + 1]], origin, c);
             cross3(b, c, n);
             under += dot3(a, n);
         }
+
         volume += (turn->flip[f] ? -1 : 1) * under;
         for (uint32_t h = faces->first[f]; h < faces->first[f + 1]; h++) closed = closed && work->twin[h] != MESH_NONE;
     }
@@ -196,6 +201,7 @@ static void turn_faces(Work *work) {
 
     for (uint32_t f = 0; f < count; f++) {
         if (turn.seen[f]) continue;
+
         uint32_t begin = end;
         turn.seen[f] = 1;
         turn.queue[end++] = f;
@@ -216,6 +222,7 @@ static void turn_faces(Work *work) {
                 }
             }
         }
+
         decide(work, &turn, begin, end);
         work->report->components++;
     }
@@ -229,6 +236,7 @@ static void turn_faces(Work *work) {
             if (uv) memcpy(uv[side], faces->uv[from], sizeof *uv);
             twin[side] = t == MESH_NONE ? t : turn.flip[work->face[t]] ? turned_position(faces, work->face[t], t) : t;
         }
+
     faces->corner = corner;
     faces->id = id;
     faces->uv = uv;
@@ -302,6 +310,7 @@ static void part_sides(Work *work) {
         size = work_edge_size(work, order, k);
         const bool two = size == 2 && old->corner[order[k]] != old->corner[order[k + 1]]; // joined faces
         if (size == 1 || two) continue;
+
         for (uint32_t i = 0, sheets = 0; i < size; i++) {
             const uint32_t half = order[k + i], twin = work->twin[half];
             bool second = false; // the twin came before, so it has its corner

@@ -89,6 +89,7 @@ static bool search(Match *m, uint32_t root) {
         for (uint32_t i = m->arc_first[v]; i < m->arc_first[v + 1]; i++) {
             uint32_t u = m->arc_to[i];
             if (m->base[v] == m->base[u] || m->mate[v] == u) continue;
+
             if (u == root || (m->mate[u] != MESH_NONE && m->parent[m->mate[u]] != MESH_NONE)) {
                 shrink_cycle(m, v, u);
             } else if (m->parent[u] == MESH_NONE) {
@@ -101,11 +102,13 @@ static bool search(Match *m, uint32_t root) {
 
                 uint32_t w = m->mate[u];
                 touch(m, w);
+
                 if (m->open && m->open[w]) {
                     m->mate[w] = MESH_NONE;
                     change_over(m, u);
                     return true;
                 }
+
                 m->outer[w] = 1;
                 m->queue[m->queued++] = w;
             }

@@ -47,12 +47,15 @@ bool mesh_report_line(const MeshReport *report, int index, char *text, size_t si
         const uint32_t count = report->count[i];
         const RepairText *words = &texts[i];
         if (!count || --index) continue;
+
         int length = snprintf(text, size, "%u %s", count, count == 1 ? words->one : words->many);
         if (!words->at || length < 0 || (size_t)length >= size) return true;
+
         const bool line = words->at[0] == 'f' && report->lines;
         snprintf(text + length, size - (size_t)length, line ? " (%s %u)" : " (%s %u, from 0)",
                  line ? "line" : words->at, report->first[i]);
         return true;
     }
+
     return false;
 }

@@ -73,6 +73,7 @@ static double worth_of(const Pairs *pairs, const uint32_t half[3], const double 
     sub3(work->position[b], work->position[a], p);
     sub3(work->position[c], work->position[b], q);
     cross3(p, q, m);
+
     double min =
         double_min(pair_angle(work, a, b, c), double_min(pair_angle(work, b, c, a), pair_angle(work, c, a, b)));
     return dot3(m, normal) > 0 ? min : -1 - min;
@@ -100,6 +101,7 @@ static bool cut_faces(Pairs *pairs) {
     Faces out = work_faces(work, triangles, 3 * triangles);
     uint32_t *ring = work_new(work, old->corner_count, sizeof *ring);
     PolygonCut cut;
+
     work_edges(work);
     pairs->before = *old;
     pairs->before_face = work->face;
@@ -108,6 +110,7 @@ static bool cut_faces(Pairs *pairs) {
     pairs->mate = work_new(work, triangles, sizeof *pairs->mate);
     pairs->whole = work_new(work, triangles, sizeof *pairs->whole);
     if (work->no_memory || !polygon_begin(&cut, work, old)) return true;
+
     memset(pairs->mate, 0xff, triangles * sizeof *pairs->mate);
     memset(pairs->whole, 0xff, triangles * sizeof *pairs->whole);
 
@@ -135,6 +138,7 @@ static bool cut_faces(Pairs *pairs) {
         cut.count = 0;
         if (n == 3) push_triangle(pairs, &out, ring[0], ring[1], ring[2], old->origin[f]);
         else if (!polygon_cut(&cut, ring, n)) return false;
+
         for (uint32_t t = 0; t < cut.count; t++) {
             const uint32_t *half = cut.triangle[t];
             push_triangle(pairs, &out, half[0], half[1], half[2], old->origin[f]);
@@ -224,8 +228,10 @@ static void offer(Pairs *pairs, uint32_t triangle) {
             uint32_t inner = i < 2 ? name : twin, other = i < 2 ? twin : name;
             uint32_t side = i & 1 ? pair_next3(inner) : pair_last3(inner), across = work->twin[side];
             if (across == MESH_NONE || pairs->mate[across / 3] == MESH_NONE) continue;
+
             uint32_t shared = shared_half(pairs, across / 3);
             if (shared == MESH_NONE || shared == across) continue;
+
             uint32_t beyond = work->twin[shared];
             double from = quad_angle(pairs, side, inner, other) + quad_angle(pairs, pair_next3(across), shared, beyond);
             double to = quad_angle(pairs, pair_next3(side), inner, other) + quad_angle(pairs, across, shared, beyond);
@@ -234,6 +240,7 @@ static void offer(Pairs *pairs, uint32_t triangle) {
 
         PairHeap *heap = &pairs->heap;
         const PairItem item = {pairs->cost[name] - straight_gain * gain, name};
+
         if (heap->count == heap->capacity) {
             uint32_t capacity = 2 * heap->capacity + 64;
             PairItem *items = work_new(pairs->work, capacity, sizeof *items);

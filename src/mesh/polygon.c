@@ -33,6 +33,7 @@ bool polygon_begin(PolygonCut *cut, Work *work, const Faces *faces) {
     cut->ring = work_new(work, max, sizeof *cut->ring);
     cut->worth = work_new(work, max, sizeof *cut->worth);
     cut->triangle = work_new(work, max, sizeof *cut->triangle);
+
     return !work->no_memory;
 }
 
@@ -76,6 +77,7 @@ static double turn2(const double *a, const double *b, const double *c) {
 static bool is_star(double (*at)[2], uint32_t n) {
     double centroid[2] = {0, 0};
     uint32_t rounds = 0; // a ring that winds twice crosses the centroid's height upwards twice
+
     for (uint32_t i = 0; i < n; i++)
         for (int k = 0; k < 2; k++) centroid[k] += at[i][k] / n;
     for (uint32_t i = 0; i < n; i++) {
@@ -83,6 +85,7 @@ static bool is_star(double (*at)[2], uint32_t n) {
         if (!(turn2(centroid, a, b) > 0)) return false;
         rounds += a[1] < centroid[1] && b[1] >= centroid[1];
     }
+
     return rounds == 1;
 }
 
@@ -104,6 +107,7 @@ bool polygon_is_star(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
         }
         star = is_star(quad, 4);
     }
+
     return star;
 }
 
@@ -143,6 +147,7 @@ static double worth_by_diagonal(PolygonCut *cut, uint32_t a, uint32_t b) {
         if (low < ends[0] || (low == ends[0] && high < ends[1])) from = at + 1;
         else to = at;
     }
+
     return 1;
 }
 
@@ -175,6 +180,7 @@ static double ear_worth(PolygonCut *cut, uint32_t n, uint32_t k) {
         const double *p = cut->at[i], *before = cut->at[(i + n - 1) % n], *after = cut->at[(i + 1) % n];
         if (p[0] < low[0] || p[0] > high[0] || p[1] < low[1] || p[1] > high[1]) continue;
         if (i == a || i == k || i == c) continue;
+
         int same = 0;
         while (same < 3 && !(p[0] == ear[same][0] && p[1] == ear[same][1])) same++;
         const double *o = ear[same % 3], *q = ear[(same + 1) % 3], *r = ear[(same + 2) % 3];
@@ -182,6 +188,7 @@ static double ear_worth(PolygonCut *cut, uint32_t n, uint32_t k) {
                                      : turn2(o, q, p) >= 0 && turn2(q, r, p) >= 0 && turn2(r, o, p) >= 0;
         if (enters) worth = -1;
     }
+
     return worth >= 0 ? worth * worth_by_diagonal(cut, a, c) : worth;
 }
 
@@ -267,6 +274,7 @@ bool polygon_cut(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
         double p[3], q[3];
         polygon_normal(cut, a, 3, p);
         polygon_normal(cut, b, 3, q);
+
         double square = dot3(p, p) * dot3(q, q);
         double fold = square > 0 ? DEGREES * acos(double_max(-1, double_min(1, dot3(p, q) / sqrt(square)))) : 180;
         if (fold < best) {
@@ -322,6 +330,7 @@ bool polygon_overlaps(PolygonCut *cut, const double normal[3]) {
 
     const double rounding = 1e-7 * (high - low) * (high - low);
     bool overlaps = false;
+
     qsort(seen, cut->count, sizeof *seen, by_low);
     for (uint32_t i = 0; i < cut->count && !overlaps; i++)
         for (uint32_t k = i + 1; k < cut->count && seen[k].low < seen[i].high && !overlaps; k++)

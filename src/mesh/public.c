@@ -61,6 +61,7 @@ static bool take(const SingeMeshDef *def, uint32_t corners, Polygons *polygons) 
                            .attributes = (SingeAttribute *)(uintptr_t)def->attributes};
     polygons->first = store_new(def->allocator, (size_t)def->face_count + 1, sizeof *polygons->first);
     if (!polygons->first) return false;
+
     polygons->first[0] = 0;
     for (uint32_t f = 0; f < def->face_count; f++)
         polygons->first[f + 1] = polygons->first[f] + (def->face_sizes ? def->face_sizes[f] : 3);
@@ -68,11 +69,13 @@ static bool take(const SingeMeshDef *def, uint32_t corners, Polygons *polygons) 
     polygons->uv = (float *)(uintptr_t)def->corner_uv;
     if (def->corner_uv || !def->uv) return true;
     if (!(polygons->uv = store_new(def->allocator, corners, 2 * sizeof *polygons->uv))) return false;
+
     for (uint32_t h = 0; h < corners; h++) {
         const uint32_t v = def->corners[h]; // checked later, by mesh_make
         for (size_t k = 0; k < 2; k++)
             polygons->uv[2 * (size_t)h + k] = v < def->vertex_count ? def->uv[2 * (size_t)v + k] : 0;
     }
+
     return true;
 }
 
@@ -124,9 +127,11 @@ SingeResult singe_mesh_create(const SingeMeshDef *given, SingeMesh **mesh, Singe
             result = refuse(error, SINGE_ERROR_MESH, "mesh", (int64_t)(i / 2),
                             "%s: corner %llu (from 0) has a uv that is not finite", short_name(name),
                             (unsigned long long)(i / 2));
+
     if (!result) result = mesh_make(name, &polygons, &options, def.allocator, &made->mesh, &report, error);
     store_free(def.allocator, polygons.first, (size_t)def.face_count + 1, sizeof *polygons.first);
     if (!def.corner_uv) store_free(def.allocator, polygons.uv, corners, 2 * sizeof *polygons.uv);
+
     if (result) {
         store_free(def.allocator, made, 1, sizeof *made);
         return result;
@@ -146,8 +151,10 @@ SingeResult singe_mesh_create_grid(const SingeGridDef *given, SingeMesh **mesh, 
     if (!(def.jitter >= 0 && def.jitter <= 0.3f)) return bad(error, "grid: jitter must be between 0 and 0.3");
     if (!(def.displacement >= 0 && isfinite(def.displacement)))
         return bad(error, "grid: displacement must be 0 or more");
+
     SingeMesh *made = new_mesh(def.allocator);
     if (!made) return refuse_memory(error, "grid", "grid");
+
     SingeResult result =
         mesh_grid(def.size[0], def.size[1], def.cells[0], def.cells[1], def.allocator, &made->mesh, error);
     if (result) {

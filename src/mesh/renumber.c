@@ -56,6 +56,7 @@ static uint32_t renumber_walk(Order *order, uint32_t lower) {
             renumber_number(order, faces->corner[next4(top)]);
             if (i + 1 == count) renumber_number(order, faces->corner[top]);
         }
+
     return above;
 }
 
@@ -134,6 +135,7 @@ void mesh_order(Work *work) {
             if (work->twin[next4(across4(h))] == MESH_NONE) corner = h; // open below and to the left
             else if (open == MESH_NONE) open = h;
         }
+
         searches--;
         if (corner != MESH_NONE) side = corner;
         else if (open != MESH_NONE) side = open;

@@ -44,6 +44,7 @@ static SingeResult check_values(const Work *work) {
     const Polygons *file = work->file;
     if (file->face_count == 0)
         return refuse(work->error, SINGE_ERROR_MESH, "mesh", -1, "%s: has no faces", short_name(work->name));
+
     for (size_t i = 0; i < 3 * (size_t)file->vertex_count; i++)
         if (!isfinite(file->positions[i]))
             return refuse(work->error, SINGE_ERROR_MESH, "mesh", (int64_t)(i / 3),
@@ -56,6 +57,7 @@ static SingeResult check_values(const Work *work) {
         if (file->corners[i] >= file->vertex_count)
             return refuse(work->error, SINGE_ERROR_MESH, "mesh", i, "%s: a face uses vertex %u of %u",
                           short_name(work->name), file->corners[i], file->vertex_count);
+
     return SINGE_OK;
 }
 
@@ -64,6 +66,7 @@ static void take(Work *work) {
     const Polygons *file = work->file;
     const uint32_t count = file->vertex_count;
     const size_t attributes = work->attribute_count = file->attribute_count;
+
     work->vertex_capacity = work->vertex_count = count;
     work->position = work_new(work, count, sizeof *work->position);
     work->source = work_new(work, count, sizeof *work->source);
@@ -85,6 +88,7 @@ static void take(Work *work) {
     memcpy(faces.corner, file->corners, file->corner_count * sizeof *faces.corner);
     for (uint32_t h = 0; h < file->corner_count; h++) faces.id[h] = (int32_t)file->corners[h];
     if (faces.uv) memcpy(faces.uv, file->uv, file->corner_count * sizeof *faces.uv);
+
     for (uint32_t f = 0; f < faces.count; f++) {
         uint32_t corners = faces.first[f + 1] - faces.first[f];
         faces.origin[f] = f;
@@ -124,6 +128,7 @@ static bool hand_over_attributes(const Work *work, const uint32_t *number, Mesh 
         for (uint32_t v = 0; v < work->vertex_count; v++)
             if (number[v] != MESH_NONE) values[number[v]] = work->attributes[v * (size_t)work->attribute_count + k];
     }
+
     return true;
 }
 
@@ -138,6 +143,7 @@ static bool hand_over(Work *work, Mesh *mesh) {
     for (uint32_t v = 0; v < work->vertex_count; v++) number[v] = number[v] ? mesh->vertex_count++ : MESH_NONE;
     mesh->cell_count = faces->count;
     mesh->source_count = work->file->vertex_count;
+
     const SingeAllocator a = mesh->allocator;
     const size_t vertices = mesh->vertex_count, cells = mesh->cell_count;
     mesh->positions = store_new(a, vertices, 3 * sizeof *mesh->positions);
@@ -202,9 +208,11 @@ static uint32_t unsound_quad(const Work *work) {
             longest = double_max(longest, length);
             shortest = double_min(shortest, length);
         }
+
         face_area(work, f, normal);
         if (!(sqrt(dot3(normal, normal)) > FACE_THIN * longest * longest && shortest > FACE_THIN * longest)) return f;
     }
+
     return MESH_NONE;
 }
 
@@ -264,6 +272,7 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
             low[k] = double_min(low[k], x);
             high[k] = double_max(high[k], x);
         }
+
     work->weld = options->weld > 0 ? (double)options->weld : (double)MESH_WELD * distance3(low, high);
     work->smallest = (double)options->smallest;
 
@@ -281,6 +290,7 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
     bool all_quads = true, pair = options->quads == MESH_QUADS_PAIR;
     for (uint32_t f = 0; f < work->faces.count; f++)
         all_quads = all_quads && work->faces.first[f + 1] - work->faces.first[f] == 4;
+
     if (pair && !all_quads) {
         const Faces before = work->faces;
         uint32_t most = mesh_pair(work) && !work->no_memory ? 0 : UINT32_MAX;
@@ -289,12 +299,14 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
         uint32_t *order = most ? NULL : work_sorted_edges(work);
         for (uint32_t k = 0, size; order && k < work->faces.corner_count && most <= 2; k += size)
             most = size = work_edge_size(work, order, k);
+
         if (most > 2 || unsound_quad(work) != MESH_NONE) { // splits the old faces instead
             work->faces = before;
             work->report->count[MESH_PAIRED] = work->report->count[MESH_HALVED] = 0;
             pair = work->no_memory;
         }
     }
+
     if (!pair && !work->no_memory) split_faces(work);
     if (!work->no_memory) mesh_leave_out_copies(work); // two triangles on top of a quad become a copy of it
     if (work->no_memory) return SINGE_OK;

@@ -61,6 +61,7 @@ void mesh_weld(Work *work) {
             positions_add(work, &positions, v);
             continue;
         }
+
         to[v] = found;
         work_did(work, MESH_WELDED, 1, v);
     }

@@ -47,6 +47,7 @@ Faces work_faces(Work *work, uint32_t count, uint32_t corners) {
 bool work_faces_room(Work *work, Faces *faces, uint32_t more_faces, uint32_t more_corners) {
     const uint32_t count = faces->count + more_faces, corners = faces->corner_count + more_corners;
     if (count <= faces->capacity && corners <= faces->corner_capacity) return true;
+
     Faces larger = work_faces(work, count + count / 2, corners + corners / 2);
     if (work->no_memory) return false;
 
@@ -81,12 +82,14 @@ void faces_end(Faces *faces, uint32_t origin) {
 uint32_t work_vertex(Work *work, const uint32_t *of, uint32_t count) {
     const size_t attributes = work->attribute_count;
     if (work->no_memory) return MESH_NONE;
+
     if (work->vertex_count == work->vertex_capacity) {
         const uint32_t capacity = work->vertex_capacity + work->vertex_capacity / 2 + 16;
         double(*position)[3] = work_new(work, capacity, sizeof *position);
         int32_t *source = work_new(work, capacity, sizeof *source);
         float *values = work_new(work, capacity * attributes, sizeof *values);
         if (work->no_memory) return MESH_NONE;
+
         memcpy(position, work->position, work->vertex_count * sizeof *position);
         memcpy(source, work->source, work->vertex_count * sizeof *source);
         memcpy(values, work->attributes, work->vertex_count * attributes * sizeof *values);
@@ -131,6 +134,7 @@ static void edge_ends(const Work *work, uint32_t half, uint32_t *low, uint32_t *
 static void edges_sort(const Work *work, bool high, const uint32_t *from, uint32_t *to, uint32_t *slot) {
     const uint32_t count = work->faces.corner_count;
     memset(slot, 0, ((size_t)work->vertex_count + 1) * sizeof *slot);
+
     uint32_t end[2];
     for (uint32_t h = 0; h < count; h++) {
         edge_ends(work, h, &end[0], &end[1]);
@@ -175,6 +179,7 @@ void work_edges(Work *work) {
     uint32_t *order = work_sorted_edges(work);
     work->twin = work_new(work, count, sizeof *work->twin);
     if (work->no_memory) return;
+
     for (uint32_t k = 0, size; k < count; k += size) {
         size = work_edge_size(work, order, k);
         for (uint32_t i = 0; i < size; i++) work->twin[order[k + i]] = MESH_NONE;
@@ -202,6 +207,7 @@ double distance3(const double *a, const double *b) {
 void face_area(const Work *work, uint32_t face, double normal[3]) {
     const Faces *faces = &work->faces;
     const double *o = work->position[faces->corner[faces->first[face]]];
+
     normal[0] = normal[1] = normal[2] = 0;
     for (uint32_t h = faces->first[face] + 1; h + 1 < faces->first[face + 1]; h++) {
         double a[3], b[3], n[3];

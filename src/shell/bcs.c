@@ -43,6 +43,7 @@ static SingeResult shell_alloc(Memory *memory, const SheetSource *sources, uint3
         return error_set(error, SINGE_ERROR_LIMIT, "sheet", -1,
                          "%u sheets with %llu vertices and %llu cells are too many", source_count,
                          (unsigned long long)vertices, (unsigned long long)cells);
+
     uint32_t v = (uint32_t)vertices, c = (uint32_t)cells, p = v + c;
     *shell = (Shell){.vertex_count = v, .cell_count = c, .particle_count = p, .sheet_count = source_count};
     if ((seams && (!NEW(memory, shell->corner_uv, c) || !NEW(memory, shell->corner_source, c))) ||
@@ -59,6 +60,7 @@ static SingeResult shell_alloc(Memory *memory, const SheetSource *sources, uint3
 void shell_free(Memory *memory, Shell *shell) {
     matter_free(memory, shell);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) strand_free(memory, &shell->springs[colour]);
+
     FREE(memory, shell->cells, shell->cell_count);
     FREE(memory, shell->cell_springs, shell->cell_count);
     FREE(memory, shell->rest_position, shell->particle_count);
@@ -84,6 +86,7 @@ static void bcs_lay_sheets(Shell *shell, const SheetSource *sources) {
         const SheetSource *source = &sources[s];
         Sheet *sheet = &shell->sheets[s];
         uint32_t count = source->sheet.vertex_count, centre = shell_centre(shell, cell);
+
         memcpy(sheet, &source->sheet, sizeof *sheet);
         sheet->vertex_first = vertex;
         sheet->cell_first = cell;
@@ -277,6 +280,7 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
                                            [SINGE_GREEN] = mesh.shared_count,
                                            [SINGE_BLUE] = mesh.edge_count,
                                            [SINGE_YELLOW] = 2 * shell->cell_count};
+
     for (uint32_t c = 0; !result && c < shell->cell_count; c++) {
         for (uint32_t i = 0; i < 4; i++) shell->cell_springs[c].red[i] = 4 * c + i;
         for (uint32_t i = 0; i < 2; i++) shell->cell_springs[c].yellow[i] = 2 * c + i;

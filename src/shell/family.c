@@ -28,8 +28,10 @@ static bool order_by_breadth(Memory *memory, const ItemNodes *items, uint32_t *o
     // from each item that no other one has reached
     for (uint32_t seed = 0; done && seed < items->item_count; seed++) {
         if (seen[seed]) continue;
+
         uint32_t head = tail;
         order[tail++] = seed;
+
         seen[seed] = 1;
         for (; head < tail; head++)
             for (uint32_t k = items->first[order[head]]; k < items->first[order[head] + 1]; k++) {
@@ -63,14 +65,17 @@ uint32_t family_colour(Memory *memory, const ItemNodes *items, uint32_t *family)
     for (uint32_t base = 0, kept; left; base += 64, left = kept) {
         kept = 0;
         for (uint32_t n = 0; n < items->node_count; n++) taken[n] = 0;
+
         for (uint32_t k = 0; k < left; k++) {
             uint32_t item = order[k], begin = items->first[item], end = items->first[item + 1], bit = 0;
             uint64_t mask = 0;
             for (uint32_t j = begin; j < end; j++) mask |= taken[items->nodes[j]];
+
             if (mask == UINT64_MAX) {
                 order[kept++] = item;
                 continue;
             }
+
             while (mask >> bit & 1) bit++;
             for (uint32_t j = begin; j < end; j++) taken[items->nodes[j]] |= UINT64_C(1) << bit;
             family[item] = base + bit;

@@ -64,6 +64,7 @@ static SingeResult match_edges(Memory *memory, Shell *shell, HalfEdges *mesh, Si
 
         uint32_t b = order[k + 1];
         CellSprings *second = &shell->cell_springs[b / 4];
+
         if (size > 2) result = edge_fail(shell, order[k + 2], "has more than two cells, the third of which is", error);
         else if (half_from(shell, a) == half_from(shell, b))
             result = edge_fail(shell, b, "runs in the same direction in two cells (one is flipped):", error);
@@ -89,11 +90,13 @@ static SingeResult find_fans(const Shell *shell, HalfEdges *mesh, SingeError *er
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         uint32_t size = mesh->fan_size[v], reached = 0;
         if (size == 0) continue;
+
         uint32_t h = mesh->fan_start[v];
         do {
             reached++;
             h = half_edge_turn(mesh, h);
         } while (h != SHELL_NONE && h != mesh->fan_start[v]);
+
         const Sheet *sheet = &shell->sheets[shell->matter.sheet[v]];
         uint32_t element = v - sheet->vertex_first;
         if (reached != size)

@@ -63,6 +63,7 @@ SingeResult material_check_scalars(const SingeMaterialDef *material, const char 
     if (!def_has_value("SingeHeatOperator", (int)material->heat_operator))
         return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': heat operator %d is unknown", sheet,
                          (int)material->heat_operator);
+
     return SINGE_OK;
 }
 
@@ -103,6 +104,7 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
     if (!follows) return SINGE_OK;
     if (!isfinite(field->param->value) || !isfinite(field->param->to)) // an infinity cannot be interpolated
         return field_fail(field->source, rule, "must vary between two finite numbers", error);
+
     switch ((int)follows->kind) {
     case SINGE_FIELD_TEXTURE:
         if (!def->uv) return field_fail(field->source, rule, "has a texture, but the sheet has no uv", error);
@@ -132,6 +134,7 @@ static float field_value(const ParamField *field, const uint32_t *vertices, int 
     const SingeParam *param = field->param;
     const SingeField *follows = field->follows;
     if (!follows) return param->value;
+
     double uv[2] = {0}, position[3] = {0}, f = 0;
     for (int i = 0; i < count; i++) {
         uint32_t v = vertices[i];
@@ -180,6 +183,7 @@ static SingeResult check_matter(const SheetSource *source, SingeError *error) {
             if (!isfinite(matter_value(source, made[k].param, i)))
                 return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s is too large for its %s",
                                  source->sheet.name, made[k].name, made[k].than);
+
     return SINGE_OK;
 }
 
@@ -204,6 +208,7 @@ SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSou
         const SingeParam *param = (const void *)((const char *)&def->material + rule->offset);
         const bool varies = param->field && param->field->kind != SINGE_FIELD_NONE;
         ParamField field = {.param = param, .follows = varies ? param->field : NULL, .source = source};
+
         if (!*values && !NEW(memory, *values, total))
             return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory for sheet '%s'",
                              source->sheet.name);

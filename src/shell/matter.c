@@ -101,6 +101,7 @@ bool matter_create(Memory *memory, Shell *shell, const SheetSource *sources) {
         if (!field_create(memory, field, first)) return false;
         if (uniform) continue;
         if (!field_vary(memory, field, particles)) return false;
+
         for (uint32_t s = 0; s < sheets; s++) {
             const Sheet *sheet = &shell->sheets[s];
             uint32_t centre = shell_centre(shell, sheet->cell_first), vertices = sources[s].sheet.vertex_count;
@@ -143,6 +144,7 @@ void matter_weigh(Shell *shell, const SheetSource *sources) {
         uint32_t vertices = source->sheet.vertex_count, total = vertices + sheet->cell_count;
         double sum = 0;
         for (uint32_t i = 0; i < total; i++) sum += matter_per_area(source, i);
+
         for (uint32_t i = 0; i < total; i++) {
             uint32_t cell = sheet->cell_first + i - vertices;
             uint32_t p = i < vertices ? sheet->vertex_first + i : shell_centre(shell, cell);

@@ -48,6 +48,7 @@ CellShape cell_shape(const float *const corners[4]) {
     sub3(p[2], p[0], diagonal[0]);
     sub3(p[3], p[1], diagonal[1]);
     cross3(diagonal[0], diagonal[1], shape.normal);
+
     double length = sqrt(dot3(shape.normal, shape.normal));
     shape.vector_area = length / 2;
     for (int k = 0; k < 3 && length > 0; k++) shape.normal[k] /= length;
@@ -75,6 +76,7 @@ void measure_particles(Shell *shell) {
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         const float *corners[4];
         for (int i = 0; i < 4; i++) corners[i] = shell->rest_position[shell->cells[c][i]];
+
         CellShape shape = cell_shape(corners);
         uint32_t centre = shell_centre(shell, c);
         double thickness = (double)field_at(matter->thickness, centre);
@@ -165,6 +167,7 @@ static FibreFrame fibre_frame(const Shell *shell, uint32_t cell) {
     Float3 along = float3_sub(float3_scale(a, db[1]), float3_scale(b, da[1]));
     if (turn == 0) along = float3_sub(p[1], p[0]);
     else if (!(turn > 0)) along = float3_scale(along, -1);
+
     Float3 e1 = float3_unit(float3_mad(along, normal, -float3_dot(along, normal)));
     float angle = field_at(shell->matter.fibre_angle, shell_centre(shell, cell));
     return (FibreFrame){e1, float3_cross(normal, e1), real_cosf(2 * angle), real_sinf(2 * angle)};
@@ -194,6 +197,7 @@ bool measure_fibres(Memory *memory, Shell *shell) {
 
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         if (!NEW(memory, shell->springs[colour].grain, shell->springs[colour].count)) return false;
+
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         const CellSprings *springs = &shell->cell_springs[c];
         FibreFrame frame = fibre_frame(shell, c);

@@ -25,6 +25,7 @@ bool sheet_read_def(const SingeSheetDef *def, SingeSheetDef *out) {
     size_t size = def->struct_size, inner;
     *out = singe_default_sheet();
     if (!struct_size_is_possible(size)) return false;
+
     memcpy(out, bytes, sheet_min(size, head));
     if (size > head) {
         if (size - head < sizeof inner) return false;
@@ -68,6 +69,7 @@ static SingeResult check_def(const SingeSheetDef *def, const char *name, SingeEr
         return argument(name, "corner_source_vertex needs corner_uv and source_vertex", error);
     if (def->source_vertex && def->source_count > INT32_MAX) return argument(name, "source_count is too large", error);
     if (def->attribute_count && !def->attributes) return argument(name, "attributes are NULL", error);
+
     for (uint32_t i = 0; i < def->attribute_count; i++)
         if (!def->attributes[i].name || !def->attributes[i].values)
             return argument(name, "an attribute has no name or no values", error);
@@ -121,6 +123,7 @@ static SingeResult check_cells(const SingeSheetDef *def, const char *name, Singe
 
         const float *p[4];
         for (int i = 0; i < 4; i++) p[i] = def->positions + 3 * (size_t)corners[i];
+
         const CellShape shape = cell_shape(p);
         if (!(shape.shortest > thin * shape.longest))
             return element_fail(name, "cell", c, "has a side without length", error);
@@ -139,6 +142,7 @@ static SingeResult check_masses(const SheetSource *source, SingeError *error) {
         const uint32_t *corners = source->cells[c];
         const float *p[4];
         for (int i = 0; i < 4; i++) p[i] = source->position[corners[i]];
+
         const double area = cell_shape(p).area;
         for (int i = 0; i < 5; i++) {
             const uint32_t particle = i < 4 ? corners[i] : vertices + c;
@@ -148,6 +152,7 @@ static SingeResult check_masses(const SheetSource *source, SingeError *error) {
                                     error);
         }
     }
+
     return SINGE_OK;
 }
 

@@ -31,6 +31,7 @@ static bool validate_sheets(const Shell *shell, ShellFault *fault) {
         if (sheet->spare_count > sheet->vertex_count)
             return fault_is(fault, "sheet %u has %u vertices, fewer than its spares", s, sheet->vertex_count);
         if (!(sheet->cell_size > 0)) return fault_is(fault, "the cells of sheet %u have no size", s);
+
         vertices += sheet->vertex_count;
         cells += sheet->cell_count;
         spares += sheet->spare_count;
@@ -58,6 +59,7 @@ static bool validate_cells(const Shell *shell, ShellFault *fault) {
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         const uint32_t *corner = shell->cells[c];
         const CellSprings *springs = &shell->cell_springs[c];
+
         for (int i = 0; i < 4; i++) {
             if (corner[i] >= shell->vertex_count)
                 return fault_is(fault, "cell %u names corner %u of %u vertices", c, corner[i], shell->vertex_count);
@@ -103,6 +105,7 @@ static bool validate_springs(const Shell *shell, int colour, ShellFault *fault) 
     for (uint32_t f = 0; f < set->family_count; f++)
         if (set->family_first[f] > set->family_first[f + 1])
             return fault_is(fault, "%s family %u ends before it begins", name, f);
+
     if (set->strand_count && set->strand_first[set->strand_count] != in_strands)
         return fault_is(fault, "the %s strands hold %u springs of %u", name, set->strand_first[set->strand_count],
                         in_strands);
@@ -119,8 +122,10 @@ static bool validate_fans(const Shell *shell, ShellFault *fault) {
     if (first[0] != 0) return fault_is(fault, "the fan of vertex 0 begins at %u", first[0]);
     if (first[shell->vertex_count] > 4 * shell->cell_count)
         return fault_is(fault, "the fans hold %u cells, more than there are corners", first[shell->vertex_count]);
+
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         if (first[v] > first[v + 1]) return fault_is(fault, "the fan of vertex %u ends before it begins", v);
+
         for (uint32_t k = first[v]; k < first[v + 1]; k++) {
             uint32_t cell = shell->fan[k];
             if (cell >= shell->cell_count)
@@ -135,6 +140,7 @@ static bool validate_fans(const Shell *shell, ShellFault *fault) {
         if (family[f] > family[f + 1]) return fault_is(fault, "family %u of cells ends before it begins", f);
     if (shell->cell_count && family[shell->cell_family_count] != shell->cell_count)
         return fault_is(fault, "the families hold %u cells of %u", family[shell->cell_family_count], shell->cell_count);
+
     for (uint32_t c = 0; c < shell->cell_count; c++)
         if (shell->cell_order[c] >= shell->cell_count)
             return fault_is(fault, "the families name cell %u of %u", shell->cell_order[c], shell->cell_count);

@@ -90,6 +90,7 @@ static void move_end(Shell *shell, SingeColour colour, uint32_t spring, uint32_t
 static TornEdge tear_edge(Shell *shell, uint32_t cell, int side, uint32_t vertex) {
     uint32_t other = shell_neighbour(shell, cell, side);
     SINGE_ASSERT(other != SHELL_NONE && shell->edge_spare_used < shell->edge_spare_count);
+
     CellSprings *goer = &shell->cell_springs[cell], *stayer = &shell->cell_springs[other];
     SpringSet *blue = &shell->springs[SINGE_BLUE];
     uint32_t edge = goer->blue[side], spare = blue->count - shell->edge_spare_count + shell->edge_spare_used;
@@ -149,12 +150,14 @@ SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split) 
     // cells that go take their edges and springs along
     for (int k = 0; k < fan->count; k++) {
         if (!goes(split, k)) continue;
+
         uint32_t cell = fan->cell[k];
         int corner = fan->corner[k], after = side_after(corner), before = side_before(corner);
         if (fan->after[k] >= 0 && !goes(split, fan->after[k]))
             result.torn[result.torn_count++] = tear_edge(shell, cell, after, v);
         if (fan->before[k] >= 0 && !goes(split, fan->before[k]))
             result.torn[result.torn_count++] = tear_edge(shell, cell, before, v);
+
         const CellSprings *springs = &shell->cell_springs[cell];
         move_end(shell, SINGE_RED, springs->red[corner], v, to);
         move_end(shell, SINGE_YELLOW, springs->yellow[corner & 1], v, to);

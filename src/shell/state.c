@@ -37,6 +37,7 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
     TAKE(state->heat.temperature, particles);
     TAKE(state->heat.temperature_peak, particles);
     if (shell_holds_water(shell)) TAKE(state->heat.water, particles);
+
     TAKE(state->burn.mass, particles);
     TAKE(state->burn.fuel, particles);
     TAKE(state->burn.burn_rate, particles);
@@ -48,6 +49,7 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
     TAKE(state->ablate.particle_flags, particles);
     TAKE(state->ablate.cell_flags, shell->cell_count);
     TAKE(state->dynamics.pinned, particles);
+
     if (shell->creases) {
         TAKE(state->dynamics.bend, shell->springs[SINGE_GREEN].count);
         TAKE(state->dynamics.crease, shell->springs[SINGE_GREEN].count);

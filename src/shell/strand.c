@@ -32,6 +32,7 @@ static void end_strand(Trace *trace) { trace->first[++trace->strand_count] = tra
 static void trace_from(Trace *trace, uint32_t step) {
     const LooseSprings *springs = trace->springs;
     begin_strand(trace, step_from(springs, step));
+
     for (;;) {
         uint32_t next = step_to(springs, step), start = trace->first[trace->strand_count];
         bool closes = trace->length - start >= 2 && next == step_from(springs, trace->steps[start]);
@@ -51,6 +52,7 @@ static void trace_from(Trace *trace, uint32_t step) {
         if (closes) trace->ring[trace->strand_count] = 1;
         if (closes || !goes_on) end_strand(trace);
         if (!goes_on) return;
+
         if (closes) begin_strand(trace, next);
         step = mate;
     }
@@ -73,6 +75,7 @@ static bool order_by_length(Memory *memory, const Trace *trace, uint32_t *order)
 
     for (uint32_t s = 0; s < trace->strand_count; s++)
         if (trace_length(trace, s) > trace_length(trace, first)) first = s;
+
     uint32_t longest = trace_length(trace, first), stride = trace_stride(trace, first);
     bool done = NEW(memory, rank, trace->strand_count) && NEW(memory, next, 2 * (size_t)longest + 2);
     for (uint32_t s = 0; s < trace->strand_count && done; s++) {
@@ -84,6 +87,7 @@ static bool order_by_length(Memory *memory, const Trace *trace, uint32_t *order)
         for (uint32_t i = 0; i <= 2 * longest; i++) next[i + 1] += next[i];
         for (uint32_t s = 0; s < trace->strand_count; s++) order[next[rank[s]]++] = s;
     }
+
     FREE(memory, rank, trace->strand_count);
     FREE(memory, next, 2 * (size_t)longest + 2);
     return done;
@@ -136,6 +140,7 @@ static bool arrange(Memory *memory, uint32_t particle_count, const Trace *trace,
         set->strand_first[s] = next;
         set->strand_ring[s] = trace->ring[sorted[s]];
         if (end - begin > set->longest) set->longest = end - begin;
+
         for (uint32_t k = begin; k < end; k++, next++) {
             set->ends[next][0] = step_from(trace->springs, trace->steps[k]);
             set->ends[next][1] = step_to(trace->springs, trace->steps[k]);
@@ -155,6 +160,7 @@ SingeResult strand_build(Memory *memory, uint32_t particle_count, const LooseSpr
     Trace trace = {.springs = springs};
     uint32_t count = springs->count;
     *set = (SpringSet){.count = count};
+
     bool done = NEW(memory, trace.steps, count) && NEW(memory, trace.first, (size_t)count + 1) &&
                 NEW(memory, trace.ring, count) && NEW(memory, trace.done, count) &&
                 NEW(memory, trace.visitor, particle_count);

@@ -10,6 +10,7 @@ static const double ADVANCE_SLACK = 0.01;
 SingeResult call_advance(SingeSim *sim, double seconds, uint32_t steps_max, uint32_t *steps) {
     const double h = (double)sim->def.time_step;
     uint32_t done = 0;
+
     if (steps) *steps = 0;
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "advance", -1, "singe_sim_commit must come before the first step");
@@ -33,6 +34,7 @@ SingeResult call_advance(SingeSim *sim, double seconds, uint32_t steps_max, uint
             sim->remainder = fmod(sim->remainder, h);
             break;
         }
+
         TRY(sim_step(sim));
         size_t room = list->capacity - list->count, count = sim->events.count < room ? sim->events.count : room;
         if (count) memcpy(list->items + list->count, sim->events.items, count * sizeof *list->items);
@@ -41,6 +43,7 @@ SingeResult call_advance(SingeSim *sim, double seconds, uint32_t steps_max, uint
         done++;
         if (steps) *steps = done;
     }
+
     return SINGE_OK;
 }
 

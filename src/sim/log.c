@@ -22,6 +22,7 @@ static void sim_log_solver(const SingeSim *sim) {
     const SingeSolverDef *solver = &sim->def.solver;
     double tolerance = (double)solver->tolerance;
     const char *each = solver->method == SINGE_SOLVER_ALL_AT_ONCE ? "system" : "colour";
+
     if (solver->method == SINGE_SOLVER_STRAND) {
         if (solver->substeps == 0)
             sim_log(sim, SINGE_LOG_INFO, "solver: %d substeps for the sheets' stiffness and load",
@@ -32,6 +33,7 @@ static void sim_log_solver(const SingeSim *sim) {
                     dynamics_plan_substeps(sim->dynamics), solver->substeps);
         return;
     }
+
     if (solver->method == SINGE_SOLVER_MASS_SPRING) {
         sim_log(sim, SINGE_LOG_INFO, "solver: mass-spring, %g N/m, %d substeps", (double)solver->stiffness,
                 dynamics_plan_substeps(sim->dynamics));
@@ -60,6 +62,7 @@ void sim_log_commit(const SingeSim *sim) {
         const Sheet *sheet = &sim->shell.sheets[s];
         sim_log(sim, SINGE_LOG_INFO, "sheet %u: cells of %.3g mm; its fire front is widened %.3g times", s,
                 1e3 * (double)sheet->cell_size, (double)sim->thickening[s]);
+
         if (sim->tear)
             sim_log(sim, SINGE_LOG_INFO,
                     "sheet %u: tears at line forces up to %.3g N/m; substeps of %.3g ms carry no more", s,
@@ -101,6 +104,7 @@ void sim_log_contacts(SingeSim *sim, const CollisionCounters *contacts) {
                 "%.4g) m; contact between them is off until they separate",
                 contacts->intersecting, (double)at[0], (double)at[1], (double)at[2]);
     }
+
     if (contacts->unresolved && !sim->crossing_warned) {
         sim->crossing_warned = true;
         sim_log(sim, SINGE_LOG_WARNING,
@@ -108,6 +112,7 @@ void sim_log_contacts(SingeSim *sim, const CollisionCounters *contacts) {
                 "intersected initially (reported once)",
                 sim->state.time);
     }
+
     if (contacts->dropped && !sim->crowd_warned) {
         sim->crowd_warned = true;
         sim_log(sim, SINGE_LOG_WARNING,

@@ -17,10 +17,12 @@ SingeResult call_add_source(SingeSim *sim, const SingeSourceDef *given, SingeSou
     if (id) *id = (SingeSourceId){0, 0};
     SingeSourceDef def;
     OBJECT_DEF(sim, "source", def, given, singe_default_source);
+
     uint32_t index;
     Source *source =
         sim_slot(sim, &sim->sources.items, &sim->sources.count, &sim->sources.capacity, sizeof *source, &index);
     if (!source) return sim_fail(sim, SINGE_ERROR_MEMORY, "source", -1, "out of memory");
+
     TRY(source_create(&sim->memory, &sim->shell, &def, source, &sim->error));
     source->generation = sim_take_slot(sim, &sim->sources.count, index);
     if (id) *id = (SingeSourceId){index, source->generation};
@@ -61,11 +63,13 @@ SingeResult call_add_collider(SingeSim *sim, const SingeColliderDef *given, Sing
     if (id) *id = (SingeColliderId){0, 0};
     SingeColliderDef def;
     OBJECT_DEF(sim, "collider", def, given, singe_default_collider);
+
     uint32_t index;
     Collider *collider =
         sim_slot(sim, &sim->colliders.items, &sim->colliders.count, &sim->colliders.capacity, sizeof *collider, &index);
     if (!collider || (sim->dynamics && !dynamics_plan_reserve(&sim->memory, sim->dynamics, index + 1)))
         return sim_fail(sim, SINGE_ERROR_MEMORY, "collider", -1, "out of memory");
+
     TRY(collider_create(&sim->memory, &def, collider, &sim->error));
     if (collider->mesh.turned || (collider->deform.pose && deform_solid(&collider->deform)->turned))
         sim_log_turned(sim, index);
@@ -94,6 +98,7 @@ SingeResult call_set_collider_vertices(SingeSim *sim, SingeColliderId id, const 
     if (collider->def.kind != SINGE_COLLIDER_DEFORMING)
         return sim_fail(sim, SINGE_ERROR_ARGUMENT, "collider", id.index, "not a deforming collider");
     if (!isfinite(time)) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "collider", -1, "the time is not finite");
+
     TRY(motion_check(collider->deform.motion.count, vertices, 1e4f, "collider", &sim->error));
     motion_set(&collider->deform.motion, vertices, sim->state.time, time);
     deform_forget(&collider->deform);

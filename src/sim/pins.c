@@ -47,6 +47,7 @@ static const float pin_position_max = 1e9f;
 static SingeResult pin_check(SingeSim *sim, const SingePinDef *def) {
     if (def->sheet.generation != 1 || def->sheet.index >= sim->sheet_count)
         return object_stale(sim, "pin", def->sheet.index);
+
     const Sheet *sheet = &sim->sheets[def->sheet.index].sheet;
     TRY(def_check(&pin_table, def, &sim->error));
     if (def->point_count == 0 && def->vertex_count == 0)
@@ -64,6 +65,7 @@ static SingeResult pin_check(SingeSim *sim, const SingePinDef *def) {
             return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "pin", k,
                              "vertex %u is out of range: sheet \"%s\" has %u", def->vertices[k], sheet->name,
                              sheet->vertex_count);
+
     return SINGE_OK;
 }
 
@@ -86,6 +88,7 @@ static void pin_aim(const SingeSim *sim, const SingePinDef *def, const Pin *pin,
     for (uint32_t k = 0; k < def->point_count; k++) {
         const float *point = def->points + 3 * (size_t)k;
         float min = INFINITY;
+
         nearest[k] = sheet->vertex_first;
         for (uint32_t v = sheet->vertex_first; v < end; v++) {
             const float d = pin_distance2(shell, v, point);
@@ -124,9 +127,11 @@ static bool pin_gather(SingeSim *sim, const SingePinDef *def, Pin *pin) {
                             (def->radius > 0 && pin_distance2(shell, i, def->points + 3 * (size_t)k) <= reach * reach);
             count += listed[i];
         }
+
         ok = NEW(memory, pin->particles, count) && NEW(memory, pin->anchors, count);
         pin->count = count;
     }
+
     if (ok) {
         Pose pose = path_pose(&pin->path, sim->state.time);
         uint32_t k = 0;
@@ -136,6 +141,7 @@ static bool pin_gather(SingeSim *sim, const SingePinDef *def, Pin *pin) {
             float3_store(pin->anchors[k++], pose_unapply(&pose, float3_load(sim->state.dynamics.position[i])));
         }
     }
+
     FREE(memory, nearest, def->point_count);
     FREE(memory, listed, shell->particle_count);
     return ok;
@@ -144,12 +150,14 @@ static bool pin_gather(SingeSim *sim, const SingePinDef *def, Pin *pin) {
 /// Finds the particles of a pin's Def, and holds them.
 static SingeResult pin_hold(SingeSim *sim, const SingePinDef *def, Pin *pin) {
     if (!pin_gather(sim, def, pin)) return sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
+
     for (uint32_t k = 0; k < pin->count; k++) {
         uint32_t particle = pin->particles[k];
         if (sim->state.dynamics.pinned[particle] == UINT8_MAX)
             return error_set(&sim->error, SINGE_ERROR_LIMIT, "pin", particle, "particle %u is held by 255 pins already",
                              particle);
     }
+
     pin_count(sim, pin, 1);
     return SINGE_OK;
 }
@@ -159,6 +167,7 @@ SingeResult call_add_pin(SingeSim *sim, const SingePinDef *given, SingePinId *id
     SingePinDef def;
     OBJECT_DEF(sim, "pin", def, given, singe_default_pin);
     TRY(pin_check(sim, &def));
+
     uint32_t index;
     Pin *pin = sim_slot(sim, &sim->pins.items, &sim->pins.count, &sim->pins.capacity, sizeof *pin, &index);
     if (!pin) return sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
@@ -177,6 +186,7 @@ SingeResult call_add_pin(SingeSim *sim, const SingePinDef *given, SingePinId *id
             NEW(&sim->memory, points, 3 * (size_t)def.point_count) && NEW(&sim->memory, vertices, def.vertex_count);
         if (ok && def.point_count) memcpy(points, def.points, 3 * (size_t)def.point_count * sizeof *points);
         if (ok && def.vertex_count) memcpy(vertices, def.vertices, def.vertex_count * sizeof *vertices);
+
         pin->waiting = def;
         pin->waiting.points = points;
         pin->waiting.vertices = vertices;
@@ -184,6 +194,7 @@ SingeResult call_add_pin(SingeSim *sim, const SingePinDef *given, SingePinId *id
         pin->waiting.path = NULL;
         if (!ok) result = sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
     }
+
     if (result) {
         sim_free_pin(sim, pin);
         return result;
@@ -208,6 +219,7 @@ SingeResult call_remove_pin(SingeSim *sim, SingePinId id) {
 SingeResult call_move_pin(SingeSim *sim, SingePinId id, uint32_t count, const SingePoseKey *path) {
     Pin *pin = OBJECT_FIND(sim->pins, id);
     if (!pin) return object_stale(sim, "pin", id.index);
+
     // anchors are relative to the pose at which the pin was added: carry them over to the new path's frame
     Pose before = path_pose(&pin->path, sim->state.time);
     TRY(path_set(&pin->path, &sim->memory, count, path, "pin", &sim->error));
@@ -247,6 +259,7 @@ SingeResult call_set_pin_positions(SingeSim *sim, SingePinId id, const float *po
         return sim_fail(sim, SINGE_ERROR_STATE, "pin", -1,
                         "call singe_sim_commit first: it chooses the particles that a pin holds");
     if (!isfinite(time)) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "the time is not finite");
+
     TRY(motion_check(pin->count, positions, pin_position_max, "pin", &sim->error));
     if (pin->count == 0) return SINGE_OK;
 
@@ -261,6 +274,7 @@ SingeResult call_set_pin_positions(SingeSim *sim, SingePinId id, const float *po
         FREE(&sim->memory, now, pin->count);
         if (!ok) return sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
     }
+
     motion_set(&pin->motion, positions, sim->state.time, time);
     return SINGE_OK;
 }
@@ -284,8 +298,10 @@ SingeResult sim_settle_objects(SingeSim *sim) {
             FREE(&sim->memory, pin->anchors, pin->count);
             pin->count = 0;
         }
+
         return result;
     }
+
     for (uint32_t i = 0; i < sim->sources.count; i++) source_settled(&sim->memory, &sim->sources.items[i]);
     for (uint32_t i = 0; i < sim->pins.count; i++) pin_stop_waiting(sim, &sim->pins.items[i]);
     if (sim->pins.count) dynamics_plan_hold(sim->dynamics, &sim->shell, &sim->state);

@@ -51,6 +51,7 @@ Recorder *recorder_open(const SingeSimDef *def, const uint8_t *bytes, size_t siz
     Memory memory = memory_make(def->allocator);
     Recorder *recorder = memory_new(&memory, 1, sizeof *recorder);
     if (!recorder) return NULL;
+
     recorder->memory = memory;
     recorder->log = def->log;
     recorder->tape.record = def->record;
@@ -65,6 +66,7 @@ Recorder *recorder_open(const SingeSimDef *def, const uint8_t *bytes, size_t siz
         if (bytes) tape_data(tape, (uint8_t *)(uintptr_t)bytes, size, 1);
         else tape_sim_def(tape, &copy);
     }
+
     recorder_flush(recorder);
     return recorder;
 }
@@ -109,10 +111,12 @@ static uint64_t hash_word(const uint8_t *bytes, size_t size, size_t width) {
         memcpy(&word, bytes, size);
         return word;
     }
+
     for (size_t i = 0; i < size; i++) {
         const size_t number = i / width * width;
         word |= (uint64_t)bytes[number + width - 1 - i % width] << 8 * i;
     }
+
     return word;
 }
 
@@ -133,6 +137,7 @@ static void hash_array(StateHash *hash, const void *array, size_t count, size_t 
 // The hash is of all that the sheets' later steps depend on, but for target lengths, which follow from masses.
 void recorder_state(Recorder *recorder, const Shell *shell, const State *state) {
     if (recorder->tape.ended) return;
+
     const size_t particles = shell->particle_count;
     StateHash hash = {
         {state->step, state->ablate.topology_version, state->tear.split_count, state->ablate.piece_count}};
@@ -147,12 +152,14 @@ void recorder_state(Recorder *recorder, const Shell *shell, const State *state) 
     hash_array(&hash, state->ablate.cell_flags, shell->cell_count, 1);
     hash_array(&hash, state->dynamics.pinned, particles, 1);
     if (shell->creases) hash_array(&hash, state->dynamics.crease, shell->springs[SINGE_GREEN].count, sizeof(float));
+
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         hash_array(&hash, state->ablate.spring_flags[colour], shell->springs[colour].count, 1);
 
     uint64_t sum = 0;
     for (int k = 0; k < HASH_LANES; k++) sum = hash_mix(sum, hash.lane[k] ^ hash.lane[k] >> 32);
     sum ^= sum >> 32;
+
     uint64_t step = state->step;
     RECORD(recorder, RECORD_STATE, tape) {
         TAPE(tape, step);
@@ -176,6 +183,7 @@ void recorder_hear(void *context, const SingeView *view, float *flux, float *con
                 for (int k = 0; k < 3; k++) memcpy(&bits[k], arrays[k] + end, sizeof bits[k]);
                 zero = (bits[0] | bits[1] | bits[2]) == 0;
             }
+
             uint32_t length = end - i;
             if (length) {
                 TAPE(tape, i);

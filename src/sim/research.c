@@ -82,6 +82,7 @@ static SingeResult network_check(const SingeNetworkDef *def, SingeError *error) 
         if (def->sets && def->sets[k] >= def->set_count)
             return network_refuse(error, k, "a spring's set must be below set_count");
     }
+
     return SINGE_OK;
 }
 
@@ -97,6 +98,7 @@ static SingeResult network_build(const SingeNetworkDef *def, SingeNetwork *netwo
     bool ok = NEW(memory, sets, def->set_count);
     ok = NEW(memory, rows, def->set_count) && ok;
     ok = NEW(memory, ends, def->spring_count) && ok;
+
     SingeResult result = SINGE_ERROR_MEMORY;
     if (ok) {
         // sort the springs by set
@@ -105,6 +107,7 @@ static SingeResult network_build(const SingeNetworkDef *def, SingeNetwork *netwo
             sets[s].ends = (const uint32_t(*)[2])(ends + first);
             rows[s] = first;
         }
+
         for (uint32_t k = 0; k < def->spring_count; k++)
             memcpy(ends[rows[set_of(def, k)]++], def->ends + 2 * (size_t)k, sizeof *ends);
         result = network_create(memory, def->particle_count, def->set_count, sets, true, &network->network);
@@ -118,6 +121,7 @@ static SingeResult network_build(const SingeNetworkDef *def, SingeNetwork *netwo
             filled->inverse_mass[i] = def->inverse_masses ? def->inverse_masses[i] : 1;
             filled->held[i] = def->held && def->held[i];
         }
+
         for (uint32_t s = 0; s < def->set_count; s++) {
             rows[s] = 0;
             filled->groups[s].regularisation = def->regularisation;
@@ -131,11 +135,13 @@ static SingeResult network_build(const SingeNetworkDef *def, SingeNetwork *netwo
             group->weight[row] = def->weights ? def->weights[k] : 1;
             group->compliance[row] = def->compliances ? def->compliances[k] : 0;
         }
+
         filled->rules = (ProjectionRules){.literal = def->literal,
                                           .tolerance = def->tolerance,
                                           .iterations = (uint32_t)def->iterations,
                                           .inverse_h2 = 1 / (def->time_step * def->time_step)};
     }
+
     FREE(memory, sets, def->set_count);
     FREE(memory, rows, def->set_count);
     FREE(memory, ends, def->spring_count);
@@ -147,15 +153,18 @@ SingeResult singe_network_create(const SingeNetworkDef *given, SingeNetwork **ou
     SingeNetworkDef def = network_standard;
     if (!given || !sim_read_def(&def, sizeof def, given, given->struct_size))
         return network_refuse(error, -1, STRUCT_SIZE_UNKNOWN(singe_default_network));
+
     TRY(network_check(&def, error));
     Memory memory = memory_make(def.allocator);
     SingeNetwork *network = memory_new(&memory, 1, sizeof *network);
     if (!network) return error_set(error, SINGE_ERROR_MEMORY, "network", -1, "out of memory");
+
     network->memory = memory;
     if (pool_create(&network->memory, def.tasks, def.thread_count, &network->pool) || network_build(&def, network)) {
         singe_network_destroy(network);
         return error_set(error, SINGE_ERROR_MEMORY, "network", -1, "out of memory");
     }
+
     *out = network;
     return SINGE_OK;
 }
@@ -196,10 +205,12 @@ double singe_network_errors(const SingeNetwork *network, uint32_t set, double *e
 void singe_network_jacobian(SingeNetwork *network, uint32_t set, double *jacobian) {
     Network *inner = &network->network;
     if (set >= inner->group_count) return;
+
     const SpringGroup *group = &inner->groups[set];
     size_t columns = 3 * (size_t)inner->particle_count;
     memset(jacobian, 0, group->count * columns * sizeof *jacobian);
     network_rows(inner, set, network->pool);
+
     for (uint32_t k = 0; k < group->count; k++)
         for (uint32_t end = 0; end < 2; end++) {
             uint32_t particle = group->ends[k][end];

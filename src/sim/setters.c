@@ -44,11 +44,13 @@ SingeResult call_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t first, ui
         return sim_fail(sim, SINGE_ERROR_STATE, "velocity", -1,
                         "call singe_sim_commit first; the velocity at the start is in the sheet's Def");
     if (id.generation != 1 || id.index >= sim->sheet_count) return object_stale(sim, "velocity", id.index);
+
     const Sheet *sheet = &sim->shell.sheets[id.index];
     if (count > sheet->vertex_count || first > sheet->vertex_count - count)
         return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "velocity", first,
                          "sheet '%s' has only %u vertices, including its reserve", sheet->name, sheet->vertex_count);
     if (count && !velocity) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "velocity", -1, "velocity is NULL");
+
     for (size_t k = 0; k < 3 * (size_t)count; k++)
         if (!float_within(velocity[k], -1e4f, 1e4f))
             return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "velocity", (int64_t)(first + k / 3),
@@ -78,6 +80,7 @@ SingeResult call_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t first, ui
 static SingeResult sim_rebuild(SingeSim *sim) {
     SingeSim *fresh;
     if (!sim->committed) return SINGE_OK;
+
     TRY(call_clone(sim, &fresh));
     fresh->timers = sim->timers;
     fresh->intersecting_warned = sim->intersecting_warned;
@@ -86,6 +89,7 @@ static SingeResult sim_rebuild(SingeSim *sim) {
     fresh->heat_warned = sim->heat_warned;
     fresh->tear_warned = sim->tear_warned;
     fresh->def.record = sim->def.record;
+
     const SingeSim swap = *sim;
     *sim = *fresh;
     *fresh = swap;
@@ -101,11 +105,13 @@ SingeResult call_set_ambient_temperature(SingeSim *sim, float temperature) {
     const double start = sim->heat_start, stored = sim->committed ? sim_enthalpy(sim) : 0;
     sim->def.ambient_temperature = temperature;
     if (sim->committed) sim->heat_start += sim_enthalpy(sim) - stored; // enthalpy has a new reference
+
     SingeResult result = sim_rebuild(sim);
     if (result) {
         sim->def.ambient_temperature = before;
         sim->heat_start = start;
     }
+
     return result;
 }
 
@@ -127,8 +133,10 @@ static bool material_mix(SingeSim *sim, const SheetSource *old, const SheetSourc
     const uint32_t vertices = old->sheet.vertex_count, total = vertices + old->sheet.cell_count;
     for (int p = 0; p < PARAM_COUNT; p++) {
         if (material_stays(p)) continue;
+
         float *values = NEW(&sim->memory, mixed->values[p], total);
         if (!values) return false;
+
         for (uint32_t i = 0; i < total; i++) {
             const float from = sheet_param(old, p, i), to = sheet_param(other, p, i);
             float s = share && i < vertices ? share[i] : 1;
@@ -144,6 +152,7 @@ static bool material_mix(SingeSim *sim, const SheetSource *old, const SheetSourc
         mixed->value[p] = values[0];
         if (memcmp(values, values + 1, (total - 1) * sizeof *values) == 0) FREE(&sim->memory, mixed->values[p], total);
     }
+
     return true;
 }
 
@@ -161,8 +170,10 @@ static void material_swap(SheetSource *source, MaterialValues *with) {
 
 SingeResult call_set_material(SingeSim *sim, SingeSheetId id, const SingeMaterialDef *given, const float *share) {
     if (id.generation != 1 || id.index >= sim->sheet_count) return object_stale(sim, "material", id.index);
+
     SingeMaterialDef material;
     OBJECT_DEF(sim, "material", material, given, singe_default_material);
+
     SheetSource *source = &sim->sheets[id.index], other;
     const uint32_t total = source->sheet.vertex_count + source->sheet.cell_count;
     for (uint32_t v = 0; share && v < source->sheet.vertex_count; v++)
@@ -181,6 +192,7 @@ SingeResult call_set_material(SingeSim *sim, SingeSheetId id, const SingeMateria
     def.corner_uv = (const float *)source->corner_uv;
     def.material = material;
     TRY(sheet_source_create(&sim->memory, &def, &other, &sim->error));
+
     MaterialValues values = {0};
     Memory before = sim->memory; // a rebuilt simulation counts its own
     SingeResult result = SINGE_OK;
@@ -195,6 +207,7 @@ SingeResult call_set_material(SingeSim *sim, SingeSheetId id, const SingeMateria
         if (!result) result = sim_rebuild(sim);
         if (result) material_swap(source, &values);
     }
+
     Memory *memory = !result && sim->committed ? &before : &sim->memory;
     for (int p = 0; p < PARAM_COUNT; p++) FREE(memory, values.values[p], total);
     return result;

@@ -28,10 +28,12 @@ SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
             return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "solver.order must name each colour once");
         seen[def->solver.order[i]] = true;
     }
+
     if (def->solver.isotropic && def->solver.method != SINGE_SOLVER_STRAND)
         return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "solver.isotropic needs the method strand");
     if (def->tasks.enqueue && !def->tasks.finish)
         return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "tasks.enqueue needs tasks.finish");
+
     return SINGE_OK;
 }
 
@@ -52,6 +54,7 @@ bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     const char *bytes = (const char *)given;
     *def = singe_default_sim();
     if (!given || !struct_size_is_possible(given->struct_size)) return false;
+
     size_t rest = given->struct_size, wind, solver, gas, contact;
     memcpy(def, bytes, rest < head ? rest : head);
     def->struct_size = sizeof *def;
@@ -61,31 +64,37 @@ bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     bytes += head;
     rest -= head;
     if (!sim_read_def(&def->wind, sizeof def->wind, bytes, rest)) return false;
+
     memcpy(&wind, bytes, sizeof wind);
     bytes += wind;
     rest -= wind;
     if (rest == 0) return true;
     if (!sim_read_def(&def->solver, sizeof def->solver, bytes, rest)) return false;
+
     memcpy(&solver, bytes, sizeof solver);
     bytes += solver;
     rest -= solver;
     if (rest == 0) return true;
     if (!sim_read_def(&def->gas, sizeof def->gas, bytes, rest)) return false;
+
     memcpy(&gas, bytes, sizeof gas);
     bytes += gas;
     rest -= gas;
     if (rest == 0) return true;
     if (!sim_read_def(&def->contact, sizeof def->contact, bytes, rest)) return false;
+
     memcpy(&contact, bytes, sizeof contact);
     bytes += contact;
     rest -= contact;
     if (rest == 0) return true;
     if (rest < sizeof def->record) return false;
+
     memcpy(&def->record, bytes, sizeof def->record);
     bytes += sizeof def->record;
     rest -= sizeof def->record;
     if (rest == 0) return true;
     if (rest < sizeof def->cancel) return false;
+
     memcpy(&def->cancel, bytes, sizeof def->cancel);
     return true;
 }
@@ -95,6 +104,7 @@ SingeResult sim_make(const SingeSimDef *given, SingeSim **out, SingeError *error
     SingeSimDef def;
     if (!sim_read_sim_def(given, &def))
         return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, STRUCT_SIZE_UNKNOWN(singe_default_sim));
+
     TRY(sim_check_def(&def, error));
     if (!dynamics_runs_here(def.instructions))
         return error_set(error, SINGE_ERROR_LIMIT, "simulation", -1, "this processor lacks the requested instructions");
@@ -103,6 +113,7 @@ SingeResult sim_make(const SingeSimDef *given, SingeSim **out, SingeError *error
     Memory memory = memory_make(def.allocator);
     SingeSim *sim = memory_new(&memory, 1, sizeof *sim);
     if (!sim) return error_set(error, SINGE_ERROR_MEMORY, "simulation", -1, "out of memory");
+
     sim->memory = memory;
     sim->def = def;
     sim->next_generation = 1;
@@ -110,6 +121,7 @@ SingeResult sim_make(const SingeSimDef *given, SingeSim **out, SingeError *error
         singe_sim_destroy(sim);
         return error_set(error, SINGE_ERROR_MEMORY, "simulation", -1, "out of memory");
     }
+
     *out = sim;
     return SINGE_OK;
 }
@@ -143,12 +155,14 @@ static void sim_unbuild(SingeSim *sim) {
     dynamics_plan_free(memory, &sim->shell, sim->dynamics);
     gas_plan_free(memory, sim->gas);
     tear_plan_free(memory, sim->tear);
+
     sim->heat = NULL;
     sim->ablate = NULL;
     sim->dynamics = NULL;
     sim->gas = NULL;
     sim->tear = NULL;
     FREE(memory, sim->thickening, sim->shell.sheet_count);
+
     burn_air_free(memory, &sim->air);
     FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
     FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
@@ -162,6 +176,7 @@ static void sim_unbuild(SingeSim *sim) {
 
 void singe_sim_destroy(SingeSim *sim) {
     if (!sim) return;
+
     Memory *memory = &sim->memory;
     recorder_close(sim_recorder(sim));
     pool_destroy(memory, sim->pool);
@@ -169,6 +184,7 @@ void singe_sim_destroy(SingeSim *sim) {
     for (uint32_t i = 0; i < sim->colliders.count; i++) collider_free(memory, &sim->colliders.items[i]);
     for (uint32_t i = 0; i < sim->pins.count; i++) sim_free_pin(sim, &sim->pins.items[i]);
     for (uint32_t i = 0; i < sim->render_mesh_count; i++) render_mesh_free(memory, sim->render_meshes[i]);
+
     FREE(memory, sim->render_meshes, sim->render_mesh_count);
     FREE(memory, sim->sources.items, sim->sources.capacity);
     FREE(memory, sim->colliders.items, sim->colliders.capacity);
@@ -176,6 +192,7 @@ void singe_sim_destroy(SingeSim *sim) {
     sim_unbuild(sim);
     for (uint32_t i = 0; i < sim->sheet_count; i++) sheet_source_free(memory, &sim->sheets[i]);
     FREE(memory, sim->sheets, sim->sheet_capacity);
+
     Memory last = *memory;
     FREE(&last, sim, 1);
 }
@@ -183,18 +200,21 @@ void singe_sim_destroy(SingeSim *sim) {
 void *sim_slot(SingeSim *sim, void *items_pointer, uint32_t *count, uint32_t *capacity, size_t size, uint32_t *index) {
     char *items;
     memcpy(&items, items_pointer, sizeof items);
+
     uint32_t i = 0;
     for (; i < *count; i++) {
         uint32_t generation;
         memcpy(&generation, items + i * size, sizeof generation);
         if (generation == 0) break;
     }
+
     if (i == *capacity) {
         uint32_t grown = *capacity ? 2 * *capacity : 4;
         if (!memory_grow(&sim->memory, items_pointer, *capacity, grown, size)) return NULL;
         *capacity = grown;
         memcpy(&items, items_pointer, sizeof items);
     }
+
     *index = i;
     return memset(items + i * size, 0, size);
 }
@@ -204,12 +224,14 @@ SingeResult call_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSheetId
     if (sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "sheet", -1, "sheets must be added before singe_sim_commit");
     if (sim->sheet_count == UINT16_MAX) return sim_fail(sim, SINGE_ERROR_LIMIT, "sheet", -1, "more than 65535 sheets");
+
     if (sim->sheet_count == sim->sheet_capacity) {
         uint32_t grown = sim->sheet_capacity ? 2 * sim->sheet_capacity : 1;
         if (!memory_grow(&sim->memory, &sim->sheets, sim->sheet_capacity, grown, sizeof *sim->sheets))
             return sim_fail(sim, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory");
         sim->sheet_capacity = grown;
     }
+
     SheetSource source = {0};
     TRY(sheet_source_create(&sim->memory, def, &source, &sim->error));
     sim->sheets[sim->sheet_count] = source;
@@ -222,12 +244,14 @@ SingeResult sim_build(SingeSim *sim) {
     const SingeSimDef *def = &sim->def;
     Memory *memory = &sim->memory;
     Shell *shell = &sim->shell;
+
     // vertices in reserve for tears: half as many as a sheet's own, and some more for small sheets
     const bool tears = def->solver.tearing && def->solver.method == SINGE_SOLVER_STRAND;
     for (uint32_t s = 0; s < sim->sheet_count; s++) {
         Sheet *sheet = &sim->sheets[s].sheet;
         sheet->spare_count = tears ? sheet->vertex_count / 2 + 16 : 0;
     }
+
     TRY(shell_create(memory, sim->sheets, sim->sheet_count, shell, &sim->error));
     shell->creases = def->solver.creases && def->solver.method == SINGE_SOLVER_STRAND;
 
@@ -253,13 +277,16 @@ SingeResult sim_build(SingeSim *sim) {
                                  .thread_count = def->tasks.enqueue ? 64 : def->thread_count};
     bool ok = state_create(memory, shell, &sim->state) == SINGE_OK;
     ok = ok && (sim->backup = memory_new(memory, sim->state.basic_size, 1)) != NULL;
+
     SingeResult result = ok ? heat_plan_create(memory, shell, &heat, &sim->heat, &sim->error) : SINGE_ERROR_MEMORY;
     if (result && result != SINGE_ERROR_MEMORY) return result;
+
     ok = !result;
     ok = ok && ablate_plan_create(memory, shell, &sim->ablate) == SINGE_OK;
     ok = ok && dynamics_plan_create(memory, shell, &dynamics, &sim->dynamics) == SINGE_OK;
     ok = ok && dynamics_plan_reserve(memory, sim->dynamics, sim->colliders.count);
     ok = ok && (!def->gas.enabled || gas_plan_create(memory, shell, &gas, &sim->gas, &sim->state.gas) == SINGE_OK);
+
     float h_sub = ok ? def->time_step / (float)dynamics_plan_substeps(sim->dynamics) : 0;
     ok = ok && (shell->spare_count == 0 || tear_plan_create(memory, shell, h_sub, &sim->tear) == SINGE_OK);
     ok = ok && NEW(memory, sim->thickening, shell->sheet_count);
@@ -267,6 +294,7 @@ SingeResult sim_build(SingeSim *sim) {
     ok = ok && NEW(memory, sim->partial, pool_blocks((int)shell->particle_count));
     ok = ok && NEW(memory, sim->sample, shell->springs[SINGE_BLUE].count);
     if (!ok) return sim_fail(sim, SINGE_ERROR_MEMORY, "commit", -1, "out of memory");
+
     // events are written after the heat stage and are gone when the next one begins
     sim->events = (EventList){.items = heat_scratch(sim->heat), .capacity = events};
     for (uint32_t s = 0; s < shell->sheet_count; s++) sim->thickening[s] = heat_thickening(sim->heat, s);
@@ -276,11 +304,13 @@ SingeResult sim_build(SingeSim *sim) {
 SingeResult call_commit(SingeSim *sim) {
     if (sim->committed) return sim_fail(sim, SINGE_ERROR_STATE, "commit", -1, "the simulation is committed already");
     if (sim->sheet_count == 0) return sim_fail(sim, SINGE_ERROR_STATE, "commit", -1, "there is no sheet");
+
     SingeResult result = sim_build(sim);
     if (result) {
         sim_unbuild(sim);
         return result;
     }
+
     // the first ablation: pieces are labelled before anything burns
     StepContext context = sim_context(sim, NULL);
     context.state.ablate = NULL;
@@ -291,6 +321,7 @@ SingeResult call_commit(SingeSim *sim) {
         sim_unbuild(sim);
         return result;
     }
+
     sim->heat_start = sim_enthalpy(sim);
     sim->committed = true;
     shell_assert(&sim->shell, &sim->state);

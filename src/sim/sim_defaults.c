@@ -154,8 +154,10 @@ void singe_init_solver_method(SingeSolverDef *def, size_t struct_size, SingeSolv
         fill_def(def, struct_size, &standard_solver, sizeof standard_solver);
         return;
     }
+
     SingeSolverDef other = standard_solver;
     static const SingeColour order[] = {SINGE_RED, SINGE_GREEN, SINGE_BLUE, SINGE_YELLOW};
+
     other.method = method;
     other.substeps = method == SINGE_SOLVER_MASS_SPRING ? 200 : 1;
     other.projections = method == SINGE_SOLVER_MASS_SPRING ? 1 : 7;
@@ -189,6 +191,7 @@ void singe_init_sheet(SingeSheetDef *def, size_t struct_size) {
 void singe_init_sim(SingeSimDef *def, size_t struct_size) {
     const size_t head = offsetof(SingeSimDef, wind);
     char *bytes = (char *)def;
+
     if (struct_size <= head) {
         fill_def(def, struct_size, &standard_sim, head);
         return;
@@ -207,6 +210,7 @@ void singe_init_sim(SingeSimDef *def, size_t struct_size) {
     fill_def(bytes + head + wind + solver, gas, &standard_gas, sizeof standard_gas);
     left -= solver + gas;
     bytes += head + wind + solver + gas;
+
     size_t contact = inner_size(bytes, left);
     fill_def(bytes, contact, &standard_contact, sizeof standard_contact);
     memset(bytes + contact, 0, left - contact);

@@ -34,10 +34,12 @@ static float stats_select(float *values, size_t n, size_t k) {
             values[j] = swap;
             if (j-- == 0) break;
         }
+
         if (k <= j && j != SIZE_MAX) high = j;
         else if (k >= i) low = i;
         else break;
     }
+
     return values[k];
 }
 
@@ -89,6 +91,7 @@ static double stats_front_speed(const SingeSim *sim) {
         float slope2 = area2 > 0 ? (bb * ta * ta - 2 * ab * ta * tb + aa * tb * tb) / area2 : 0;
         if (slope2 > 0) sim->sample[n++] = 1 / (sqrtf(slope2) * sim->def.pace);
     }
+
     return n ? (double)stats_select(sim->sample, n, n / 2) : 0;
 }
 
@@ -100,6 +103,7 @@ static void stats_arrival(const SingeSim *sim, SingeStats *stats) {
     for (uint32_t k = 0; k < sim->sources.count; k++) {
         const Source *source = &sim->sources.items[k];
         if (!source_is_lit(source, sim->state.time) || source->def.kind != SINGE_SOURCE_ARRIVAL) continue;
+
         for (uint32_t i = 0; i < sim->shell.particle_count; i++) {
             if (source->texture[i] == SOURCE_UNMAPPED || (ignited[i] < 0 && !(flags[i] & SINGE_ALIVE))) continue;
             const double due = source_arrival(source, i), h = (double)sim->def.time_step;
@@ -124,6 +128,7 @@ static uint32_t stats_inverted(const SingeSim *sim) {
         float above = float3_dot(normal, float3_sub(float3_load(x[shell_centre(&sim->shell, c)]), mean));
         inverted += !(above > 0) && !(float3_dot(normal, normal) == 0);
     }
+
     return inverted;
 }
 
@@ -171,10 +176,12 @@ void singe_sim_read_stats(const SingeSim *sim, SingeStats *out, size_t struct_si
         const float *first = shell->sheets[matter->sheet[i]].velocity;
         energy += 0.5 * (double)matter->mass[i] * stats_square(float3_load(first));
         if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
+
         stats.particles++;
         stats.mass += (double)matter->mass[i] * (double)state->burn.mass[i];
         if (state->heat.water) stats.water += (double)matter->mass[i] * (double)state->heat.water[i];
         stats.temperature_max = float_max(stats.temperature_max, state->heat.temperature[i]);
+
         const double mass = (double)matter->mass[i] * (double)state->burn.mass[i],
                      speed2 = stats_square(float3_load(state->dynamics.velocity[i]));
         stats.energy_kinetic += 0.5 * mass * speed2;
@@ -182,10 +189,12 @@ void singe_sim_read_stats(const SingeSim *sim, SingeStats *out, size_t struct_si
             const double up = (double)state->dynamics.position[i][k] - (double)shell->rest_position[i][k];
             stats.energy_gravity -= mass * (double)sim->def.gravity[k] * up;
         }
+
         if (state->burn.time_ignited[i] >= 0 || state->dynamics.pinned[i]) continue;
         square += speed2;
         moving++;
     }
+
     stats.speed_rms_unburnt = moving > 0 ? sqrt(square / moving) : 0;
     stats.energy_elastic = dynamics_elastic_energy(sim->dynamics, shell, state);
     stats.energy_lost = energy - stats.energy_kinetic - stats.energy_elastic - stats.energy_gravity;

@@ -79,6 +79,7 @@ void singe_sim_read_counts(const SingeSim *sim, SingeCounts *out, size_t struct_
     const Shell *shell = &sim->shell;
     SingeCounts counts = {.cells = shell->cell_count, .memory = sim->memory.held};
     counts.instructions = dynamics_instructions(sim->def.instructions);
+
     double springs = 0, strands = 0, size = 0;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         counts.springs[colour] = shell_strand_springs(shell, colour);
@@ -87,6 +88,7 @@ void singe_sim_read_counts(const SingeSim *sim, SingeCounts *out, size_t struct_
         springs += counts.springs[colour];
         strands += shell->springs[colour].strand_count;
     }
+
     counts.mean_strand_length = strands > 0 ? springs / strands : 0;
     for (uint32_t s = 0; s < shell->sheet_count; s++) size += (double)shell->sheets[s].cell_size / shell->sheet_count;
     counts.cell_size = (float)size;
@@ -123,6 +125,7 @@ SingeResult singe_sim_add_render_mesh(SingeSim *sim, SingeSheetId id, const Sing
     const uint64_t first = (uint64_t)last->source_first + last->source_count + (uint64_t)sim->render_vertex_count;
     if (first + def.vertex_count > INT32_MAX)
         return sim_fail(sim, SINGE_ERROR_LIMIT, "render mesh", -1, "more vertices than can be numbered");
+
     const RenderSheet bound = {.source = &sim->sheets[id.index],
                                .cell_first = sheet->cell_first,
                                .cell_size = sheet->cell_size,
@@ -130,11 +133,13 @@ SingeResult singe_sim_add_render_mesh(SingeSim *sim, SingeSheetId id, const Sing
                                .number_first = (int32_t)first};
     RenderMesh *mesh;
     TRY(render_mesh_create(&sim->memory, sim->pool, &bound, &def, &mesh, &sim->error));
+
     const uint32_t count = sim->render_mesh_count;
     if (!memory_grow(&sim->memory, &sim->render_meshes, count, count + 1, sizeof(RenderMesh *))) {
         render_mesh_free(&sim->memory, mesh);
         return sim_fail(sim, SINGE_ERROR_MEMORY, "render mesh", -1, "out of memory for the render mesh");
     }
+
     sim->render_meshes[count] = mesh;
     sim->render_mesh_count = count + 1;
     sim->render_vertex_count += (int32_t)def.vertex_count;
@@ -158,6 +163,7 @@ SingeResult call_draw(SingeSim *sim, SingeSurface *surface, size_t struct_size) 
     const bool coarse = !(detail.size > 0);
     if (coarse && detail.mesh_count == 0)
         return surface_draw(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
+
     if (coarse) { // cells are not refined
         detail.size = INFINITY;
         detail.raggedness = 0;
@@ -166,6 +172,7 @@ SingeResult call_draw(SingeSim *sim, SingeSurface *surface, size_t struct_size) 
     float *room;
     if (!NEW(&sim->memory, room, sim->shell.vertex_count))
         return sim_fail(sim, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface");
+
     dynamics_plan_clearance(sim->dynamics, &sim->shell, &sim->state, room);
     detail.room = room;
     SingeResult result = surface_draw_fine(sim->ablate, &sim->shell, &sim->state, &detail, &sim->memory, sim->pool,

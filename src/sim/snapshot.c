@@ -79,6 +79,7 @@ static bool snapshot_more(Stream *stream, SingeSim *sim) {
         followed |= sim->pins.items[i].motion.to != NULL;
         ending |= sim->pins.items[i].generation && sim->pins.items[i].end < INFINITY;
     }
+
     uint32_t more = (sim->remainder != 0 ? MORE_REMAINDER : 0) | (followed ? MORE_PINS : 0) | (ending ? MORE_ENDS : 0);
     if (stream->mode == STREAM_READ ? stream->offset == stream->size : !more) return true;
     STREAM(stream, more);
@@ -92,6 +93,7 @@ static bool snapshot_more(Stream *stream, SingeSim *sim) {
         STREAM(stream, pin->end);
         if (!snapshot_held(stream, pin->generation == 0 || pin->end >= 0)) return false;
     }
+
     for (uint32_t i = 0; i < sim->pins.count && more & MORE_PINS; i++) {
         Pin *pin = &sim->pins.items[i];
         uint8_t follows = pin->motion.to != NULL;
@@ -99,6 +101,7 @@ static bool snapshot_more(Stream *stream, SingeSim *sim) {
         if (!snapshot_held(stream, follows <= (pin->generation != 0 && pin->count > 0))) return false;
         if (follows && !snapshot_motion(stream, &sim->memory, pin->count, &pin->motion)) return false;
     }
+
     return true;
 }
 
@@ -113,6 +116,7 @@ static SingeResult snapshot_body(Stream *stream, SingeSim *sim) {
         stream->failed = result != SINGE_OK;
         ok = !stream->failed;
     }
+
     ok = ok && snapshot_objects(stream, sim);
     if (ok && stream->mode == STREAM_READ)
         ok = dynamics_plan_reserve(&sim->memory, sim->dynamics, sim->colliders.count);
@@ -121,6 +125,7 @@ static SingeResult snapshot_body(Stream *stream, SingeSim *sim) {
     if (stream->failed)
         return sim_fail(sim, SINGE_ERROR_FORMAT, "load", (int64_t)stream->offset,
                         "the snapshot is truncated or inconsistent");
+
     return ok ? SINGE_OK : sim_fail(sim, SINGE_ERROR_MEMORY, "load", -1, "out of memory");
 }
 
@@ -129,17 +134,20 @@ SingeResult call_save(SingeSim *sim, uint8_t **bytes, size_t *size) {
     *size = 0;
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "save", -1, "singe_sim_commit must come before a save");
+
     Stream measure = {.mode = STREAM_MEASURE};
     TRY(snapshot_body(&measure, sim));
     size_t total = sizeof(SnapshotHeader) + measure.offset;
     uint8_t *block = memory_new(&sim->memory, total, 1);
     if (!block) return sim_fail(sim, SINGE_ERROR_MEMORY, "save", -1, "out of memory");
+
     Stream write = {.mode = STREAM_WRITE, .bytes = block + sizeof(SnapshotHeader), .size = measure.offset};
     SingeResult result = snapshot_body(&write, sim);
     if (result) {
         memory_free(&sim->memory, (void *)&block, total, 1);
         return result;
     }
+
     SnapshotHeader header = snapshot_header(write.bytes, write.size);
     memcpy(block, &header, sizeof header);
     *bytes = block;
@@ -156,6 +164,7 @@ SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_
     *out = NULL;
     SnapshotHeader header;
     if (size < sizeof header) return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "too short for a snapshot");
+
     memcpy(&header, bytes, sizeof header);
     SnapshotHeader expected = snapshot_header(bytes + sizeof header, size - sizeof header);
     if (memcmp(header.magic, expected.magic, sizeof header.magic))
@@ -179,10 +188,12 @@ SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_
     SingeResult result = snapshot_body(&read, sim);
     if (result && error) *error = sim->error;
     if (!result) result = sim_record(sim, bytes, size, error);
+
     if (result) {
         singe_sim_destroy(sim);
         return result;
     }
+
     sim->committed = true;
     *out = sim;
     return SINGE_OK;
@@ -198,6 +209,7 @@ SingeResult call_clone(SingeSim *sim, SingeSim **copy) {
     SingeResult result = singe_sim_load(&hooks, bytes, size, copy, &sim->error);
     singe_sim_free_bytes(sim, bytes, size);
     if (result) return result;
+
     sim_copy_hooks(sim, *copy);
     return SINGE_OK;
 }

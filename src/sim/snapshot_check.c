@@ -56,6 +56,7 @@ static bool pins_fit(SingeSim *sim) {
             fits = fits && *count > 0;
             *count = (uint8_t)(*count - 1);
         }
+
     for (uint32_t i = 0; i < sim->shell.particle_count; i++) fits = fits && held[i] == 0;
     for (uint32_t i = 0; i < sim->pins.count; i++)
         for (uint32_t k = 0; k < sim->pins.items[i].count; k++) held[sim->pins.items[i].particles[k]]++;
@@ -96,10 +97,12 @@ bool snapshot_state_fits(SingeSim *sim) {
     if (!double_within(dynamics->earlier_time, 0, state->time)) return false;
     for (uint32_t v = 0; v < shell->vertex_count; v++)
         if (!position_fits(dynamics->earlier[v])) return false;
+
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         const float *x = dynamics->position[i], *v = dynamics->velocity[i];
         if (!position_fits(x) || !position_fits(v) || !(x[3] >= 0 && isfinite(x[3])) || !isfinite(v[3])) return false;
     }
+
     for (uint32_t s = 0; dynamics->bend && s < shell->springs[SINGE_GREEN].count; s++)
         if (!isfinite(dynamics->bend[s]) || !isfinite(dynamics->crease[s])) return false;
     for (size_t k = 0; shell->spare_count && k < 6 * (size_t)shell->cell_count; k++)
@@ -114,5 +117,6 @@ bool snapshot_state_fits(SingeSim *sim) {
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         for (uint32_t s = 0; s < shell->springs[colour].count; s++)
             if (!isfinite(state->burn.spring_length[colour][s])) return false;
+
     return true;
 }

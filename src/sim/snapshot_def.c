@@ -34,6 +34,7 @@ void snapshot_sheet_def(Stream *stream, Sheet *sheet) {
     STREAM(stream, material->heat_operator);
     STREAM(stream, material->thickening);
     STREAM(stream, material->reference_grammage);
+
     uint8_t ablate = material->ablate;
     STREAM(stream, ablate);
     if (stream->mode == STREAM_READ) material->ablate = ablate != 0;

@@ -20,6 +20,7 @@ static bool snapshot_array(Stream *stream, Memory *memory, void *array_pointer, 
         if (!(array = memory_new(memory, count, element_size))) return false;
         memcpy(array_pointer, &array, sizeof array);
     }
+
     memcpy(&array, array_pointer, sizeof array);
     stream_data(stream, array, count * element_size);
     return !stream->failed;
@@ -40,12 +41,14 @@ bool snapshot_sheets(Stream *stream, SingeSim *sim) {
     Memory *memory = &sim->memory;
     uint32_t count = sim->sheet_count;
     STREAM(stream, count);
+
     if (stream->mode == STREAM_READ) {
         size_t max = snapshot_left(stream) / sizeof sim->sheets->sheet.name;
         stream->failed |= count == 0 || count > UINT16_MAX || count > max;
         if (stream->failed || !NEW(memory, sim->sheets, count)) return false;
         sim->sheet_count = sim->sheet_capacity = count;
     }
+
     for (uint32_t i = 0; i < count; i++) {
         SheetSource *source = &sim->sheets[i];
         snapshot_sheet_def(stream, &source->sheet);
@@ -61,6 +64,7 @@ bool snapshot_sheets(Stream *stream, SingeSim *sim) {
         STREAM(stream, corners);
         STREAM(stream, seams);
         STREAM(stream, numbered);
+
         if ((seams && !snapshot_array(stream, memory, &source->corner_uv, cells, sizeof *source->corner_uv)) ||
             (corners &&
              !snapshot_array(stream, memory, &source->corner_source, cells, sizeof *source->corner_source)) ||
@@ -78,6 +82,7 @@ bool snapshot_sheets(Stream *stream, SingeSim *sim) {
         }
         if (!snapshot_held(stream, sheet_source_check(source, NULL) == SINGE_OK)) return false;
     }
+
     return true;
 }
 
@@ -91,6 +96,7 @@ static bool snapshot_list(Stream *stream, Memory *memory, uint32_t *count, uint3
         *count = 0;
         return false;
     }
+
     void *items = memory_new(memory, *count, size);
     memcpy(items_pointer, &items, sizeof items);
     if (!items) *count = 0;
@@ -106,9 +112,11 @@ static bool snapshot_mesh(Stream *stream, Memory *memory, MeshSolid *mesh) {
     bool ok = snapshot_array(stream, memory, &saved.vertices, saved.vertex_count, sizeof *saved.vertices) &&
               snapshot_array(stream, memory, &saved.triangles, saved.triangle_count, sizeof *saved.triangles);
     if (stream->mode != STREAM_READ) return ok;
+
     SingeResult result = ok ? mesh_solid_create(memory, saved.vertex_count, saved.vertices[0], saved.triangle_count,
                                                 saved.triangles[0], mesh, NULL)
                             : SINGE_OK;
+
     if (saved.vertices) FREE(memory, saved.vertices, saved.vertex_count);
     if (saved.triangles) FREE(memory, saved.triangles, saved.triangle_count);
     stream->failed |= result != SINGE_OK && result != SINGE_ERROR_MEMORY;
@@ -142,12 +150,14 @@ static bool snapshot_deform(Stream *stream, Memory *memory, Deform *deform) {
                                             given.triangles[0], deform, NULL)
                             : SINGE_OK;
     mesh_solid_free(memory, &given);
+
     if (ok && !result) {
         motion_free(memory, &deform->motion);
         deform->motion = motion;
     } else {
         motion_free(memory, &motion);
     }
+
     stream->failed |= result != SINGE_OK && result != SINGE_ERROR_MEMORY;
     return ok && !result;
 }
@@ -157,6 +167,7 @@ static bool snapshot_collider(Stream *stream, SingeSim *sim, Collider *collider)
     if (collider->generation == 0) return !stream->failed;
     snapshot_collider_def(stream, &collider->def);
     if (stream->failed || !snapshot_path(stream, &sim->memory, &collider->path)) return false;
+
     SingeColliderDef def = collider->def;
     def.path_count = collider->path.count; // it may have been given another path
     if (!snapshot_held(stream, def.path_count > 0 && def_check(&collider_table, &def, NULL) == SINGE_OK)) return false;
@@ -169,6 +180,7 @@ static bool snapshot_collider(Stream *stream, SingeSim *sim, Collider *collider)
     size_t count = (size_t)def.columns * def.rows;
     bool ok = snapshot_array(stream, &sim->memory, &saved, count, sizeof *saved);
     if (stream->mode != STREAM_READ || !ok) return ok;
+
     SingeResult result =
         height_solid_create(&sim->memory, def.columns, def.rows, saved, def.size, &collider->heights, NULL);
     FREE(&sim->memory, saved, count);
@@ -182,15 +194,18 @@ bool snapshot_objects(Stream *stream, SingeSim *sim) {
     if (!snapshot_list(stream, memory, &sim->sources.count, &sim->sources.capacity, &sim->sources.items,
                        sizeof *sim->sources.items))
         return false;
+
     for (uint32_t i = 0; i < sim->sources.count; i++) {
         Source *source = &sim->sources.items[i];
         uint8_t has_texture = source->texture != NULL;
         STREAM(stream, source->generation);
         if (stream->failed) return false;
         if (source->generation == 0) continue; // a free slot holds nothing
+
         snapshot_source_def(stream, &source->def);
         STREAM(stream, has_texture);
         STREAM(stream, source->strength_count);
+
         bool ok = snapshot_path(stream, memory, &source->path) &&
                   snapshot_array(stream, memory, &source->strength, source->strength_count, sizeof *source->strength) &&
                   (!has_texture || snapshot_array(stream, memory, &source->texture, sim->shell.particle_count,
@@ -208,11 +223,13 @@ bool snapshot_objects(Stream *stream, SingeSim *sim) {
     if (!snapshot_list(stream, memory, &sim->pins.count, &sim->pins.capacity, &sim->pins.items,
                        sizeof *sim->pins.items))
         return false;
+
     for (uint32_t i = 0; i < sim->pins.count; i++) {
         Pin *pin = &sim->pins.items[i];
         STREAM(stream, pin->generation);
         if (stream->failed) return false;
         if (pin->generation == 0) continue;
+
         if (stream->mode == STREAM_READ) pin->end = INFINITY;
         STREAM(stream, pin->count);
         if (!snapshot_array(stream, memory, &pin->particles, pin->count, sizeof *pin->particles) ||
@@ -221,5 +238,6 @@ bool snapshot_objects(Stream *stream, SingeSim *sim) {
             return false;
         if (!snapshot_held(stream, snapshot_pin_fits(&sim->shell, pin))) return false;
     }
+
     return snapshot_held(stream, snapshot_generations_fit(sim));
 }

@@ -22,6 +22,7 @@ static void step_tear(SingeSim *sim, StepContext context) {
         pull[colour] = dynamics_pull(sim->dynamics, (SingeColour)colour);
     for (uint32_t s = 0; s < sim->shell.sheet_count; s++)
         tear_stretched(sim->tear, s, dynamics_stretch(sim->dynamics, s));
+
     uint32_t tears = tear_step(sim->tear, &sim->shell, state, pull, sim->pool, context.h, &short_of_spares);
     if (short_of_spares) sim_log_short_of_spares(sim);
     if (tears == 0) return;

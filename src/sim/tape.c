@@ -51,10 +51,12 @@ void tape_data(Tape *tape, void *data, uint64_t count, size_t width) {
         if (size <= TAPE_BUFFER) memset(data, 0, (size_t)size); // arrays are bounded before they come here
         return;
     }
+
     if (tape->mode == STREAM_READ && size) {
         memcpy(data, tape->bytes + tape->offset, (size_t)size);
         if (tape_swaps()) tape_turn(data, (size_t)count, width);
     }
+
     if (tape->mode == STREAM_WRITE && size && !tape_swaps()) tape_put(tape, data, (size_t)size);
     if (tape->mode == STREAM_WRITE && tape_swaps())
         for (uint64_t i = 0; i < count; i++) {
@@ -79,6 +81,7 @@ void *tape_new(Tape *tape, uint64_t size) {
         tape->failed = tape->no_memory = true;
         return NULL;
     }
+
     block->next = tape->blocks;
     block->size = (size_t)size;
     tape->blocks = block;
@@ -96,6 +99,7 @@ void tape_release(Tape *tape) {
 void tape_array(Tape *tape, void *array_pointer, uint64_t count, size_t width) {
     void *array;
     memcpy(&array, array_pointer, sizeof array);
+
     bool there = tape->mode != STREAM_READ && array;
     tape_bool(tape, &there);
     if (tape->mode == STREAM_READ) {
@@ -112,6 +116,7 @@ void tape_text(Tape *tape, const char **text) {
     uint32_t length = there ? (uint32_t)strlen(*text) : 0;
     tape_bool(tape, &there);
     if (there) TAPE(tape, length);
+
     char *copy = (char *)(uintptr_t)*text;
     if (tape->mode == STREAM_READ) {
         *text = NULL;

@@ -30,12 +30,14 @@ static void tape_table(Tape *tape, const DefTable *table, void *def) {
     uint32_t count = 0;
     for (int i = 0; i < table->count; i++) count += table->fields[i].stored;
     TAPE(tape, count);
+
     int next = 0;
     for (uint32_t k = 0; k < count && !tape->failed; k++) {
         while (!reads && !table->fields[next].stored) next++;
         const DefField *field = reads ? NULL : &table->fields[next++];
         uint32_t name = field ? name_hash(field->name) : 0;
         uint32_t size = field ? (uint32_t)field->length * (uint32_t)field_width(field) : 0;
+
         TAPE(tape, name);
         TAPE(tape, size);
         for (int i = 0; reads && i < table->count && !field; i++)
@@ -83,6 +85,7 @@ static void tape_field(Tape *tape, SingeField *field) {
     if (kind == SINGE_FIELD_TEXTURE) tape_texture(tape, &field->texture);
     if (kind == SINGE_FIELD_ATTRIBUTE) tape_text(tape, &field->attribute);
     if (kind != SINGE_FIELD_NOISE) return;
+
     TAPE(tape, field->noise.scale);
     TAPE(tape, field->noise.octaves);
     TAPE(tape, field->noise.seed);
@@ -94,12 +97,14 @@ static void tape_param(Tape *tape, SingeParam *const *params, uint32_t index) {
     SingeParam *param = params[index];
     uint32_t other = 0;
     uint8_t follows = EVEN;
+
     TAPE(tape, param->value);
     TAPE(tape, param->to);
     if (tape->mode != STREAM_READ && param->field) {
         while (other < index && params[other]->field != param->field) other++;
         follows = other < index ? SAME_FIELD : NEW_FIELD;
     }
+
     TAPE(tape, follows);
     if (follows == SAME_FIELD) {
         TAPE(tape, other);
@@ -221,6 +226,7 @@ void tape_sheet_def(Tape *tape, const SingeSheetDef *given, SingeSheetDef *def) 
     tape_text(tape, &def->name);
     TAPE(tape, def->vertex_count);
     TAPE(tape, def->cell_count);
+
     const uint64_t vertices = def->vertex_count, cells = def->cell_count;
     const bool many = vertices + cells > array_max || cells > array_max / 4;
     if (many) {
@@ -229,6 +235,7 @@ void tape_sheet_def(Tape *tape, const SingeSheetDef *given, SingeSheetDef *def) 
         def->uv = def->corner_uv = NULL;
         def->source_vertex = def->corner_source_vertex = NULL;
     }
+
     tape_array(tape, &def->positions, 3 * vertices, sizeof(float));
     tape_array(tape, &def->cells, 4 * cells, sizeof(uint32_t));
     tape_array(tape, &def->uv, 2 * vertices, sizeof(float));
@@ -241,12 +248,14 @@ void tape_sheet_def(Tape *tape, const SingeSheetDef *given, SingeSheetDef *def) 
     bool named = tape->mode != STREAM_READ && def->attributes && !many;
     TAPE(tape, def->attribute_count);
     tape_bool(tape, &named);
+
     SingeAttribute *read = NULL;
     if (tape->mode == STREAM_READ) {
         tape->failed |= named && def->attribute_count > tape->size - tape->offset;
         if (named && !tape->failed) read = tape_new(tape, def->attribute_count * (uint64_t)sizeof *read);
         def->attributes = read;
     }
+
     for (uint32_t i = 0; named && i < def->attribute_count && !tape->failed; i++) {
         SingeAttribute attribute = read ? (SingeAttribute){0} : def->attributes[i];
         tape_text(tape, &attribute.name);
@@ -262,6 +271,7 @@ void tape_source_def(Tape *tape, const SingeSourceDef *given, SingeSourceDef *de
     TAPE_GIVEN(tape, given, def, singe_default_source);
     tape_table(tape, &source_table, def);
     tape_data(tape, def->position, 3, sizeof(float));
+
     const bool textured = source_is_drawn(def);
     if (textured) def->path = NULL; // nobody reads it
     else if (!source_blows(def)) def->strength = NULL;
@@ -269,6 +279,7 @@ void tape_source_def(Tape *tape, const SingeSourceDef *given, SingeSourceDef *de
     TAPE(tape, def->strength_count);
     tape_array(tape, &def->strength, 2 * (uint64_t)def->strength_count, sizeof(float));
     if (textured) tape_texture(tape, &def->texture);
+
     bool called = tape->mode != STREAM_READ && def->callback;
     tape_bool(tape, &called);
     if (tape->mode != STREAM_READ) return;
@@ -288,6 +299,7 @@ void tape_collider_def(Tape *tape, const SingeColliderDef *given, SingeColliderD
     if (!mesh || def->vertex_count > array_max / 3) def->vertices = NULL;
     if (!mesh || def->triangle_count > array_max / 3) def->triangles = NULL;
     if (!field) def->heights = NULL;
+
     tape_array(tape, &def->path, 8 * (uint64_t)def->path_count, sizeof(float));
     tape_array(tape, &def->vertices, 3 * (uint64_t)def->vertex_count, sizeof(float));
     tape_array(tape, &def->triangles, 3 * (uint64_t)def->triangle_count, sizeof(uint32_t));
