@@ -29,6 +29,7 @@ SingeResult ablate_plan_create(Memory *memory, const Shell *shell, AblatePlan **
 
 void ablate_plan_free(Memory *memory, AblatePlan *plan) {
     if (!plan) return;
+
     FREE(memory, plan->level, plan->particle_count);
     FREE(memory, plan->rim, plan->vertex_count);
     FREE(memory, plan->area, plan->particle_count);

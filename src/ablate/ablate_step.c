@@ -159,6 +159,7 @@ void ablate_step(AblatePlan *plan, const StepContext *context, AblateState *abla
         int some = 0;
         last = cells - first < ABLATE_RUN ? cells : first + ABLATE_RUN;
         for (uint32_t c = first; c < last; c++) some |= level[c] < 0;
+
         for (uint32_t c = first; c < last && some; c++) {
             // whether any of its triangles is left: all have the centre, and each corner has two
             bool left = level[c] >= 0;

@@ -26,6 +26,7 @@ static uint32_t piece_find(uint32_t *root, uint32_t i) {
 static void find_sets(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
     uint32_t *root = plan->root;
     for (uint32_t i = 0; i < shell->particle_count; i++) root[i] = i;
+
     const SpringSet *red = &shell->springs[SINGE_RED];
     const uint8_t *flags = ablate->spring_flags[SINGE_RED];
     for (uint32_t s = 0; s < red->count; s++) {
@@ -44,6 +45,7 @@ static void find_sets(AblatePlan *plan, const Shell *shell, const AblateState *a
 static bool mark_small(AblatePlan *plan, const Sheet *sheet) {
     uint32_t first = sheet->vertex_first, last = first + sheet->vertex_count, largest = SHELL_NONE;
     bool any = false;
+
     for (uint32_t r = first; r < last; r++)
         if (plan->size[r] && (largest == SHELL_NONE || plan->area[r] > plan->area[largest])) largest = r;
     for (uint32_t r = first; r < last; r++) {
@@ -87,6 +89,7 @@ void piece_update(Removal *removal, EventList *events) {
     memset(plan->size, 0, shell->particle_count * sizeof *plan->size);
     memset(plan->mark, 0, shell->particle_count);
     for (uint32_t i = 0; i < shell->particle_count; i++) plan->area[i] = 0;
+
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         if (ablate->degree[i] == 0) continue;
 
@@ -146,6 +149,7 @@ bool ablate_fits(AblatePlan *plan, const Shell *shell, const AblateState *ablate
 
     for (uint32_t c = 0; c < shell->cell_count; c++)
         if (ablate->cell_flags[c] & ~SINGE_ALIVE) return false;
+
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         uint8_t flags = ablate->particle_flags[i];
         if ((flags & ~(SINGE_ALIVE | SINGE_PINNED)) || (ablate->degree[i] && !(flags & SINGE_ALIVE))) return false;
@@ -161,6 +165,7 @@ bool ablate_fits(AblatePlan *plan, const Shell *shell, const AblateState *ablate
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         int32_t piece = ablate->piece[i];
         uint32_t root = plan->root[i];
+
         particles += ablate->degree[i] > 0 || (shell_is_corner(shell, i) && shell_is_spare(shell, i));
         if ((ablate->degree[i] > 0) != (piece >= 0) || piece < -1) return false;
         if (piece < 0) continue;

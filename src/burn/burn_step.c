@@ -38,6 +38,7 @@ SingeResult burn_step(const StepContext *context, const float *thickening, doubl
     const Shell *shell = context->shell;
     const StateInput *state = &context->state;
     Pool *pool = context->pool;
+
     BurnJob job = {
         .shell = shell,
         .state = state,

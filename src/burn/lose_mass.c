@@ -83,6 +83,7 @@ static void react(BurnJob *job, uint32_t i, float gone) {
     burn->fuel[i] = left;
     burn->mass[i] = after < before || isnan(after) ? after : before;
     burn->burn_rate[i] = (before - burn->mass[i]) / job->h;
+
     float glow = fresh > share ? burn_glow_heat(job, i) * span * (fresh - share) / float_max(before, floor_mass) : 0;
     burn->release[i] = (field_at(matter->heating, i) * (1 - yield) * (fuel - left) + glow) / job->h;
 }
@@ -99,11 +100,13 @@ static void wish(void *context, int begin, int end) {
     for (int block = begin; block < end; block++) {
         uint32_t first, last, run;
         double sum = 0;
+
         burn_block(job, block, &first, &last);
         for (; first < last; first = run) {
             run = burn_run_end(first, last);
             memset(wish + first, 0, (run - first) * sizeof *wish);
             if (!burn_is_hot(job, first, run)) continue;
+
             for (uint32_t i = first; i < run; i++) {
                 float excess = temperature[i] - field_at(matter->ignition_temperature, i);
                 float ceiling = field_at(matter->rate_ceiling, i);
@@ -151,6 +154,7 @@ static void lose_mass(void *context, int begin, int end) {
         uint32_t first, last, run;
         double lost = 0;
         BurnAirNear near = {0};
+
         burn_block(job, block, &first, &last);
         for (; first < last; first = run) {
             run = burn_run_end(first, last);

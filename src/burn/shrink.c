@@ -50,6 +50,7 @@ static void shrink_cells(void *context, int begin, int end) {
         const SpringEnds corner = spring_ends(matter, burn, at), next = spring_ends_turned(corner);
         const SpringEnds centre = spring_ends(matter, burn, (const uint32_t[4]){middle, middle, middle, middle});
         const Float4 none = {0};
+
         shrink_springs(job, SINGE_RED, springs->red, centre_burns ? 15 : burns & 15, centre, corner,
                        float4_all(field_at(matter->thickness, middle)));
         shrink_springs(job, SINGE_BLUE, springs->blue, (burns | burns >> 1) & blue, corner, next, none);
@@ -79,6 +80,7 @@ void burn_restore_lengths(const Shell *shell, const AblateState *ablate, BurnSta
                 if (colour == SINGE_RED) // a centre comes after all vertices
                     thickness[k] = field_at(shell->matter.thickness, first[k] > second[k] ? first[k] : second[k]);
             }
+
             const SpringEnds a = spring_ends(&shell->matter, burn, first),
                              b = spring_ends(&shell->matter, burn, second);
             const Float4 length = target_lengths(springs, at, a, b, thickness);

@@ -77,6 +77,7 @@ static void air_weigh(const BurnAir *air, const float position[4][4], Float4Mask
         const Float4 up = x + float4_all(0.5f);
         const Float4Mask toward = __builtin_convertvector(up, Float4Mask);
         middle[d] = toward + (__builtin_convertvector(toward, Float4) > up); // -1 where it was rounded up
+
         const Float4 f = x - __builtin_convertvector(middle[d], Float4);
         const Float4 less = float4_all(0.5f) - f, more = float4_all(0.5f) + f;
         weight[d][0] = float4_all(0.5f) * less * less;
@@ -97,11 +98,13 @@ static void air_go(BurnAir *air, BurnAirNear *near, const Float4Mask middle[3], 
     for (int d = 0; d < 3; d++) near->middle[d] = middle[d][k];
     near->known = true;
     memset(near->demand, 0, sizeof near->demand);
+
     for (int n = 0; n < 27; n++) {
         uint64_t node = 0;
         const int offset[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
         for (int d = 0; d < 3; d++)
             node |= (uint64_t)((uint32_t)(near->middle[d] + offset[d] + (1 << 20)) & 0x1fffff) << 21 * d;
+
         const uint32_t slot = air_slot(air, node);
         if (adds && slot < air->count) air->node[slot] = node;
         const bool found = slot < air->count && air->node[slot] == node;
@@ -119,8 +122,10 @@ void burn_air_add(BurnAir *air, BurnAirNear *near, const float position[4][4], c
     Float4 weight[3][3];
     Float4Mask middle[3];
     air_weigh(air, position, middle, weight);
+
     for (int k = 0; k < 4; k++) {
         if (!(demand[k] > 0)) continue;
+
         if (air_is_elsewhere(near, middle, k)) {
             burn_air_flush(air, near);
             air_go(air, near, middle, k, true);
@@ -139,6 +144,7 @@ Float4 burn_air_share(BurnAir *air, BurnAirNear *near, const float position[4][4
     Float4 weight[3][3], share = float4_all(1);
     Float4Mask middle[3];
     air_weigh(air, position, middle, weight);
+
     for (unsigned left = 15; left;) { // mostly all four lanes at once
         const int k = __builtin_ctz(left);
         if (air_is_elsewhere(near, middle, k)) air_go(air, near, middle, k, false);
@@ -152,5 +158,6 @@ Float4 burn_air_share(BurnAir *air, BurnAirNear *near, const float position[4][4
         share = float4_select(same & (demand > supply), supply / demand, share);
         left &= ~float4_bits(same);
     }
+
     return share;
 }

@@ -16,16 +16,19 @@ void block_items_free(Memory *memory, BlockItems *items) { FREE(memory, items->a
 bool block_list_grow(Memory *memory, BlockList *list, uint32_t capacity, uint32_t block_count) {
     if (capacity < list->capacity) capacity = list->capacity;
     if (block_count < list->block_count) block_count = list->block_count;
+
     const uint32_t chunks = capacity / BLOCK_CHUNK + block_count; // a block's last chunk may be almost empty
     const size_t bytes = (size_t)chunks * BLOCK_CHUNK * list->size;
     if (bytes > list->items->bytes) {
         if (!memory_grow(memory, &list->items->at, list->items->bytes, bytes, 1)) return false;
         list->items->bytes = bytes;
     }
+
     if (chunks > list->next_length) {
         if (!memory_grow(memory, &list->next, list->next_length, chunks, sizeof *list->next)) return false;
         list->next_length = chunks;
     }
+
     if (block_count > list->block_count) {
         if (!memory_grow(memory, &list->blocks, list->block_count, block_count, sizeof *list->blocks)) return false;
         list->block_count = block_count;

@@ -66,6 +66,7 @@ static inline bool block_list_is_full(const BlockWriter *writer) { return writer
 static inline void *block_list_add(BlockWriter *writer) {
     BlockList *list = writer->list;
     if (block_list_is_full(writer)) return NULL;
+
     uint32_t at = writer->block.count++ % BLOCK_CHUNK;
     if (at == 0) {
         uint32_t chunk = atomic_fetch_add(&list->taken, 1);
@@ -74,6 +75,7 @@ static inline void *block_list_add(BlockWriter *writer) {
         writer->chunk = chunk;
     }
     if (writer->chunk >= list->chunk_count) return NULL;
+
     return list->items->at + ((size_t)writer->chunk * BLOCK_CHUNK + at) * list->size;
 }
 

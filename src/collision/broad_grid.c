@@ -155,6 +155,7 @@ static void bucket_pairs(const Find *find, const CollisionEntry *entries, uint32
             for (uint32_t j = after & ~3u; j < tile->count; j += 4) {
                 unsigned meet = meet_four(tile, j, &entries[i], &boxes[a]);
                 if (j < after) meet &= 15u << (after - j);
+
                 for (; meet; meet &= meet - 1) {
                     const uint32_t b = entries[first + j + (unsigned)__builtin_ctz(meet)].cell;
                     float distance;
@@ -174,6 +175,7 @@ static void pair_block(void *context, BlockList *list, int block) {
     Tile tile;
     uint32_t first = (uint32_t)block * COLLISION_BUCKETS, last = first + COLLISION_BUCKETS;
     if (last > plan->bucket_count) last = plan->bucket_count;
+
     for (uint32_t b = first; b < last && !block_list_is_full(&writer); b++) {
         uint32_t at = plan->bucket_first[b], count = plan->bucket_first[b + 1] - at;
         if (count > 1) bucket_pairs(find, plan->entries + at, count, &tile, &writer);

@@ -62,6 +62,7 @@ static void box_range(void *task, int begin, int end) {
 
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         if (!plan->alive[c]) continue;
+
         const uint32_t *corner = find->shell->cells[c];
         Float4 position[4], displacement[4];
         for (int i = 0; i < 4; i++) {

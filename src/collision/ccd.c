@@ -243,6 +243,7 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
         uint32_t hits;
         if (pool_cancelled(pool)) return SINGE_ERROR_CANCELLED;
         TRY(ccd_look(&ccd, state, pool, h, stopped || plan->closed, &hits));
+
         const bool spent = ccd_is_spent(plan);
         if (hits == 0 && !spent) break;
         if (!spent && zones == ZONE_ROUNDS) {
@@ -254,6 +255,7 @@ static SingeResult close_step(Memory *memory, CollisionPlan *plan, const Shell *
         plan->counters.stops += hits;
         plan->counters.rounds++;
         stopped = true;
+
         if (spent) {
             plan->counters.halts++;
             halted = true;
@@ -290,6 +292,7 @@ SingeResult ccd_apply(Memory *memory, CollisionPlan *plan, const Shell *shell, c
     const bool halted = plan->counters.halts > halts;
     if (halted) plan->restless = parts < max / 4 ? 8 * parts : 2 * max;
     else if (parts > 1) plan->restless = parts;
+
     plan->pair_count = plan->listed_count;
     for (uint32_t k = 0; k < plan->stopped_count; k++) plan->zone[plan->stopped[k]] = SHELL_NONE;
     plan->stopped_count = 0;

@@ -89,6 +89,7 @@ static int sweep_pair(const Ccd *ccd, CollisionPair *pair) {
         FeatureHulls hulls = {{four_of(p.position)}, {four_of(q.position)}};
         hulls.a[1] = four_plus(hulls.a[0], four_of(p.displacement));
         hulls.b[1] = four_plus(hulls.b[0], four_of(q.displacement));
+
         const float margin = 2 * ccd->plan->gap + ccd->plan->noise;
         const Float4 normal[2] = {float4_cross(p.position[2] - p.position[0], p.position[3] - p.position[1]),
                                   float4_cross(q.position[2] - q.position[0], q.position[3] - q.position[1])};
@@ -225,6 +226,7 @@ static double look_range(void *task, int begin, int end) {
             unsigned shared[2] = {0, 0};
             for (int i = 0; i < 16; i++)
                 if (a[i >> 2] == b[i & 3]) shared[0] |= 1u << (i >> 2), shared[1] |= 1u << (i & 3);
+
             bool parted =
                 shared[0] && pair->a != pair->b && !turns_far(ccd->plan, pair->a) && !turns_far(ccd->plan, pair->b);
             Float4 p[5], q[5], normal[2] = {{0}, {0}};
@@ -251,6 +253,7 @@ static double look_range(void *task, int begin, int end) {
 static uint32_t look_all(Look look, Pool *pool, uint32_t count) {
     CollisionPlan *plan = look.ccd->plan;
     const uint32_t begin = look.first;
+
     plan->hit_count = 0;
     for (uint32_t done = 0; done < count; done += COLLISION_CHUNK) {
         const uint32_t some = count - done < COLLISION_CHUNK ? count - done : COLLISION_CHUNK;

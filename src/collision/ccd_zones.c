@@ -194,6 +194,7 @@ void ccd_zones(const Ccd *ccd, int round) {
             uint32_t other = zone_root(plan, v);
             share = float_min(share, plan->share[other]);
             if (root == SHELL_NONE) root = other;
+
             if (other < root) {
                 plan->zone[root] = other;
                 root = other;

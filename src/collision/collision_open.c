@@ -122,6 +122,7 @@ static void write_repulsion(const CollisionPlan *plan, const CollisionPair *pair
                             Repulsion *out) {
     float weight[2][4] = {{0}};
     collision_weights(near->kind, near->first, near->second, near->u, near->v, weight[0], weight[1]);
+
     out->a = pair->a;
     out->b = pair->b;
     for (int c = 0; c < 2; c++) {
@@ -158,6 +159,7 @@ static void measure_pair(const Opening *job, CollisionPair *pair, float due_dist
         narrow_cell_set(plan, job->shell, pair->a, x, origin, &look->a);
         node_velocities(job, pair->a, look->speed_a);
     }
+
     narrow_cell_set(plan, job->shell, pair->b, x, origin, &look->b);
     float separation = narrow_boxes_distance(&look->a, &look->b) - plan->noise;
     pair->distance = separation > pair->distance ? separation : pair->distance;
@@ -200,6 +202,7 @@ static void look_block(void *context, BlockList *list, int block) {
     Look look = {.first = SHELL_NONE};
     uint32_t begin = (uint32_t)block * COLLISION_BLOCK, end = begin + COLLISION_BLOCK;
     if (end > plan->between_count) end = plan->between_count;
+
     for (uint32_t first = begin; first < end; first += 4) {
         const uint32_t count = end - first < 4 ? end - first : 4;
         uint32_t number[4];
@@ -215,6 +218,7 @@ static void look_block(void *context, BlockList *list, int block) {
         Float4 left = four.distance;
         if (!job->again)
             left = float4_max(left - collision_four_differ(&four, COLLISION_DISPLACEMENT) - plan->noise, float4_all(0));
+
         unsigned near = float4_bits(left <= due) & ~joined;
         for (uint32_t i = 0; i < count; i++) plan->pairs[first + i].distance = joined >> i & 1 ? 0 : left[i];
 
@@ -272,6 +276,7 @@ int collision_parts(CollisionPlan *plan, const Shell *shell, const StateInput *s
     const float motion = h * (float)largest / cells;
     const int least = plan->restless < 2 ? 1 : (int)(plan->restless / 2);
     if (!(motion >= PARTS_FROM)) return least;
+
     const int parts = motion < COLLISION_PARTS * PARTS_MOTION ? (int)ceilf(motion / PARTS_MOTION) : COLLISION_PARTS;
     return parts > least ? parts : least;
 }
@@ -358,8 +363,10 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
             normals = feature_normals(p.node);
             measured = pair->a;
         }
+
         narrow_cell_set(plan, shell, pair->b, x, float4_load(x[a[0]]), &q);
         if (pair->bridge != SHELL_NONE && feature_is_within(normals, feature_normals(q.node), FEATURE_CONE)) continue;
+
         float nearest;
         if (narrow_slabs_distance(&p, &q) > looks || !narrow_features(shell, pair, &p, &q, &far, found, &nearest))
             continue;

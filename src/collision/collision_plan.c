@@ -84,6 +84,7 @@ static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
 
 void collision_plan_free(Memory *memory, CollisionPlan *plan) {
     if (!plan) return;
+
     Array list[ARRAYS];
     list_arrays(plan, list);
     for (int k = 0; k < ARRAYS; k++) memory_free(memory, list[k].at, list[k].count, list[k].size);
@@ -126,6 +127,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
         plan->cell_size = float_min(plan->cell_size, shell->sheets[s].cell_size);
     for (uint32_t v = 0; v < shell->vertex_count; v++)
         for (int k = 0; k < 3; k++) far = float_max(far, fabsf(shell->rest_position[v][k]));
+
     plan->thickness = float_min(plan->def.thickness, 0.4f * plan->cell_size);
     plan->slack_max = float_max(0.3f * plan->cell_size, plan->thickness);
     plan->noise = 4e-7f * far;
@@ -142,6 +144,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
 
     uint32_t buckets = plan->bucket_count / COLLISION_BUCKETS + 1, blocks = plan->cell_count / COLLISION_OUTSIDE + 1;
     if (buckets < blocks) buckets = blocks;
+
     if (!done ||
         !block_list_create(memory, &plan->found_pairs, &plan->items, sizeof(CollisionFound), plan->pair_capacity,
                            buckets) ||
@@ -161,6 +164,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         Float4 position[4];
         float shortest = INFINITY;
+
         for (int i = 0; i < 4; i++) position[i] = float4_load(shell->rest_position[shell->cells[c][i]]);
         for (int i = 0; i < 4; i++) {
             Float4 side = position[(i + 1) & 3] - position[i];
@@ -207,6 +211,7 @@ SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const She
     uint32_t *first = plan->initial_first, count = first[plan->cell_count];
     STREAM(stream, count);
     stream_data(stream, first, ((size_t)plan->cell_count + 1) * sizeof *first);
+
     if (stream->mode == STREAM_READ) {
         bool fits =
             !stream->failed && first[0] == 0 && first[plan->cell_count] == count && count <= plan->sizes.pair_max;
@@ -229,6 +234,7 @@ SingeResult collision_plan_stream(Memory *memory, CollisionPlan *plan, const She
     for (uint32_t v = 0; v < plan->vertex_count; v++)
         for (int k = 0; k < 3; k++)
             if (!isfinite(plan->position[v][k]) || !isfinite(plan->speed[v][k])) stream->failed = true;
+
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (plan->alive[c] > 1) stream->failed = true;
 
@@ -316,6 +322,7 @@ bool collision_grow_pairs(Memory *memory, CollisionPlan *plan, uint64_t wanted) 
         !grow_array(memory, &plan->active, &plan->active_length, after, sizeof *plan->active) ||
         !grow_array(memory, &plan->around, &plan->around_length, after, sizeof *plan->around))
         return false;
+
     plan->pair_capacity = after;
     return true;
 }

@@ -238,6 +238,7 @@ static inline void collision_search_again(CollisionPlan *plan, uint64_t step) {
     const uint64_t lasted = known ? step - plan->step : COLLISION_STEPS;
     const uint64_t most = collision_is_crowded(plan) ? lasted + 1 : lasted > 0 ? 2 * lasted : 1;
     const uint32_t budget = plan->sizes.pair_budget;
+
     plan->steps_most = most < COLLISION_STEPS ? (uint32_t)most : COLLISION_STEPS;
     if (!known) plan->narrowed = 0;
     else if (plan->narrowed > 0 && plan->listed_count < budget / 2) plan->narrowed--;
@@ -331,6 +332,7 @@ static inline CollisionFourPairs collision_four_pairs(const CollisionPlan *plan,
         four.bridged |= (unsigned)bridged << i;
         distance[i] = pair->distance;
     }
+
     four.distance = (Float4){distance[0], distance[1], distance[2], distance[3]};
     return four;
 }

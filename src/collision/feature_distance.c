@@ -149,6 +149,7 @@ bool feature_is_apart(const FeatureHulls *hulls, float margin, Float4 *normal) {
     enum { TRIALS = 10 };
     Float4 v = {0};
     if (normal && feature_is_apart_along(hulls, *normal, margin)) return true;
+
     for (int trial = 0; trial <= TRIALS; trial++) {
         float reach = INFINITY, square = trial ? float4_dot(v, v) : 0;
         Float4 farthest[2];
@@ -203,6 +204,7 @@ static bool sweep_is_apart(const FeatureSweep *sweep, float margin) {
     for (int t = 0; t < 2; t++) {
         Float4 x[4];
         for (int i = 0; i < 4; i++) x[i] = t ? sweep->position[i] + sweep->displacement[i] : sweep->position[i];
+
         FourVectors all = four_of(x);
         if (sweep->edges) {
             hulls.a[t] =
@@ -231,6 +233,7 @@ float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
     float length[4];
     for (int i = 0; i < 4; i++)
         length[i] = sqrtf(float4_dot(sweep->displacement[i] - mean, sweep->displacement[i] - mean));
+
     float late = float_max(length[2], length[3]);
     float approach = sweep->edges ? float_max(length[0], length[1]) + late : length[0] + float_max(length[1], late);
     if (sweep_is_apart(sweep, 2 * gap + noise)) return 2;

@@ -26,6 +26,7 @@ static bool pair_intersects(const CollisionPlan *plan, const Shell *shell, const
     NearFeatures near[NARROW_MAX];
     NarrowCell a, b;
     float nearest;
+
     narrow_cell_set(plan, shell, pair->a, x, origin, &a);
     narrow_cell_set(plan, shell, pair->b, x, origin, &b);
     if (narrow_slabs_distance(&a, &b) > far.measured) return false;

@@ -32,11 +32,13 @@ static FourNear from_triangles(FourVectors p, FourVectors a, FourVectors b, Four
     Float4Mask on_ab = (vc <= 0) & (d1 >= 0) & (d3 <= 0);
     Float4 w = e43 / (e43 + e56);
     u = float4_select(on_bc, one - w, u);
+
     v = float4_select(on_bc, w, v);
     u = float4_select(on_ac, zero, u);
     v = float4_select(on_ac, d2 / (d2 - d6), v);
     u = float4_select(on_ab, d1 / (d1 - d3), u);
     v = float4_select(on_ab, zero, v);
+
     Float4Mask at_a = (d1 <= 0) & (d2 <= 0), at_b = (d3 >= 0) & (d4 <= d3), at_c = (d6 >= 0) & (d5 <= d6);
     u = float4_select(at_c, zero, u);
     v = float4_select(at_c, one, v);
@@ -62,6 +64,7 @@ static FourNear from_segments(FourVectors a, FourVectors b, FourVectors c, FourV
     s = float4_select(determinant > 4e-7f * uu * vv, s, zero);
     Float4 t = float4_select(vv > 0, (uv * s + vr) / vv, zero);
     Float4Mask out_of_range = ~((t >= 0) & (t <= 1));
+
     t = narrow_clamp01(t);
     Float4 mended = float4_select(uu > 0, narrow_clamp01((t * uv - ur) / uu), zero);
     s = float4_select(out_of_range, mended, s);
@@ -186,11 +189,13 @@ int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a
     unsigned of_b[4], of_a[4];
     collision_same(p, q, of_b);
     collision_same(q, p, of_a);
+
     Search search = {.near = near,
                      .far = far->measured,
                      .square = float4_all(far->measured * far->measured),
                      .listed = float4_all(far->listed * far->listed),
                      .adjacent = float4_all(far->adjacent * far->adjacent)};
+
     cell_boxes(a), cell_boxes(b);
     find_nodes(&search, a, b, of_b, COLLISION_NODE_OF_A);
     find_nodes(&search, b, a, of_a, COLLISION_NODE_OF_B);
@@ -206,6 +211,7 @@ int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a
         Float4 low = float4_min(start, end) - search.far, high = float4_max(start, end) + search.far;
         unsigned sides = four_meet(&b->boxes.sides, low, high) & b->owned >> 8 & ~narrow_around(corners);
         unsigned spokes = four_meet(&b->boxes.spokes, low, high) & ~corners;
+
         if (sides) {
             FourNear four = from_segments(four_all(start), four_all(end), b->corner, b->turned);
             narrow_note(&search, &four, sides, COLLISION_EDGES, i, 0, 1);

@@ -77,8 +77,10 @@ static inline bool repulsion_push(const Push *push, const Repulsion *repulsion) 
     Points points;
     memcpy(points.node, a, 4 * sizeof *a), memcpy(points.node + 4, b, 4 * sizeof *b);
     float4_store(points.weight, wa), float4_store(points.weight + 4, -wb);
+
     unsigned same[4];
     collision_same(a, b, same);
+
     for (int i = 0; i < 4; i++) {
         if (!same[i]) continue;
         const int twin = 4 + __builtin_ctz(same[i]);
@@ -151,6 +153,7 @@ void repulsion_sort(CollisionPlan *plan, const Shell *shell, const float (*x)[4]
     uint32_t *first = plan->stripe_first;
     plan->stripe_count = (uint32_t)(length / width) + 1;
     memset(first, 0, sizeof plan->stripe_first);
+
     for (int turn = 0; turn < 2; turn++) {
         for (uint32_t k = 0; k < count; k++) {
             const float at = x[shell->cells[plan->repulsions[k].a][0]][axis];

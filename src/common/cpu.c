@@ -55,6 +55,7 @@ bool cpu_has(SingeInstructions set) {
     if (__get_cpuid(1, &a, &b, &c, &d)) flags.basic = c;
     if (__get_cpuid_count(7, 0, &a, &b, &c, &d)) flags.extended = b;
     if (__get_cpuid(0x80000001u, &a, &b, &c, &d)) flags.more = c;
+
     if (flags.basic & CPU_OSXSAVE) {
         __asm__ volatile("xgetbv" : "=a"(a), "=d"(d) : "c"(0));
         flags.kept = a;

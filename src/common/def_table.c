@@ -137,6 +137,7 @@ static bool field_fits(const DefField *field, const void *bytes) {
             if (!def_has_value(field->words, value)) return false;
         }
         if (!field->range.words) continue;
+
         float number = 0;
         if (field->type == FIELD_FLOAT) memcpy(&number, (const char *)bytes + i * (int)sizeof number, sizeof number);
         if (field->type == FIELD_INT) {
@@ -146,6 +147,7 @@ static bool field_fits(const DefField *field, const void *bytes) {
         }
         if (!range_has(&field->range, number)) return false;
     }
+
     return true;
 }
 
@@ -161,12 +163,14 @@ static SingeResult field_fail(const DefTable *table, const DefField *field, cons
 SingeResult def_check(const DefTable *table, const void *def, SingeError *error) {
     int kind = 0;
     if (table->kind) memcpy(&kind, (const char *)def + table->kind, sizeof kind);
+
     for (int i = 0; i < table->count; i++) {
         const DefField *field = &table->fields[i];
         const bool has = !field->kinds || (kind >= 0 && kind < 32 && (field->kinds >> kind & 1));
         if (has && !field_fits(field, (const char *)def + field->offset))
             return field_fail(table, field, table->stage, error);
     }
+
     return SINGE_OK;
 }
 
@@ -188,6 +192,7 @@ void def_stream(Stream *stream, const DefTable *table, void *def, size_t first, 
         const DefField *field = &table->fields[i];
         char *at = (char *)def + field->offset;
         if (!field->stored || field->offset < first || field->offset >= end) continue;
+
         if (field->type == FIELD_BOOL) {
             uint8_t byte = *(bool *)at;
             STREAM(stream, byte);

@@ -10,6 +10,7 @@ SingeResult error_set(SingeError *error, SingeResult code, const char *stage, in
     error->code = code;
     error->element = element;
     snprintf(error->stage, sizeof error->stage, "%s", stage);
+
     va_list arguments;
     va_start(arguments, format);
     text_print(error->message, sizeof error->message, format, arguments);
@@ -32,6 +33,7 @@ const char *singe_result_name(SingeResult result) {
     case SINGE_ERROR_LIMIT: return "too large";
     case SINGE_ERROR_CANCELLED: return "cancelled";
     }
+
     return "unknown result";
 }
 

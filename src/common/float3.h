@@ -53,6 +53,7 @@ static inline void quat_of_axes(Float3 x, Float3 y, Float3 z, float q[4]) {
     int longest = 0;
     for (int k = 1; k < 4; k++)
         if (all[k][k] > all[longest][longest]) longest = k;
+
     const float length = 2 * sqrtf(all[longest][longest]);
     for (int k = 0; k < 4; k++) q[k] = all[longest][k] / length;
 }

@@ -69,14 +69,17 @@ void text_print(char *out, size_t size, const char *format, va_list arguments) {
     va_list list;
     va_copy(list, arguments); // an array in some ABIs: only a copy's address can be passed on
     out[0] = 0;
+
     for (bool known = true; known && *format;) {
         size_t plain = strcspn(format, "%");
         text_add(&text, format, plain);
         format += plain;
         if (!*format) break;
+
         char spec[TEXT_SPEC];
         size_t length = 1 + strspn(format + 1, "-+ #0123456789.lz") + 1;
         if (length >= sizeof spec || !format[length - 1]) break;
+
         memcpy(spec, format, length);
         spec[length] = 0;
         known = text_convert(&text, spec, &list);

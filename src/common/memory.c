@@ -27,6 +27,7 @@ bool memory_grow(Memory *memory, void *array_pointer, size_t old_count, size_t n
            new_size = memory_bytes(new_count, element_size);
     void *grown = new_size ? memory->hook.resize(memory->hook.context, block, old_size, new_size) : NULL;
     if (!grown) return false;
+
     memory->held += new_size - old_size;
     memcpy(array_pointer, &grown, sizeof grown);
     return true;

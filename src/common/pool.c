@@ -60,6 +60,7 @@ static bool pool_watch(const atomic_uint *word, unsigned value, bool leaves) {
         }
         thread_yield(); // to a thread that has work, if there is one
     } while (clock_seconds() - start < POOL_WATCH);
+
     return false;
 }
 
@@ -70,6 +71,7 @@ static bool pool_take(Pool *pool, bool back, uint32_t *first, uint32_t *last) {
         *first = (uint32_t)(left >> 32);
         *last = (uint32_t)left;
         if (*first >= *last) return false;
+
         const uint32_t share = (*last - *first) / (2 * (uint32_t)pool->thread_count), taken = share > 1 ? share : 1;
         const uint64_t rest = back ? left - taken : left + ((uint64_t)taken << 32);
         if (atomic_compare_exchange_weak(&pool->left, &left, rest)) {
@@ -87,6 +89,7 @@ static void pool_run_ranges(Pool *pool, bool back) {
         const int begin = (int)first * pool->grain;
         const int end = (int)last == pool->pieces ? pool->count : (int)last * pool->grain;
         pool->run(pool->context, begin, end);
+
         // the job may change from here on
         if (atomic_fetch_add(&pool->done, taken) + taken == pieces && atomic_load(&pool->caller_asleep)) {
             mutex_lock(&pool->mutex);
@@ -114,6 +117,7 @@ static void pool_worker(void *argument) {
             atomic_fetch_sub(&pool->asleep, 1);
             mutex_unlock(&pool->mutex);
         }
+
         seen = atomic_load(&pool->generation);
         pool_run_ranges(pool, true);
     }
@@ -124,12 +128,14 @@ SingeResult pool_create(Memory *memory, SingeTasks tasks, int thread_count, Pool
     Pool *pool = memory_new(memory, 1, sizeof *pool);
     if (!pool) return SINGE_ERROR_MEMORY;
     pool->tasks = tasks;
+
     int processors = thread_processors();
     pool->processors = processors > POOL_THREADS_MAX ? POOL_THREADS_MAX : processors;
     mutex_open(&pool->mutex);
     condition_open(&pool->wake);
     condition_open(&pool->over);
     if (thread_count > POOL_THREADS_MAX) thread_count = POOL_THREADS_MAX;
+
     // works without threads that cannot be created: results are the same
     int count = 1;
     if (!tasks.enqueue)
@@ -141,12 +147,14 @@ SingeResult pool_create(Memory *memory, SingeTasks tasks, int thread_count, Pool
 
 void pool_destroy(Memory *memory, Pool *pool) {
     if (!pool) return;
+
     atomic_store(&pool->quit, true);
     mutex_lock(&pool->mutex);
     atomic_fetch_add(&pool->generation, 1);
     condition_broadcast(&pool->wake);
     mutex_unlock(&pool->mutex);
     for (int i = 1; i < pool->thread_count; i++) thread_join(&pool->threads[i]);
+
     mutex_close(&pool->mutex);
     condition_close(&pool->wake);
     condition_close(&pool->over);
@@ -182,11 +190,13 @@ void pool_for(Pool *pool, int count, int grain, SingeTaskFn *run, void *context)
         run(context, 0, count);
         return;
     }
+
     if (pool->tasks.enqueue) {
         void *token = pool->tasks.enqueue(pool->tasks.context, run, context, count, grain);
         pool->tasks.finish(pool->tasks.context, token);
         return;
     }
+
     const int pieces = (count - 1) / grain + 1;
     pool->run = run;
     pool->context = context;

@@ -32,11 +32,13 @@ size_t printable_character(const char **at, const char *end, char piece[PRINTABL
     uint32_t code = (unsigned char)*c;
     int length = character_at(c, end, &code);
     *at += length ? length : 1;
+
     if (length && !is_unseen(code)) {
         memcpy(piece, c, (size_t)length);
         piece[length] = 0;
         return (size_t)length;
     }
+
     const char *names = "\nn\tt\rr", *name = code < 0x20 && code ? strchr(names, (int)code) : NULL;
     if (name && length) return (size_t)snprintf(piece, PRINTABLE_PIECE, "\\%c", name[1]);
     if (length <= 1) return (size_t)snprintf(piece, PRINTABLE_PIECE, "\\x%02x", (unsigned)(unsigned char)*c);
@@ -85,6 +87,7 @@ Shown shown_path(const char *path) {
     const char *end = path + strlen(path);
     size_t left = printable_count(path), used = 0;
     char piece[PRINTABLE_PIECE];
+
     if (left > SHOWN_PATH_MAX) used = strlen(strcpy(result.text, "..."));
     for (; left > SHOWN_PATH_MAX; left--) printable_character(&path, end, piece);
     while (path < end && used < sizeof result.text - PRINTABLE_PIECE)

@@ -37,6 +37,7 @@ float random_noise(float x, float y, float z, uint32_t seed) {
     u = random_blend(u);
     v = random_blend(v);
     w = random_blend(w);
+
     float corner[8];
     for (uint32_t k = 0; k < 8; k++)
         corner[k] = random_unit(random_hash(ix + (k & 1), iy + ((k >> 1) & 1), iz + (k >> 2), seed));
@@ -56,6 +57,7 @@ float random_fractal(const SingeNoise *noise, float x, float y, float z) {
         strength *= 0.5f;
         frequency *= 2;
     }
+
     float centred = (sum / total - 0.5f) * 1.6f + 0.5f;
     return float_min(float_max(centred, 0), 1);
 }

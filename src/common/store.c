@@ -31,6 +31,7 @@ static bool store_set(SingeAllocator allocator, void *array_pointer, size_t *cap
     size_t old_bytes = 0, bytes;
     if (!store_bytes(count, element_size, &bytes)) return false;
     if (old && !store_bytes(*capacity, element_size, &old_bytes)) return false;
+
     moved = allocator_resize(allocator, old, old_bytes, bytes);
     if (!moved) return false;
     memcpy(array_pointer, &moved, sizeof moved);
@@ -65,6 +66,7 @@ SingeResult refuse(SingeError *error, SingeResult code, const char *stage, int64
     error->code = code;
     error->element = element;
     snprintf(error->stage, sizeof error->stage, "%s", stage);
+
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(error->message, sizeof error->message, format, arguments);

@@ -23,6 +23,7 @@ uint64_t stream_checksum(const uint8_t *bytes, size_t size) {
         hash = (hash ^ word) * 0x100000001b3u;
         hash ^= hash >> 29;
     }
+
     for (; i < size; i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;
     return hash ^ hash >> 32;
 }

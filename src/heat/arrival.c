@@ -46,6 +46,7 @@ float heat_sample_arrival(const SingeTexture *map, float u, float v) {
         weight[value >= ARRIVAL_WHITE] += share;
         if (value < ARRIVAL_WHITE) sum += share * (double)value;
     }
+
     return weight[1] > weight[0] ? SOURCE_NEVER : (float)(sum / weight[0]);
 }
 
@@ -69,6 +70,7 @@ static void arrival_blocks(void *context, int begin, int end) {
         for (uint32_t i = heat_group_first(block) * HEAT_GROUP; i < last; i++) {
             const float map = job->source->texture[i];
             if (map == SOURCE_UNMAPPED || !plan->alive[i]) continue;
+
             const float ignition = field_at(matter->ignition_temperature, i), T = heat->temperature[i];
             const float warm = float_max(ambient, ambient + ARRIVAL_WARM * (ignition - ambient));
             const double late = job->pass->state->time - source_arrival(job->source, i);
@@ -103,5 +105,6 @@ double heat_arrive(HeatPass *pass, const SourceList *sources) {
         pool_for(pass->pool, pass->plan->blocks, 1, arrival_blocks, &job);
         given += heat_sum(pass->plan, 0);
     }
+
     return given;
 }

@@ -41,6 +41,7 @@ static void bound_means(void *context, int begin, int end) {
         double lacking = 0, above = 0, below = 0;
         for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
             if (!plan->rest.awake[pass->turn][g]) continue;
+
             for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) {
                 if (!plan->alive[i]) continue;
 
@@ -81,6 +82,7 @@ static void bound_shares(void *context, int begin, int end) {
         double made = 0;
         for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
             if (!plan->rest.awake[pass->turn][g]) continue;
+
             for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) {
                 if (!plan->alive[i]) {
                     plan->next[i] = pass->heat->temperature[i];

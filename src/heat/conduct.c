@@ -76,6 +76,7 @@ static void conduct_start(void *context, int begin, int end) {
         for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
             plan->rest.awake[0][g] = heat_rest_reaches(&plan->rest, plan->rest.warm, g);
             if (!plan->rest.awake[0][g]) continue;
+
             uint32_t last = heat_group_last(plan, g), next;
             for (uint32_t i = g * HEAT_GROUP; i < last; i = next) {
                 next = conduct_slice_end(i, last);
@@ -129,6 +130,7 @@ static void conduct_product(void *context, int begin, int end) {
         double sum = 0;
         for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
             if (!plan->rest.awake[pass->turn][g]) continue;
+
             uint32_t last = heat_group_last(plan, g), next;
             for (uint32_t i = g * HEAT_GROUP; i < last; i = next) {
                 next = conduct_slice_end(i, last);
@@ -171,6 +173,7 @@ static double conduct_weigh(const HeatPass *pass) {
     const float ambient = plan->settings.ambient_temperature;
     double residual = 0;
     for (uint32_t s = 0; s < plan->sheets; s++) plan->weight[s] = 0;
+
     for (uint32_t g = 0; g < plan->rest.groups; g++)
         for (uint32_t i = g * HEAT_GROUP; plan->rest.awake[0][g] && i < heat_group_last(plan, g); i++) {
             const double b = (double)(plan->measure[i] * (plan->star[i] - ambient));
@@ -200,6 +203,7 @@ static void conduct_finish(void *context, int begin, int end) {
     const float *temperature = pass->heat->temperature;
     const Matter *matter = &pass->shell->matter;
     uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);
+
     // never at 0 K, however large the slack is: a much hotter sheet may give the range
     double min = double_max((double)pass->min - pass->slack, 0.5 * (double)pass->min),
            max = (double)pass->max + pass->slack;
@@ -212,6 +216,7 @@ static void conduct_finish(void *context, int begin, int end) {
         bool within = true;
         for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
             if (!plan->rest.awake[pass->turn][g]) continue;
+
             HeatLanes inflow = {0};
             for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) {
                 if (i % HEAT_ROWS == 0) inflow = conduct_inflow(&plan->matrix, plan->star, i);
@@ -274,6 +279,7 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
         heat_blocks(pass, conduct_product);
         double curvature = heat_sum(plan, 0);
         if (!(curvature > 0)) break;
+
         pass->step_length = (float)(residual / curvature);
         heat_blocks(pass, conduct_advance);
         double before = residual;

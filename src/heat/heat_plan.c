@@ -15,6 +15,7 @@ static SingeResult plan_thicken(HeatPlan *plan, const Shell *shell, SingeError *
         double diffusivity = 0, rate = 0, heating = 0, ignition = 0, ceiling = 0, factor = 0, energy = 0, count = 0;
         for (uint32_t i = 0; i < shell->particle_count; i++) {
             if (matter->sheet[i] != s || !(matter->area[i] > 0)) continue;
+
             diffusivity += field_at(matter->diffusivity, i);
             rate += field_at(matter->mass_rate, i);
             heating += field_at(matter->heating, i);
@@ -33,6 +34,7 @@ static SingeResult plan_thicken(HeatPlan *plan, const Shell *shell, SingeError *
                              (float)(energy / count)};
         plan->thickening[s] = heat_thickening_for(sheet->material.thickening, &front,
                                                   plan->settings.ambient_temperature, sheet->cell_size);
+
         bool by_hand = sheet->material.thickening > 0;
         if (!by_hand && !(plan->thickening[s] <= PLAN_THICKENING_MAX))
             return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1,
@@ -125,6 +127,7 @@ static bool follow_splits(HeatPlan *plan, const Shell *shell, const StateInput *
     for (uint32_t k = 2 * first; k < 2 * last; k++) {
         uint32_t vertex = k & 1 ? splits[k / 2].spare : splits[k / 2].vertex;
         heat_operator_torn_vertex(plan, shell, vertex);
+
         for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
             uint32_t cell = shell->fan[f];
             heat_operator_torn_cell(plan, shell, cell);
@@ -184,6 +187,7 @@ void heat_plan_free(Memory *memory, HeatPlan *plan) {
     smother_free(memory, &plan->smother);
     heat_rest_free(memory, plan);
     heat_matrix_free(memory, plan);
+
     FREE(memory, plan->thickening, plan->sheets);
     FREE(memory, plan->measure, n);
     FREE(memory, plan->conductance, springs);

@@ -37,6 +37,7 @@ static void matrix_reserve(const HeatPlan *plan, const Shell *shell, uint32_t *l
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
         if (sheet->spare_count == 0) continue;
+
         uint32_t ordinary = sheet->vertex_count - sheet->spare_count;
         for (uint32_t v = 0; v < sheet->vertex_count; v++) {
             uint32_t *room = &length[sheet->vertex_first + v];
@@ -112,6 +113,7 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
     if (ok) {
         matrix_scatter(plan, shell, length, false);
         matrix_reserve(plan, shell, length);
+
         for (uint32_t slice = 0; slice < matrix->slices; slice++) {
             uint32_t widest = 0;
             for (uint32_t i = slice * HEAT_ROWS; i < n && i < (slice + 1) * HEAT_ROWS; i++)
@@ -151,6 +153,7 @@ void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length) {
     matrix_revive(plan, shell);
     matrix->dt = 0;                         // all diagonals are computed again
     if (matrix->twin_capacity == 0) return; // separating cells makes no twins
+
     matrix->twin_count = matrix_twins(plan, shell, NULL);
     if (matrix->twin_count > matrix->twin_capacity) matrix->twin_count = 0;
     else matrix_twins(plan, shell, matrix->twins);
@@ -197,8 +200,10 @@ bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t 
         float conductance = plan->conductance[list[k]];
         if (conductance == 0) continue;
         if (filled == width) return false;
+
         int colour = 0;
         while (list[k] >= plan->spring_first[colour + 1]) colour++;
+
         const uint32_t *ends = shell->springs[colour].ends[list[k] - plan->spring_first[colour]];
         uint32_t other = ends[ends[0] == row], entry = heat_entry(matrix, row, filled++);
         bool conducts = plan->spring_alive[list[k]] && plan->alive[row] && plan->alive[other];
@@ -277,6 +282,7 @@ void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *a
     for (uint32_t first = 0; first < count; first = last) {
         last = count - first < LOOK ? count : first + LOOK;
         if (!matrix_lost_any(plan->alive, ablate->particle_flags, first, last)) continue;
+
         for (uint32_t i = first; i < last; i++) {
             if (!plan->alive[i] || ablate->particle_flags[i] & SINGE_ALIVE) continue;
             plan->alive[i] = 0;

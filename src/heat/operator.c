@@ -172,6 +172,7 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     Float3 normal = float3_unit(float3_cross(float3_sub(x[2], x[0]), float3_sub(x[3], x[1])));
     double triangle[4];
     bool even = false;
+
     for (int k = 0; k < 4; k++) {
         Float3 cross = float3_cross(float3_sub(x[(k + 1) % 4], x[k]), float3_sub(centroid, x[k]));
         double twice = float3_dot(cross, normal);
@@ -193,9 +194,11 @@ static float operator_length(const Shell *shell, const StateInput *state, SingeC
     const float rest = set->rest[spring];
     const bool live = shell->sheets[shell->matter.sheet[a]].material.heat_operator == SINGE_HEAT_UMBRELLA_LIVE;
     if (!live || !state) return rest;
+
     const AblateState *ablate = state->ablate;
     if (!(ablate->spring_flags[colour][spring] & ablate->particle_flags[a] & ablate->particle_flags[b] & SINGE_ALIVE))
         return 0;
+
     const float(*x)[4] = (const float(*)[4])state->dynamics->position;
     const float length = float3_length(float3_sub(float3_load(x[a]), float3_load(x[b])));
     return float_max(length, LIVE_LENGTH_MIN * rest);
@@ -255,6 +258,7 @@ void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) 
     const uint32_t *first = plan->spring_first;
     double w[6], there[6];
     operator_weights(shell, cell, w);
+
     for (int side = 0; side < 4; side++) {
         uint32_t spring = springs->blue[side], other = shell_neighbour(shell, cell, side);
         float sum = operator_side(plan, shell, cell, side, w[side]);

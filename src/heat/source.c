@@ -158,6 +158,7 @@ static SingeResult source_set_texture(Memory *memory, const Shell *shell, const 
         for (uint32_t c = 0; c < sheet->cell_count && !covered; c++)
             source->texture[shell_centre(shell, sheet->cell_first + c)] = SOURCE_UNMAPPED;
     }
+
     return SINGE_OK;
 }
 
@@ -166,6 +167,7 @@ SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceD
     SingeSourceDef def = *given;
     SingePoseKey still = {.rotation = {0, 0, 0, 1}};
     memcpy(still.position, def.position, sizeof still.position);
+
     if (def.path_count == 0 && source_has_path(&def)) {
         def.path_count = 1;
         def.path = &still;
@@ -186,6 +188,7 @@ SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceD
         else source->strength_count = def.strength_count;
         if (source->strength_count) memcpy(source->strength, def.strength, def.strength_count * sizeof *def.strength);
     }
+
     if (!result && source_is_drawn(&def)) {
         const SingeTexture *texture = &def.texture;
         float *values;
@@ -235,10 +238,12 @@ SingeResult source_check_read(const Shell *shell, const Source *source, SingeErr
     } else {
         TRY(source_check(&def, error));
     }
+
     if (def.kind == SINGE_SOURCE_WATER && !shell_holds_water(shell))
         return source_bad(error, "water needs a sheet whose moisture is above 0");
     if (source->texture && !source_is_drawn(&def))
         return source_bad(error, "a texture needs a source of kind texture, arrival or water");
+
     return path_check(def.path_count, def.path, "source", error);
 }
 
@@ -395,6 +400,7 @@ static void source_contact_task(void *context, int begin, int end) {
         float reach = def->smothers ? def->contact_distance + field_at(thickness, i) : behind;
         float limit = nextafterf(reach, INFINITY), distance = collider_distance(job->collider, local, limit, &normal);
         if (!(distance <= reach)) continue;
+
         if (def->smothers) plan->put_out[i] = HEAT_SMOTHERED;
         if (!(distance <= behind) || !(def->conductance > 0)) continue;
 

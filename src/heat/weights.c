@@ -116,6 +116,7 @@ static double weights_plane(const Float3 x[4], WeightSpring springs[SPRINGS]) {
 
     for (int k = 0; k < 3; k++)
         across[k] = (normal[(k + 1) % 3] * d[(k + 2) % 3] - normal[(k + 2) % 3] * d[(k + 1) % 3]) / (area * length);
+
     for (int k = 0; k < SPRINGS; k++) {
         double u = dot3(p[k], d) / length, v = dot3(p[k], across), square = u * u + v * v;
         springs[k] = (WeightSpring){square, {0, 0}};
@@ -183,6 +184,7 @@ void heat_cell_weights(const Float3 x[4], const double across[4], double w[6]) {
     if (twice > 0) {
         double lambda[2] = {0}, mean[2], slope[3], moved = 1;
         weights_mean(springs, lambda, k, mean, slope);
+
         for (int n = 0; n < ITERATIONS && moved > 1e-9 && weights_length(mean[0], mean[1]) > 1e-12; n++) {
             double before[2] = {lambda[0], lambda[1]};
 
@@ -192,6 +194,7 @@ void heat_cell_weights(const Float3 x[4], const double across[4], double w[6]) {
             double shorter = double_max(weights_length(u, v), 1);
             lambda[0] += u / shorter;
             lambda[1] += v / shorter;
+
             double steep = double_max(weights_length(lambda[0], lambda[1]) / STEEPEST, 1);
             lambda[0] /= steep;
             lambda[1] /= steep;

@@ -45,6 +45,7 @@ static double conjugate_multiply(void *task, int begin, int end) {
         const double *own = p + slice * NETWORK_LANES;
         Pack sum[PACKS];
         for (int i = 0; i < PACKS; i++) sum[i] = pack_load(own + PACK * i);
+
         for (size_t k = first[slice], last = first[slice + 1]; k < last; k++) {
             const double *entry = value + NETWORK_LANES * k;
             const uint32_t *at = column + NETWORK_LANES * k;
@@ -54,11 +55,13 @@ static double conjugate_multiply(void *task, int begin, int end) {
             else
                 for (int i = 0; i < PACKS; i++) sum[i] += pack_load(entry + PACK * i) * pack_gather(p, at + PACK * i);
         }
+
         for (int i = 0; i < PACKS; i++) {
             pack_store(job->q + slice * NETWORK_LANES + PACK * i, sum[i]);
             dot[i] += pack_load(own + PACK * i) * sum[i];
         }
     }
+
     return pack_sum(dot);
 }
 
@@ -73,6 +76,7 @@ static double conjugate_reduce(void *task, int begin, int end) {
             pack_store(r, rest);
             dot[i] += rest * rest;
         }
+
     return pack_sum(dot);
 }
 

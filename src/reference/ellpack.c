@@ -96,6 +96,7 @@ static void ellpack_assemble_range(void *task, int begin, int end) {
         const double *g = network->gradient[row];
         double factor[2];
         for (int k = 0; k < 2; k++) factor[k] = scale[row] * network->inverse_mass[ends[k]];
+
         const size_t slice = row / NETWORK_LANES, last = NETWORK_LANES * group->slice_first[slice + 1];
         for (size_t e = NETWORK_LANES * group->slice_first[slice] + row % NETWORK_LANES; e < last; e += NETWORK_LANES) {
             uint32_t j = group->column[e];

@@ -30,6 +30,7 @@ static void hooke_forces(void *task, int begin, int end) {
         const float *va = job->velocity[ends[0]], *vb = job->velocity[ends[1]];
         double d[3], square = 0, closing = 0, both = w[ends[0]] + w[ends[1]], *force = network->gradient[k];
         double stiffness = job->stiffness * job->group->weight[k];
+
         force[0] = force[1] = force[2] = 0;
         if (both <= 0 || stiffness <= 0) continue;
 
@@ -44,6 +45,7 @@ static void hooke_forces(void *task, int begin, int end) {
 
         double distance = sqrt(square);
         if (!(distance > 0)) continue;
+
         double damping = 2 * MASS_SPRING_DAMPING * sqrt(stiffness / both);
         double size = stiffness * (distance - job->group->length[k]) + damping * closing / distance;
         for (int i = 0; i < 3; i++) force[i] = -size * d[i] / distance;

@@ -5,6 +5,7 @@ SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t gro
                            bool matrix, Network *network) {
     *network = (Network){.particle_count = particle_count, .group_count = group_count, .matrix = matrix};
     network->kernel = conjugate_choose(SINGE_INSTRUCTIONS_BEST);
+
     bool ok = NEW(memory, network->position, particle_count) && NEW(memory, network->inverse_mass, particle_count) &&
               NEW(memory, network->held, particle_count) && NEW(memory, network->groups, group_count);
     for (uint32_t g = 0; ok && g < group_count; g++) {
@@ -16,6 +17,7 @@ SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t gro
              NEW(memory, group->first, (size_t)particle_count + 1) &&
              NEW(memory, group->incident, 2 * (size_t)group->count);
         if (!ok) break;
+
         for (uint32_t k = 0; k < group->count; k++)
             for (int end = 0; end < 2; end++) group->ends[k][end] = springs[g].ends[k][end];
 

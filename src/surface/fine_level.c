@@ -96,10 +96,12 @@ static void tear_edge_vertex(Fine *fine, uint32_t vertex) {
 
     if (shell->fan_first[vertex] == shell->fan_first[vertex + 1]) return;
     if (fine_splits(fine, shell->fan[shell->fan_first[vertex]]) == 1) return; // too coarse to be drawn any finer
+
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
         uint32_t cell = shell->fan[k];
         int i = 0;
         while (shell->cells[cell][i] != vertex) i++;
+
         const uint32_t *at = shell->cells[cell];
         Float3 p = float3_load(shell->rest_position[vertex]);
         Float3 a = float3_unit(float3_sub(float3_load(shell->rest_position[at[(i + 1) & 3]]), p));

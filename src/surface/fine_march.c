@@ -125,6 +125,7 @@ bool fine_is_torn(const Fine *fine, uint32_t cell, int side) {
     float rest[3], now[3];
     metric(fine->shell->cells[cell], side, (const float(*)[4])fine->shell->rest_position, rest);
     metric(fine->shell->cells[cell], side, (const float(*)[4])fine->state->dynamics.position, now);
+
     float det = rest[0] * rest[2] - rest[1] * rest[1];
     float half_trace = 0.5f * (rest[2] * now[0] - 2 * rest[1] * now[1] + rest[0] * now[2]) / det;
     float product = (now[0] * now[2] - now[1] * now[1]) / det;
@@ -194,13 +195,16 @@ static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *f
             row_point(fine, &row, false, low, &piece.point[0], &piece.location[0]);
             row_point(fine, &row, !on_lower, on_lower ? low + 1 : high + 1, &piece.point[1], &piece.location[1]);
             row_point(fine, &row, true, high, &piece.point[2], &piece.location[2]);
+
             uint32_t *back = step == 0 ? row.first : &rung[step], *on = step + 1 == steps ? row.last : &rung[step + 1];
             piece.cut[0] = on_lower ? row.lower_cut[low] : on;
             piece.cut[1] = on_lower ? on : row.upper_cut[high];
             piece.cut[2] = back;
+
             int inside = 0;
             for (int i = 0; i < 3; i++) inside += fine->values[piece.point[i]].level >= 0;
             if (march->drawing && inside > 0) march_draw(fine, &piece);
+
             if (!march->drawing) {
                 march->triangles += inside == 2 ? 2 : inside > 0;
                 march->crossed += inside == 1 || inside == 2;
@@ -233,6 +237,7 @@ static bool march_whole(Marching *march, uint32_t cell) {
                                           fine_point_location(cell, side, 1, 0, 1)}};
         march_draw(fine, &piece);
     }
+
     return true;
 }
 
@@ -241,6 +246,7 @@ static void march_cells(Marching *march) {
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
         if (fine->cell_triangle && march->drawing) fine->cell_triangle[c] = fine->surface->triangle_count;
         if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+
         bool hidden = false;
         for (uint32_t m = 0; m < fine->mesh_count; m++) hidden |= render_hides(fine->meshes[m], c);
         if (hidden) continue;

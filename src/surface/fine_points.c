@@ -141,6 +141,7 @@ static void evaluate_vertices(void *context, int begin, int end) {
 
         fine->values[v] = particle_value(fine, v);
         if (even) continue;
+
         uint8_t corner = 0;
         while (shell->cells[home][corner] != v) corner++;
         fine->values[v] = fine_value(fine, (FineLocation){home, corner, {1, 0, 0}});
@@ -266,6 +267,7 @@ SingeResult fine_points(Fine *fine, SingeError *error) {
         const uint32_t *at = shell->cells[c];
         Float3 p[4];
         for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[at[i]]);
+
         Float3 along = float3_sub(float3_add(p[1], p[2]), float3_add(p[0], p[3]));
         Float3 up = float3_sub(float3_add(p[3], p[2]), float3_add(p[0], p[1]));
         fine->axes[c][0] = 0.5f * float3_length(along);
@@ -276,6 +278,7 @@ SingeResult fine_points(Fine *fine, SingeError *error) {
     TRY(points_number(fine, error));
     if (!NEW(fine->memory, fine->values, fine->point_count))
         return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
+
     pool_for(fine->pool, (int)shell->vertex_count, 256, evaluate_vertices, fine);
     pool_for(fine->pool, (int)shell->cell_count, 256, evaluate_centres, fine);
     pool_for(fine->pool, (int)fine->side_count, 64, evaluate_sides, fine);

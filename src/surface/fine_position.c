@@ -227,6 +227,7 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
     for (int i = 0; i < 3; i++) normals[i] = float3_load(fine->normal[particle[i]]);
     Float3 lean = float3_unit(weigh(normals, location->weight));
     float share = blend_corners(at, location, fine->share), max = blend_corners(at, location, fine->max), x, y;
+
     float3_store(position, flat);
     float3_store(normal, unit_or_up(lean));
     if (!(share * max > 0)) return;
@@ -258,6 +259,7 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
     float du = det > 0 ? (to_u * vv - to_v * uv) / det : 2 * STEP_MAX;
     float dv = det > 0 ? (to_v * uu - to_u * uv) / det : 0;
     share *= 1 - fade(float_max(fabsf(du), fabsf(dv)), 0.5f * STEP_MAX, STEP_MAX);
+
     point = fine_patch_at(patch, u + float_max(-STEP_MAX, float_min(du, STEP_MAX)),
                           v + float_max(-STEP_MAX, float_min(dv, STEP_MAX)));
     float3_store(normal, unit_or_up(float3_mad(float3_scale(lean, 1 - share), across(&point), share)));

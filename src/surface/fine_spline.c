@@ -133,6 +133,7 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
         else y += side == 2 ? -1.0f : 1.0f;
         int behind = 0;
         while (behind < 3 && shell->cell_springs[other].blue[behind] != shell->cell_springs[cell].blue[side]) behind++;
+
         for (int turns = (behind + 2 - side) & 3; turns > 0; turns--) {
             float turned = -y;
             y = x;

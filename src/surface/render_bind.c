@@ -71,6 +71,7 @@ static float nearest(Float3 p, const Float3 corner[3], float weight[3]) {
 static float find_foot(const Binding *binding, Float3 p, FineLocation *foot) {
     uint32_t first[27];
     cube_grid_around(&binding->grid, p, first);
+
     float min = INFINITY;
     for (int k = 0; k < 27; k++) {
         for (uint32_t cell = first[k]; cell != CUBE_GRID_END; cell = binding->grid.next[cell]) {
@@ -88,6 +89,7 @@ static float find_foot(const Binding *binding, Float3 p, FineLocation *foot) {
             }
         }
     }
+
     return sqrtf(min);
 }
 
@@ -112,6 +114,7 @@ static void bind_range(void *context, int begin, int end) {
             memcpy(vertex->rest, position, sizeof position);
             memcpy(vertex->normal, normal, sizeof normal);
         }
+
         const FineFrame frame = fine_frame(fine, vertex->foot.cell, float3_load(normal));
         const Float3 from = float3_sub(float3_load(vertex->rest), float3_load(position));
         const Float3 turned = float3_load(vertex->normal);
@@ -119,6 +122,7 @@ static void bind_range(void *context, int begin, int end) {
             vertex->offset[k] = float3_dot(from, frame.axis[k]);
             vertex->normal[k] = float3_dot(turned, frame.axis[k]);
         }
+
         const float height = vertex->offset[2];
         vertex->slack = float_max(1, 2 * fabsf(height) / render_bend_room(fine, &vertex->foot, height));
     }
@@ -136,10 +140,12 @@ static void fill_grid(Binding *binding) {
     float radius = 0;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (flags && !(flags[c] & SINGE_ALIVE)) continue;
+
         Float3 centroid = {0, 0, 0};
         for (int i = 0; i < 4; i++) centroid = float3_add(centroid, corner_of(binding, c, i));
         centroid = float3_scale(centroid, 0.25f);
         float3_store(binding->centroid[c], centroid);
+
         for (int i = 0; i < 4; i++) {
             const Float3 from = float3_sub(corner_of(binding, c, i), centroid);
             binding->centroid[c][3] = float_max(binding->centroid[c][3], float3_length(from));
@@ -169,6 +175,7 @@ SingeResult render_find_feet(const Fine *fine, bool by_uv, float reach, uint32_t
             far += !(binding.distance[k] <= binding.reach);
             if (binding.distance[k] > binding.distance[worst]) worst = k;
         }
+
         if (far && by_uv && first)
             result = error_set(error, SINGE_ERROR_MESH, "render mesh", -1,
                                "the middle of an edge has a uv that the sheet has not");
@@ -213,6 +220,7 @@ static void room_range(void *context, int begin, int end) {
         const Float3 p = float3_load(binding->fine->corner[v]), rest = float3_load(shell->rest_position[v]);
         uint32_t first[27];
         cube_grid_around(&binding->grid, p, first);
+
         float min = binding->reach * binding->reach;
         for (int k = 0; k < 27; k++) {
             for (uint32_t cell = first[k]; cell != CUBE_GRID_END; cell = binding->grid.next[cell]) {
@@ -226,6 +234,7 @@ static void room_range(void *context, int begin, int end) {
                     FineLocation there = {.cell = cell, .side = (uint8_t)side};
                     const float square = nearest(p, corner, there.weight);
                     if (!(square < min)) continue;
+
                     const Float3 from = float3_sub(rest, fine_blend(shell->cells[cell], &there, shell->rest_position));
                     const float before = float3_dot(from, from), radius = binding->centroid[cell][3];
                     const bool bent = before < FOLDED * FOLDED * square || before < radius * radius; // or beside it

@@ -75,6 +75,7 @@ static bool is_parted(const Fine *fine, uint32_t a, uint32_t b) {
         rest += p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
         now += i == j;
     }
+
     return now < rest;
 }
 
@@ -91,6 +92,7 @@ void render_bends(Fine *fine) {
             normals[1 + i] = float3_load(fine->normal[at[i]]);
             points[0] = float3_mad(points[0], points[1 + i], 0.25f);
         }
+
         float most[2] = {0, 0};
         for (int i = 1; i < 5; i++)
             for (int k = 0; k < i; k++) {
@@ -98,6 +100,7 @@ void render_bends(Fine *fine) {
                 const float curvature = float3_dot(turn, side) / float_max(float3_dot(side, side), FLT_MIN);
                 most[curvature > 0] = float_max(most[curvature > 0], fabsf(curvature));
             }
+
         for (int i = 0; i < 4; i++)
             for (int k = 0; k < 2; k++) fine->bend[at[i]][k] = float_max(fine->bend[at[i]][k], most[k]);
     }
@@ -117,10 +120,12 @@ SingeResult render_levels(Fine *fine, SingeError *error) {
             const RenderVertex *vertex = &fine->meshes[m]->vertices[v];
             if (!vertex->rigid) thickest = float_max(thickest, fabsf(vertex->offset[2]));
         }
+
     if (fine->mesh_count) {
         render_bends(fine);
         TRY(render_rooms(fine, 2 / ROOM_SHARE * thickest, error)); // nearer ones press it
     }
+
     for (uint32_t m = 0; m < fine->mesh_count && ok; m++) {
         RenderDrawing *drawing = &fine->renders[m];
         const RenderMesh *mesh = fine->meshes[m];
@@ -151,6 +156,7 @@ SingeResult render_levels(Fine *fine, SingeError *error) {
             }
             fine->extra_triangles += parted ? 3 : in == 2 ? 2 : in > 0;
         }
+
         for (uint32_t v = 0; v < mesh->vertex_count; v++) fine->extra_vertices += drawing->values[v].level >= 0;
         fine->extra_vertices += made;
         if (made > INT32_MAX) return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "too many vertices");
@@ -226,6 +232,7 @@ static uint32_t cut_vertex(Fine *fine, RenderDrawing *drawing, uint32_t edge, in
         made->normal[k] = mix(a->normal[k], b->normal[k], in);
         made->rest[k] = mix(a->rest[k], b->rest[k], in);
     }
+
     for (int k = 0; k < 2; k++) made->uv[k] = mix(a->uv[k], b->uv[k], in);
     float3_store(made->normal, float3_unit(float3_load(made->normal)));
     return list_vertex(fine, entry, made, value_at(fine, &made->foot).mass);
@@ -244,6 +251,7 @@ static void draw_part(Fine *fine, RenderDrawing *drawing, uint32_t t, const bool
         int made = 0;
         if (stays[a])
             corner[made++] = list_vertex(fine, &drawing->drawn[at], &mesh->vertices[at], drawing->values[at].mass);
+
         if (stays[a] != stays[b]) {
             const uint32_t from = stays[a] ? at : mesh->triangles[t][b];
             corner[made++] = cut_vertex(fine, drawing, edge, mesh->edges[edge][0] == from ? 0 : 1);
@@ -300,6 +308,7 @@ void render_place(const Fine *fine, const FineVertex *vertex, uint32_t v) {
         position = float3_mad(position, frame.axis[k], offset[k]);
         normal = float3_mad(normal, frame.axis[k], render->normal[k]);
     }
+
     normal = float3_unit(normal);
     float3_store(surface->position[v], position);
     float3_store(surface->normal[v], float3_dot(normal, normal) > 0.5f ? normal : frame.axis[2]);

@@ -87,6 +87,7 @@ static SingeResult take_triangles(Memory *memory, const SingeRenderMeshDef *def,
     table_close(memory, &known);
     if (!ok) return no_memory(error);
     if (mesh->triangle_count) return SINGE_OK;
+
     return error_set(error, SINGE_ERROR_MESH, "render mesh", -1, "the mesh has no triangles");
 }
 
@@ -95,6 +96,7 @@ static SingeResult take(Memory *memory, const RenderSheet *sheet, const SingeRen
                         SingeError *error) {
     if (!def->positions || !def->triangles)
         return error_set(error, SINGE_ERROR_ARGUMENT, "render mesh", -1, "positions or triangles are NULL");
+
     const float lengths[] = {def->reach, def->edge_max, def->rigid};
     static const char *const names[] = {"reach", "edge_max", "rigid"};
     for (int i = 0; i < 3; i++)
@@ -106,6 +108,7 @@ static SingeResult take(Memory *memory, const RenderSheet *sheet, const SingeRen
 
     if (def->by_uv && !def->uv)
         return error_set(error, SINGE_ERROR_ARGUMENT, "render mesh", -1, "by_uv needs a mesh with uv");
+
     bool mapped = false;
     for (uint32_t v = 0; v < sheet->source->sheet.vertex_count && sheet->source->uv && !mapped; v++)
         mapped = sheet->source->uv[v][0] != 0 || sheet->source->uv[v][1] != 0;
@@ -181,6 +184,7 @@ static SingeResult find_parts(Memory *memory, float rigid, RenderMesh *mesh, Sin
         memcpy(bits, at, sizeof bits);
         place[v] = table_number(&places, bits[0], bits[1], bits[2]);
     }
+
     if (ok) {
         for (uint32_t i = 0; i < places.count; i++) parent[i] = i;
         for (uint32_t t = 0; t < mesh->triangle_count; t++) {
@@ -198,6 +202,7 @@ static SingeResult find_parts(Memory *memory, float rigid, RenderMesh *mesh, Sin
             part->count++;
             for (int k = 0; k < 3; k++) part->sum[k] += (double)mesh->vertices[v].rest[k];
         }
+
         for (uint32_t v = 0; v < mesh->vertex_count; v++) {
             Part *part = &parts[root_of(parent, place[v])];
             const Float3 from = float3_sub(float3_load(mesh->vertices[v].rest), middle_of(part));
@@ -256,6 +261,7 @@ static SingeResult count_odd_edges(Memory *memory, RenderMesh *mesh, SingeError 
             const uint32_t edge = mesh->triangle_edges[t][k];
             ways[edge][mesh->triangles[t][k] == mesh->edges[edge][0]]++;
         }
+
     for (uint32_t e = 0; e < count; e++) mesh->odd_edges += ways[e][0] > 1 || ways[e][1] > 1;
     FREE(memory, ways, count);
     return SINGE_OK;
@@ -267,6 +273,7 @@ static void divide(const uint32_t at[3], const uint32_t halves[3], uint32_t (*ou
     for (int k = 0; k < 3; k++) long_count += halves[k] != SHELL_NONE;
     while (long_count == 1 && halves[first] == SHELL_NONE) first++;
     while (long_count == 2 && halves[(first + 2) % 3] != SHELL_NONE) first++; // the first two are long
+
     const uint32_t a = at[first], b = at[(first + 1) % 3], c = at[(first + 2) % 3];
     const uint32_t ab = halves[first], bc = halves[(first + 1) % 3], ca = halves[(first + 2) % 3];
     const uint32_t divided[4][4][3] = {
@@ -299,6 +306,7 @@ static SingeResult halve(Memory *memory, float max, RenderMesh *mesh, uint32_t *
     else if (*halved && !(NEW(memory, triangles, triangle_max) &&
                           memory_grow(memory, &mesh->vertices, vertices, vertices + *halved, sizeof *mesh->vertices)))
         result = no_memory(error);
+
     if (!result && *halved) {
         mesh->vertex_count = mesh->vertex_capacity = vertices + *halved;
         for (uint32_t e = 0; e < edges; e++) {
@@ -310,6 +318,7 @@ static SingeResult halve(Memory *memory, float max, RenderMesh *mesh, uint32_t *
             for (int k = 0; k < 2; k++) made->uv[k] = 0.5f * a->uv[k] + 0.5f * b->uv[k];
             float3_store(made->normal, float3_unit(float3_add(float3_load(a->normal), float3_load(b->normal))));
         }
+
         for (uint32_t t = 0; t < mesh->triangle_count; t++) {
             uint32_t halves[3];
             for (int k = 0; k < 3; k++) halves[k] = half[mesh->triangle_edges[t][k]];
@@ -337,6 +346,7 @@ static SingeResult bind(const Fine *fine, float cell, const SingeRenderMeshDef *
     const float max = def->edge_max > 0 ? float_min(def->edge_max, 0.5f * cell) : 0.5f * cell;
     const float reach = def->reach > 0 ? def->reach : cell;
     const uint32_t given = mesh->vertex_count;
+
     if (def->by_uv) { // first, as its edges are as long as they are on the sheet
         TRY(render_find_feet(fine, true, reach, 0, mesh, error));
         render_bind(fine, true, mesh);
@@ -350,11 +360,13 @@ static SingeResult bind(const Fine *fine, float cell, const SingeRenderMeshDef *
         if (!mesh->vertices[at[0]].rigid) area += 0.5 * (double)float3_length(doubled);
     }
     if (area > 0.4331 * (double)max * (double)max * VERTICES_MAX) return too_fine(max, error);
+
     if (!def->by_uv) TRY(render_find_feet(fine, false, reach, 0, mesh, error));
     for (uint32_t halved = 1; halved;) {
         TRY(list_edges(fine->memory, mesh, error));
         TRY(halve(fine->memory, max, mesh, &halved, error));
     }
+
     if (mesh->vertex_count > given) TRY(render_find_feet(fine, def->by_uv, reach, given, mesh, error));
     render_bind(fine, def->by_uv, mesh);
     return SINGE_OK;
@@ -370,9 +382,11 @@ static SingeResult make(Memory *memory, Pool *pool, const RenderSheet *sheet, co
     SheetSource source = *sheet->source;
     Shell shell = {0};
     State state = {0};
+
     source.sheet.spare_count = 0;
     SingeResult result = shell_create(memory, &source, 1, &shell, error);
     if (!result && (result = state_create(memory, &shell, &state))) no_memory(error);
+
     if (!result) {
         const SurfaceDetail detail = {.size = shell.sheets[0].cell_size};
         Fine fine = {.shell = &shell, .state = &state, .memory = memory, .pool = pool, .bulge_max = INFINITY};

@@ -89,6 +89,7 @@ static void draw_cells(const Drawing *drawing) {
                 uint32_t vertex[2];
                 int made = 0;
                 if (inside) vertex[made++] = corner[a];
+
                 if (inside != (level[b] >= 0)) {
                     const int in = inside ? a : b, out = inside ? b : a;
                     vertex[made++] = surface_cut(level[in], level[out], SURFACE_NEAREST) > 0 ? edge[a] : corner[in];
@@ -263,6 +264,7 @@ static SingeResult draw(Drawing *drawing, SingeError *error) {
         float3_store(surface->position[v], sample.position);
         float3_store(surface->velocity[v], sample.velocity);
         float3_store(surface->rest_position[v], sample.rest);
+
         surface->uv[v][0] = sample.u;
         surface->uv[v][1] = sample.v;
         surface->temperature[v] = sample.temperature;

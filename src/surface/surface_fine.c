@@ -118,6 +118,7 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
     surface->temperature_peak[v] = fine_spline_at(shell, &fine->splines[SPLINE_PEAK], *location);
     surface->burn_rate[v] = fine_spline_at(shell, &fine->splines[SPLINE_RATE], *location);
     surface->mass[v] = vertex->mass;
+
     float fuel = float_min(float_max(fine_spline_at(shell, &fine->splines[SPLINE_FUEL], *location), 0), 1);
     surface->char_fraction[v] = yield * shell_char(vertex->mass, fuel, mass_min, yield);
     surface->ash_fraction[v] = float_max(vertex->mass - fuel - surface->char_fraction[v], 0);
@@ -227,6 +228,7 @@ static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError
     TRY(render_levels(fine, error));
     TRY(fine_march(fine, error));
     render_march(fine);
+
     TRY(surface_reserve_vertices(fine->surface, fine->vertex_count, error));
     pool_for(fine->pool, (int)fine->vertex_count, 256, fill_range, fine);
     fine->surface->vertex_count = fine->vertex_count;
@@ -241,11 +243,13 @@ SingeResult surface_draw_fine(AblatePlan *plan, const Shell *shell, const State 
     fine.bulge_max = detail->bulge_max > 0 ? detail->bulge_max : INFINITY;
     fine.level = ablate_levels(plan, shell, &state->burn);
     fine.rim = ablate_rim(plan);
+
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
     surface->wet = state->heat.water != NULL;
     fine.meshes = detail->meshes;
     fine.mesh_count = detail->mesh_count;
     SingeResult result = fine_draw(&fine, detail, error);
+
     fine_close(&fine);
     if (result) surface_clear(surface);
     return result;

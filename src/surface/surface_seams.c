@@ -41,6 +41,7 @@ static void weights_at(const Shell *shell, uint32_t cell, int side, Float3 point
     Float3 c = {0, 0, 0};
     for (int i = 0; i < 4; i++) c = float3_add(c, corner_rest(shell, cell, i));
     c = float3_scale(c, 0.25f);
+
     Float3 a = float3_sub(corner_rest(shell, cell, side), c);
     Float3 b = float3_sub(corner_rest(shell, cell, (side + 1) & 3), c), p = float3_sub(point, c);
     float aa = float3_dot(a, a), ab = float3_dot(a, b), bb = float3_dot(b, b), pa = float3_dot(p, a),
@@ -55,6 +56,7 @@ static void weights_at(const Shell *shell, uint32_t cell, int side, Float3 point
 static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], float same, int32_t source) {
     SingeSurface *surface = seams->surface;
     uint32_t last = vertex;
+
     if (!seams->claimed[vertex]) {
         seams->claimed[vertex] = 1;
         memcpy(surface->uv[vertex], uv, 2 * sizeof *uv);
@@ -94,6 +96,7 @@ static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end)
         for (int k = 0; k < 3; k++)
             centroid = float3_add(centroid, float3_load(seams->surface->rest_position[triangle[k]]));
         centroid = float3_scale(centroid, 1 / 3.0f);
+
         int side = 0;
         float max = -INFINITY;
         for (int s = 0; s < 4; s++) {
@@ -116,6 +119,7 @@ static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end)
             float weight[3];
             weights_at(seams->shell, cell, side, float3_load(seams->surface->rest_position[triangle[k]]), weight);
             if (source >= 0) source = seams->shell->corner_source[cell][weight[0] > weight[1] ? side : next];
+
             for (int d = 0; d < 2; d++) {
                 float centre = 0.25f * (corner[0][d] + corner[1][d] + corner[2][d] + corner[3][d]);
                 float mixed = weight[0] * corner[side][d] + weight[1] * corner[next][d] + weight[2] * centre;

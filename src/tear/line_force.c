@@ -64,11 +64,13 @@ float tear_strength_least(const Shell *shell, uint32_t index, float weakened, fl
 
     if (shell_holds_water(shell)) weakened *= LINE_WET;
     if (weakened < 1) weakened *= LINE_CHAR;
+
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
         const bool leaves_ash = field_at(matter->char_yield, v) > field_at(matter->mass_min, v);
         const float burnt = field_at(matter->char_strength, v) * (leaves_ash ? 1 + (LINE_ASH - 1) * ash : 1);
         least = float_min(least, float_min(burnt, field_at(matter->strength, v) * weakened));
     }
+
     return least;
 }
 
@@ -97,6 +99,7 @@ static bool measure_is_far(const Measure *job, uint32_t cell, float square) {
     const uint32_t *corner = job->shell->cells[cell];
     const float *fuel = state->burn.fuel;
     if (state->heat.water) return false;
+
     for (int i = 0; i < 4; i++)
         if (!(fuel[corner[i]] >= 1)) return false;
 
@@ -113,6 +116,7 @@ static bool measure_is_stretched(const Measure *job, uint32_t cell) {
     const float doubtful = 0.95f * EDGE_STRETCH * EDGE_STRETCH;
     Float4 x[4];
     for (int i = 0; i < 4; i++) x[i] = float4_load(job->state->dynamics.position[shell->cells[cell][i]]);
+
     for (int i = 0; i < 4; i++) {
         const Float4 d = x[(i + 1) & 3] - x[i];
         const float rest = blue[springs->blue[i]];
@@ -126,6 +130,7 @@ static bool measure_is_stretched(const Measure *job, uint32_t cell) {
         if (float4_dot(d, d) < doubtful * rest * rest) continue;
         if (edge_stretch(shell, job->state, SINGE_YELLOW, springs->yellow[i]) > EDGE_STRETCH) return true;
     }
+
     return false;
 }
 
@@ -183,6 +188,7 @@ static double measure_cells(void *task, int begin, int end) {
         const Float4 centre = float4_load(centroid[c]);
         Float4 p[4], along = float4_all(0), across = along;
         for (int i = 0; i < 4; i++) p[i] = float4_load(shell->rest_position[shell->cells[c][i]]);
+
         for (int i = 0; i < 4; i++) {
             uint32_t other = shell_neighbour(shell, c, i);
             measure_add(&along, &across, p[i] - centre, pull[SINGE_RED][springs->red[i]]);
@@ -242,6 +248,7 @@ void tear_smooth(TearPlan *plan, const Shell *shell, const State *state, Pool *p
     int count = passes < 0 ? 0 : passes > LINE_PASSES ? LINE_PASSES : (int)passes;
     count += count & 1; // even, so that the result is in smooth[0]
     memcpy(plan->smooth[0], state->tear.line_force, shell->cell_count * sizeof(Tensor));
+
     Measure job = {.plan = plan, .shell = shell, .state = (State *)(uintptr_t)state};
     for (int k = 0; k < count; k++) {
         job.from = k & 1;

@@ -23,6 +23,7 @@ static void count_degree(const Shell *shell, State *state, uint32_t vertex) {
         const CellSprings *springs = &shell->cell_springs[cell];
         int i = 0;
         while (shell->cells[cell][i] != vertex) i++;
+
         int after = (i + 3) & 3;
         degree = (uint16_t)(degree + split_alive(state, SINGE_RED, springs->red[i]) +
                             split_alive(state, SINGE_YELLOW, springs->yellow[i & 1]) +
@@ -65,8 +66,10 @@ static void open_tear_edges(const Shell *shell, State *state, uint32_t one, uint
     Float3 position = float3_load(x),
            displacements[2] = {tear_edge_displacement(shell, state, one), tear_edge_displacement(shell, state, two)};
     float length = TEAR_EDGE_GAP * 0.5f * (float3_length(displacements[0]) + float3_length(displacements[1]));
+
     float3_store(x, float3_mad(position, displacements[0], TEAR_EDGE_GAP));
     float3_store(y, float3_mad(position, displacements[1], TEAR_EDGE_GAP));
+
     for (int k = 0; k < DIRECTIONS && tear_edges_cross(shell, state, one, two); k++) {
         Float3 displacement = float3_unit(float3((float)(k % 3 - 1), (float)(k / 3 % 3 - 1), (float)(k / 9 - 1)));
         float3_store(x, float3_mad(position, displacement, length));
@@ -81,6 +84,7 @@ void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *sp
     COPY(state->heat.temperature, to, from);
     COPY(state->heat.temperature_peak, to, from);
     if (state->heat.water) COPY(state->heat.water, to, from);
+
     COPY(state->burn.mass, to, from);
     COPY(state->burn.fuel, to, from);
     COPY(state->burn.burn_rate, to, from);

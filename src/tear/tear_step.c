@@ -80,8 +80,10 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
 
 void tear_plan_free(Memory *memory, TearPlan *plan) {
     if (!plan) return;
+
     FREE(memory, plan->centroid, plan->cell_count);
     for (int k = 0; k < 2; k++) FREE(memory, plan->smooth[k], plan->cell_count);
+
     FREE(memory, plan->ratio, plan->vertex_count);
     FREE(memory, plan->torn, plan->vertex_count);
     FREE(memory, plan->leader, plan->particle_count);
@@ -219,6 +221,7 @@ static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const Stat
         edge->along = float3_unit(float3_sub(float3_load(shell->rest_position[end]), here));
         edge->strength = INFINITY;
         edge->solid = is_left(state, fan, k) && is_left(state, fan, turn.at[j > 0 ? j - 1 : count - 1]);
+
         float across = tensor_across(pull->force, float3_unit(float3_cross(normal, edge->along)));
         if (across > EDGE_MIN * tensor_across(pull->force, pull->across))
             edge->strength = tear_strength(plan, shell, state, vertex) + tear_strength(plan, shell, state, end);
@@ -242,6 +245,7 @@ static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const Stat
             second = j;
     if (second < 0) second = pick_edge(edges, 0, count, float3_scale(direction, -1), draw);
     if (second < 0 || second == first) return 0;
+
     return smaller_part(fan, &turn, first < second ? first : second, first < second ? second : first);
 }
 
@@ -279,6 +283,7 @@ static void fill_ratios(void *task, int begin, int end) {
     for (uint32_t v = (uint32_t)begin; v < (uint32_t)end; v++) {
         job->plan->ratio[v] = 0;
         if (is_far_from_tearing(job, v)) continue;
+
         TearPull pull = tear_pull(job->plan, job->shell, job->state, v);
         Fan fan;
         if (pull.ratio > TEAR_HINGE) {
@@ -300,6 +305,7 @@ static void separate(Shell *shell, State *state, uint32_t vertex) {
         split_fan(shell, vertex, &fan);
         Turn turn = turn_order(&fan);
         if (turn.count == fan.count || state->dynamics.pinned[vertex]) return;
+
         ShellSplit split = {vertex, smaller_part(&fan, &turn, 0, turn.count), SHELL_NONE};
         if (!split_is_possible(shell, &fan, &split)) return;
         tear_split(shell, state, &fan, &split, &result);

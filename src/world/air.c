@@ -18,11 +18,13 @@ float source_strength(const Source *source, double time) {
     uint32_t count = source->strength_count, k = 0;
     const SingeValueKey *keys = source->strength;
     while (k < count && time >= keys[k].time) k++;
+
     float strength = count == 0 ? 1 : keys[k < count ? k : count - 1].value;
     if (k > 0 && k < count) {
         double part = (time - keys[k - 1].time) / ((double)keys[k].time - keys[k - 1].time);
         strength = (float)(keys[k - 1].value + part * ((double)keys[k].value - keys[k - 1].value));
     }
+
     return strength;
 }
 
@@ -54,6 +56,7 @@ Float3 source_air(const Source *source, Float3 position, double time) {
     const Float3 axis = float3_unit(float3_load(def->direction));
     const float x = float3_dot(away, axis);
     const Float3 across = float3_mad(away, axis, -x);
+
     if (def->kind == SINGE_SOURCE_ATTRACT)
         return float3_scale(float3_unit(away), -speed * air_profile(float3_length(away) / radius));
     if (def->kind == SINGE_SOURCE_VORTEX)

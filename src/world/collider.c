@@ -61,6 +61,7 @@ SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collide
         result =
             height_solid_create(memory, def->columns, def->rows, def->heights, def->size, &collider->heights, error);
     if (result) collider_free(memory, collider);
+
     return result;
 }
 
@@ -90,6 +91,7 @@ float collider_distance(const Collider *collider, Float3 p, float limit, Float3 
     case SINGE_COLLIDER_MESH: return mesh_solid_distance(&collider->mesh, p, limit, normal);
     case SINGE_COLLIDER_DEFORMING: return mesh_solid_distance(deform_solid(&collider->deform), p, limit, normal);
     }
+
     *normal = float3(0, 0, 1);
     return INFINITY;
 }
@@ -117,6 +119,7 @@ void collider_bounds(const Collider *collider, Float3 *low, Float3 *high) {
         return;
     case SINGE_COLLIDER_DEFORMING: deform_bounds(&collider->deform, low, high); return;
     }
+
     *low = float3_scale(half, -1);
     *high = half;
 }

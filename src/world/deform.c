@@ -80,6 +80,7 @@ void deform_between(const Deform *deform, double before, double after) {
     if (pose->time[pose->now] == before) pose->now = 1 - pose->now;
     if (pose->time[1 - pose->now] != before) deform_make(deform, 1 - pose->now, before);
     deform_make(deform, pose->now, after);
+
     float farthest = 0;
     for (uint32_t v = 0; v < deform->motion.count; v++) {
         Float3 displacement = float3_sub(float3_load(pose->solid[pose->now].vertices[v]),
@@ -100,6 +101,7 @@ Float3 deform_drift(const Deform *deform, Float3 p) {
     const uint32_t *corner = before->triangles[t];
     Float3 v[3], drift = {0, 0, 0};
     for (int i = 0; i < 3; i++) v[i] = float3_load(before->vertices[corner[i]]);
+
     const TriangleClosest foot = triangle_closest(p, v[0], v[1], v[2]);
     const float weights[3] = {(float)(1 - foot.s - foot.t), (float)foot.s, (float)foot.t};
     for (int i = 0; i < 3; i++)

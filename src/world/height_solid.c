@@ -163,6 +163,7 @@ float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Flo
     bool over = dx <= 0 && dy <= 0;
     Float3 out = float3(float_max(dx, 0), float_max(dy, 0), float_max(p.z - solid->high, 0));
     float bound = float3_length(out);
+
     *normal = float3(0, 0, 1);
     if (bound > 0 && bound >= limit) return bound;
     if (!isfinite(p.x + p.y + p.z)) return INFINITY;

@@ -60,6 +60,7 @@ static SingeResult mesh_check_numbers(uint32_t vertex_count, const float *vertic
     if (triangle_count < 4) return mesh_bad(error, -1, "a closed mesh has at least 4 triangles");
     if (triangle_count > INT32_MAX / 4 || vertex_count > INT32_MAX / 4)
         return error_set(error, SINGE_ERROR_LIMIT, "collider", -1, "the mesh is too large");
+
     for (size_t k = 0; k < 3 * (size_t)vertex_count; k++)
         if (!(fabsf(vertices[k]) <= MESH_POSITION_MAX))
             return error_set(error, SINGE_ERROR_MESH, "collider", (int64_t)(k / 3),
@@ -103,6 +104,7 @@ static SingeResult mesh_gather(const uint32_t *triangles, const uint32_t *first,
             corner[i] = first[triangles[3 * (size_t)t + (size_t)i]];
             v[i] = float3_load(solid->vertices[corner[i]]);
         }
+
         if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
         source[count++] = t;
         if (!(float3_length(float3_cross(float3_sub(v[1], v[0]), float3_sub(v[2], v[0]))) > MESH_AREA_MIN))
@@ -194,8 +196,10 @@ SingeResult mesh_solid_take(Memory *memory, uint32_t vertex_count, const float *
     if (!result) result = mesh_gather(triangles, first, source, solid, error);
     if (!result) mesh_turn(solid);
     if (!result) result = mesh_link(&edges, source, solid, error);
+
     table_free(memory, &edges);
     FREE(memory, first, vertex_count);
     FREE(memory, source, triangle_count);
+
     return result;
 }

@@ -50,6 +50,7 @@ static Float3 solid_cell_centre(const MeshSolid *solid, int i, int j, int k) {
 static Float3 solid_vertex_normal(const MeshSolid *solid, uint32_t t, uint32_t corner) {
     const uint32_t vertex = solid->triangles[t][corner], first = t;
     if (solid->vertex_normals) return float3_load(solid->vertex_normals[vertex]);
+
     Float3 sum = {0, 0, 0};
     uint32_t turns = 0;
     do {
@@ -58,6 +59,7 @@ static Float3 solid_vertex_normal(const MeshSolid *solid, uint32_t t, uint32_t c
         sum = float3_mad(sum, solid_face_normal(solid, t), solid_angle(solid, t, i));
         t = solid->neighbours[t][i];
     } while (t != first && ++turns < solid->triangle_count);
+
     return sum;
 }
 
@@ -72,6 +74,7 @@ static float solid_signed(const MeshSolid *solid, Float3 p, uint32_t t, Float3 *
     else *normal = solid_face_normal(solid, t);
     if (edge >= 0 && foot.feature < TRIANGLE_FACE)
         *normal = float3_unit(float3_add(*normal, solid_face_normal(solid, solid->neighbours[t][edge])));
+
     const double n[3] = {(double)normal->x, (double)normal->y, (double)normal->z};
     double along = dot3(foot.away, n), distance = sqrt(foot.square);
     float sign = along < 0 ? -1 : 1;
@@ -95,6 +98,7 @@ static bool solid_grid(Memory *memory, MeshSolid *solid) {
     double side[3] = {double_max((double)size.x, min), double_max((double)size.y, min),
                       double_max((double)size.z, min)};
     solid->cell = (float)real_cbrt(side[0] * side[1] * side[2] / wanted);
+
     size_t count = 1;
     for (int d = 0; d < 3; d++) { // and a margin of one cell
         solid->cells[d] = (int32_t)ceil(side[d] / (double)solid->cell) + 2;
@@ -151,6 +155,7 @@ SingeResult mesh_solid_create_moving(Memory *memory, uint32_t vertex_count, cons
     *solid = (MeshSolid){.cell = 1};
     SingeResult result = mesh_solid_take(memory, vertex_count, vertices, triangle_count, triangles, solid, error);
     if (!result && !mesh_tree_create(memory, solid)) result = solid_no_memory(error);
+
     if (result) {
         mesh_solid_free(memory, solid);
         return result;

@@ -121,6 +121,7 @@ static int32_t tree_build(TreeBuild *build, uint32_t first, uint32_t count) {
     for (int i = 0; i < SOLID_WIDE; first += parts[i++]) {
         float box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
         for (uint32_t k = first; k < first + parts[i]; k++) tree_box_add(box, solid, solid->order[k]);
+
         int32_t child = parts[i] ? tree_build(build, first, parts[i]) : 0;
         SolidNode *node = &solid->nodes[index];
         for (int d = 0; d < 3; d++) {
@@ -184,6 +185,7 @@ void mesh_tree_refit(MeshSolid *solid) {
             float box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
             const int32_t child = node->child[i];
             if (child == 0) continue; // empty: the root is nobody's child
+
             for (int lane = 0; lane < SOLID_WIDE; lane++) {
                 uint32_t slot = (uint32_t)~child * SOLID_WIDE + (uint32_t)lane;
                 if (child < 0) tree_box_add(box, solid, solid->order[slot < count ? slot : count - 1]);
@@ -243,11 +245,13 @@ static inline Float4 tree_triangles(const SolidLeaf *leaf, const Float4 p[3]) {
 
     tree_cross(leaf->ab, leaf->ac, normal);
     tree_cross(leaf->ab, pa, side);
+
     Float4Mask inside = tree_dot(side, normal) >= 0;
     tree_cross(bc, pb, side);
     inside &= tree_dot(side, normal) >= 0;
     tree_cross(back, pa, side);
     inside &= tree_dot(side, normal) >= 0;
+
     Float4 height = tree_dot(pa, normal);
     Float4 plane = height * height / tree_dot(normal, normal);
     Float4 edges = float4_min(float4_min(tree_edge(pa, leaf->ab), tree_edge(pa, leaf->ac)), tree_edge(pb, bc));

@@ -15,10 +15,12 @@ static double path_rotation_length(const float q[4]) {
 SingeResult path_check(uint32_t count, const SingePoseKey *keys, const char *owner, SingeError *error) {
     if (count > 0 && !keys)
         return error_set(error, SINGE_ERROR_ARGUMENT, owner, -1, "the path has %u keys but no array", count);
+
     for (uint32_t i = 0; i < count; i++) {
         bool finite = isfinite(keys[i].time);
         for (int k = 0; k < 3; k++) finite = finite && fabsf(keys[i].position[k]) <= path_position_max;
         for (int k = 0; k < 4; k++) finite = finite && isfinite(keys[i].rotation[k]);
+
         if (!finite)
             return error_set(error, SINGE_ERROR_ARGUMENT, owner, i, "path key %u is not finite or beyond 1e9 m", i);
         if (i > 0 && !(keys[i].time > keys[i - 1].time))
@@ -42,6 +44,7 @@ SingeResult path_set(Path *path, Memory *memory, uint32_t count, const SingePose
     TRY(path_check(count, keys, owner, error));
     SingePoseKey *copy;
     if (!NEW(memory, copy, count)) return error_set(error, SINGE_ERROR_MEMORY, owner, -1, "out of memory for a path");
+
     for (uint32_t i = 0; i < count; i++) {
         copy[i] = keys[i];
         double length = path_rotation_length(keys[i].rotation);
@@ -60,8 +63,10 @@ void path_free(Path *path, Memory *memory) {
 
 Pose path_pose(const Path *path, double time) {
     if (path->count == 0) return (Pose){{0, 0, 0}, {0, 0, 0, 1}};
+
     uint32_t next = 0;
     while (next < path->count && path->keys[next].time <= time) next++;
+
     const SingePoseKey *b = &path->keys[next < path->count ? next : path->count - 1];
     const SingePoseKey *a = next > 0 ? &path->keys[next - 1] : b;
     float t = a == b ? 0 : (float)((time - a->time) / ((double)b->time - a->time));
@@ -76,6 +81,7 @@ Pose path_pose(const Path *path, double time) {
         pose.rotation[k] = a->rotation[k] + ((dot < 0 ? -b->rotation[k] : b->rotation[k]) - a->rotation[k]) * t;
         length += pose.rotation[k] * pose.rotation[k];
     }
+
     length = sqrtf(length);
     for (int k = 0; k < 4; k++) pose.rotation[k] /= length;
     return pose;

@@ -18,6 +18,7 @@ SingeResult smother_create(Memory *memory, const Shell *shell, Smother *smother)
     if (!NEW(memory, smother->cells, smother->count) || !NEW(memory, smother->balls, smother->count) ||
         !cube_grid_create(memory, smother->count, &smother->grid))
         return SINGE_ERROR_MEMORY;
+
     for (uint32_t c = 0, k = 0; c < shell->cell_count; c++)
         if (field_at(matter->smother_distance, shell_centre(shell, c)) > 0) smother->cells[k++] = c;
     return SINGE_OK;
@@ -49,6 +50,7 @@ static void smother_balls(void *context, int begin, int end) {
         for (int i = 0; i < 4; i++) sum = float3_mad(sum, float3_load(x[at[i]]), 0.25f);
         for (int i = 0; i < 4; i++) radius = float_max(radius, float3_length(float3_sub(float3_load(x[at[i]]), sum)));
         float3_store(ball, sum);
+
         const bool alive = job->state->ablate->cell_flags[cell] & SINGE_ALIVE;
         const float distance = field_at(shell->matter.smother_distance, shell_centre(shell, cell));
         ball[3] = alive ? radius + distance + smother->thickness : 0;
@@ -57,6 +59,7 @@ static void smother_balls(void *context, int begin, int end) {
 
 bool smother_place(Smother *smother, const Shell *shell, const StateInput *state, Pool *pool) {
     if (smother->count == 0) return false;
+
     SmotherJob job = {smother, shell, state};
     pool_for(pool, (int)smother->count, POOL_BLOCK, smother_balls, &job);
     float reach = 0;
@@ -81,6 +84,7 @@ static bool smother_reaches(const Shell *shell, const StateInput *state, uint32_
         const Float3 a = float3_load(x[at[i]]), b = float3_load(x[at[(i + 1) & 3]]);
         if (triangle_closest(p, a, b, centroid).square <= (double)reach * (double)reach) return true;
     }
+
     return false;
 }
 
@@ -98,5 +102,6 @@ bool smother_covers(const Smother *smother, const Shell *shell, const StateInput
             if (smother_reaches(shell, state, cell, centroid, particle)) return true;
         }
     }
+
     return false;
 }

@@ -38,22 +38,29 @@ static inline TriangleClosest triangle_closest(Float3 p, Float3 a, Float3 b, Flo
     triangle_less(b, a, ab);
     triangle_less(c, a, ac);
     triangle_less(p, a, pa);
+
     const double bb = dot3(ab, ab), cc = dot3(ac, ac), bc = dot3(ab, ac);
     const double d1 = dot3(ab, pa), d2 = dot3(ac, pa);
     if (d1 <= 0 && d2 <= 0) return triangle_closest_at(pa, ab, ac, 0, 0, TRIANGLE_CORNER + 0);
+
     const double d3 = d1 - bb, d4 = d2 - bc; // of the point seen from b
     if (d3 >= 0 && d4 <= d3) return triangle_closest_at(pa, ab, ac, 1, 0, TRIANGLE_CORNER + 1);
+
     const double vc = d1 * d4 - d3 * d2;
     if (vc <= 0 && d1 >= 0 && d3 <= 0) return triangle_closest_at(pa, ab, ac, d1 / (d1 - d3), 0, TRIANGLE_EDGE + 0);
+
     const double d5 = d1 - bc, d6 = d2 - cc; // from c
     if (d6 >= 0 && d5 <= d6) return triangle_closest_at(pa, ab, ac, 0, 1, TRIANGLE_CORNER + 2);
+
     const double vb = d5 * d2 - d1 * d6;
     if (vb <= 0 && d2 >= 0 && d6 <= 0) return triangle_closest_at(pa, ab, ac, 0, d2 / (d2 - d6), TRIANGLE_EDGE + 2);
+
     const double va = d3 * d6 - d5 * d4, along = d4 - d3, back = d5 - d6;
     if (va <= 0 && along >= 0 && back >= 0) {
         double t = along / (along + back);
         return triangle_closest_at(pa, ab, ac, 1 - t, t, TRIANGLE_EDGE + 1);
     }
+
     const double sum = 1 / (va + vb + vc);
     return triangle_closest_at(pa, ab, ac, vb * sum, vc * sum, TRIANGLE_FACE);
 }
