@@ -29,6 +29,7 @@ static bool read_list(const ArgCommand *command, const ArgOption *option, const 
         if (list->count == BENCH_LIST_MAX)
             return args_complain(command, "--%s: expected at most 16 numbers, got '%s'", option->name,
                                  shown(text).text);
+
         list->values[list->count++] = number * unit;
         if (*end == 0) return true;
         at = end;
@@ -165,6 +166,7 @@ ExitCode bench_materials_open(const char *list, BenchMaterials *materials) {
     *materials = (BenchMaterials){0};
     for (int i = 0; !list && !code && (name = scene_material_name(i)) && i < BENCH_MATERIALS_MAX; i++)
         code = read_one(name, strlen(name), materials);
+
     while (list && !code) {
         size_t length = strcspn(list, ",");
         if (materials->count == BENCH_MATERIALS_MAX) {

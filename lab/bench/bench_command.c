@@ -79,6 +79,7 @@ static ExitCode bench_measure(int m, const BenchRequest *request) {
     char *svg = NULL;
     size_t size = 0;
     if (request->svg) options.drawing = open_memstream(&svg, &size);
+
     SingeResult result = measurements[m].run(&options, &table, &error);
     ExitCode code = EXIT_GOOD;
     const bool drawn = options.drawing && text_stream_end(options.drawing, &svg);
@@ -92,6 +93,7 @@ static ExitCode bench_measure(int m, const BenchRequest *request) {
         // a refused argument is the user's error; everything else is a failure
         code = result == SINGE_ERROR_ARGUMENT ? EXIT_INPUT : EXIT_FAILED;
     }
+
     if (!result && request->json) table_write_json(&table, stdout);
     if (!result && request->csv) code = console_write_table(&console, request->csv, print_csv, &table);
     if (!result && drawn && !code) code = console_write_table(&console, request->svg, print_text, svg);
@@ -130,6 +132,7 @@ int command_bench(int argc, char **argv) {
     const char *word = strcmp(argv[0], "--compare") == 0 ? "compare" : argv[0];
     int m = 0;
     while (m < MEASUREMENTS && strcmp(measurements[m].name, word) != 0) m++;
+
     if (m == MEASUREMENTS) {
         const char *near = args_nearest(word, measurements, MEASUREMENTS, sizeof measurements[0]);
         fprintf(stderr, "singe bench: error: unknown measurement '%s'", shown(word).text);
@@ -144,6 +147,7 @@ int command_bench(int argc, char **argv) {
                          &request, &code))
         return code;
     if (!bench_takes(measurements[m].accepted, "material")) return bench_measure(m, &request);
+
     BenchMaterials materials;
     code = bench_materials_open(request.materials, &materials);
     request.options.material_count = materials.count;

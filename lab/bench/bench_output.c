@@ -86,6 +86,7 @@ static SingeResult output_row(OutputBench *b, BenchTable *table, double *ply, Si
         struct rusage before, after;
         const double clock = machine_clock();
         getrusage(RUSAGE_SELF, &before);
+
         for (int i = 0; i < frames; i++) {
             pthread_t thread;
             if (pthread_create(&thread, NULL, output_write, b)) output_write(b);
@@ -96,6 +97,7 @@ static SingeResult output_row(OutputBench *b, BenchTable *table, double *ply, Si
         const double user = (seconds_of(after.ru_utime) - seconds_of(before.ru_utime)) / frames;
         const double system = (seconds_of(after.ru_stime) - seconds_of(before.ru_stime)) / frames;
         if (user + system >= min[0] + min[1]) continue;
+
         min[0] = user;
         min[1] = system;
         min[2] = (machine_clock() - clock) / frames;
@@ -107,6 +109,7 @@ static SingeResult output_row(OutputBench *b, BenchTable *table, double *ply, Si
     unlink(b->path);
     *error = b->error;
     if (b->result) return b->result;
+
     if (b->format == OUTPUT_ply) *ply = size;
     table_text(table, "format", 9, output_formats[b->format].name);
     table_number(table, "vertices", "%.0f", 9, COUNT);
@@ -116,6 +119,7 @@ static SingeResult output_row(OutputBench *b, BenchTable *table, double *ply, Si
     table_number(table, "wall_ms", "%.2f", 8, 1e3 * min[2]);
     table_number(table, "bytes", "%.0f", 9, size);
     table_number(table, "of_ply_pct", "%.0f", 11, 100 * size / *ply);
+
     return table_end_row(table);
 }
 

@@ -35,6 +35,7 @@ static float height_at(float x, float y) {
 
 static bool make_surface(SingeSurface *s) {
     if (!surface_new(s, ACROSS * (CELLS_Y + 1), 2 * CELLS_X * CELLS_Y)) return false;
+
     s->triangle_count = 0;
     for (uint32_t i = 0; i < s->vertex_count; i++) {
         const float x = sheet_width * ((float)(i % ACROSS) / CELLS_X - 0.5f);
@@ -44,6 +45,7 @@ static bool make_surface(SingeSurface *s) {
         float length = sqrtf(1 + zx * zx + zy * zy), edge = from_edge(x, y);
         float burn = 0.95f * (1 - preview_bench_smooth(-0.25f * front, front, edge)),
               ahead = fmaxf(edge - 0.0035f, 0) / 0.0042f;
+
         s->position[i][0] = s->rest_position[i][0] = x;
         s->position[i][1] = s->rest_position[i][1] = y;
         s->position[i][2] = z;
@@ -63,6 +65,7 @@ static bool make_surface(SingeSurface *s) {
     for (uint32_t k = 0; k < CELLS_X * CELLS_Y; k++) {
         uint32_t a = k / CELLS_X * ACROSS + k % CELLS_X, b = a + 1, c = b + ACROSS, d = a + ACROSS;
         if (fmaxf(fmaxf(s->burn[a], s->burn[b]), fmaxf(s->burn[c], s->burn[d])) > 0.949f) continue;
+
         uint32_t(*t)[3] = s->triangles + s->triangle_count;
         t[0][0] = a;
         t[0][1] = b;
@@ -88,6 +91,7 @@ static Flames *make_flames(void) {
     const float cell = 0.008f;
     Flames *f = calloc(1, sizeof *f);
     if (!f) return NULL;
+
     f->gas = (SingeGas){.size = {GAS_X, GAS_Y, GAS_Z},
                         .cell = cell,
                         .origin = {-0.5f * GAS_X * cell, -0.5f * GAS_Y * cell, 0},
@@ -147,12 +151,14 @@ static SingeResult easel_begin(const BenchOptions *options, const Shot *shot, in
     memcpy(def->sun_direction, (const float[3]){-0.55f, 0.45f, 0.62f}, sizeof def->sun_direction); // by day
     memcpy(def->sun_colour, (const float[3]){2.2f, 2.05f, 1.85f}, sizeof def->sun_colour);
     memcpy(def->sky_colour, (const float[3]){0.4f, 0.45f, 0.53f}, sizeof def->sky_colour);
+
     def->width = width;
     def->height = width * 9 / 16;
     def->samples = samples;
     def->thread_count = options->threads;
     memcpy(def->camera.eye, shot->eye, sizeof shot->eye);
     memcpy(def->camera.target, shot->target, sizeof shot->target);
+
     def->camera.fov = shot->fov;
     def->camera.aperture = shot->aperture;
     def->shutter = shot->shutter;
@@ -160,6 +166,7 @@ static SingeResult easel_begin(const BenchOptions *options, const Shot *shot, in
     easel->rgb = malloc((size_t)def->width * (size_t)def->height * 3);
     if (shot->fire) easel->flames = make_flames();
     if (!easel->rgb || (shot->fire && !easel->flames)) return SINGE_ERROR_MEMORY;
+
     SingeResult result = preview_create(def, (SingeAllocator){0}, &easel->preview, error);
     if (!result && shot->fire) result = preview_set_gas(easel->preview, &easel->flames->gas, error);
     return result;

@@ -94,6 +94,7 @@ double geometry_inverted(const SingeView *view) {
         double normal[3], above = 0, square = 0;
         if (!(view->cell_flags[cell] & SINGE_ALIVE)) continue;
         geometry_normal(view, cell, normal);
+
         const float *centre = view->position[view->vertex_count + cell];
         for (int axis = 0; axis < 3; axis++) {
             double mean = 0;
@@ -205,6 +206,7 @@ void strain_add(Strain *strain, const SingeView *view, SingeColour colour) {
             strain->finite = false;
             continue;
         }
+
         float rounded = (float)value;
         uint32_t bits;
         memcpy(&bits, &rounded, sizeof bits);

@@ -18,6 +18,7 @@ BenchSetup sheet_setup(const BenchOptions *options, BenchState state, int steps)
         .time_step = 1.0f / (float)(BENCH_FPS * steps),
         .instructions = options->instructions,
     };
+
     singe_init_solver_method(&setup.solver, sizeof setup.solver, options->solver);
     setup.rigid = options->solver != SINGE_SOLVER_STRAND;
     if (options->substeps || options->solver == SINGE_SOLVER_STRAND) setup.solver.substeps = options_substeps(options);
@@ -74,6 +75,7 @@ void sheet_inert(SingeMaterialDef *material) {
 static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId id;
+
     sheet_inert(&sheet.material);
     sheet.material.thickness = singe_param(setup->thickness);
     if (setup->state == BENCH_SHRINK) {
@@ -81,6 +83,7 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
         // of lengths becomes m_min/ash_density = `ratio`. It never burns through, as mass_loss is below m_min.
         const float ratio = setup->shrink;
         const float min = 0.99f, excess = 100; // excess in K
+
         sheet.material.ignition_temperature = singe_param(500);
         sheet.material.temperature = singe_param(500 + excess);
         sheet.material.rate_ceiling = singe_param(excess);
@@ -103,6 +106,7 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
     } else {
         result = sheet_add(sim, &sheet, setup->cells, size, setup->state != BENCH_SWING, &id);
     }
+
     if (!result) result = singe_sim_commit(sim);
     if (result) return result;
 
@@ -111,6 +115,7 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
     const float high = upright ? size : 0, corners[2][3] = {{0, 0, high}, {size, 0, high}};
     SingePinDef pin = singe_default_pin();
     SingePinId pin_id;
+
     pin.sheet = id;
     pin.point_count = 1;
     pin.radius = upright ? 0.05f * size : 0;
@@ -139,6 +144,7 @@ SingeResult sheet_build(const BenchSetup *setup, SingeSim **sim, SingeError *err
     def.solver = setup->solver;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
+
     result = hung_sheet_fill(*sim, setup);
     return result ? bench_give_up(sim, result, error) : SINGE_OK;
 }
@@ -158,6 +164,7 @@ static SingeResult burning_fill(SingeSim *sim, const BenchOptions *options, doub
     SingePinDef pin = singe_default_pin();
     SingePinId pin_id;
     const float corners[6] = {0, 0, 0.3f, 0.3f, 0, 0.3f};
+
     pin.sheet = sheet_id;
     pin.point_count = 2;
     pin.points = corners;
@@ -167,6 +174,7 @@ static SingeResult burning_fill(SingeSim *sim, const BenchOptions *options, doub
     const SingePoseKey across[2] = {{0, {0.05f, 0, 0.1f}, {0, 0, 0, 1}}, {2, {0.25f, 0, 0.1f}, {0, 0, 0, 1}}};
     SingeSourceDef ball = singe_default_source();
     SingeSourceId source_id;
+
     ball.kind = SINGE_SOURCE_BALL;
     ball.radius = 0.04f;
     ball.falloff = 0.02f;
@@ -179,6 +187,7 @@ static SingeResult burning_fill(SingeSim *sim, const BenchOptions *options, doub
     const SingePoseKey centre = {0, {0.15f, 0.048f, 0.12f}, {0, 0, 0, 1}};
     SingeColliderDef plane = singe_default_collider(), sphere = singe_default_collider();
     SingeColliderId id;
+
     plane.path_count = 1;
     plane.path = &ground;
     TRY(singe_sim_add_collider(sim, &plane, &id));
@@ -200,6 +209,7 @@ SingeResult burning_build(const BenchOptions *options, const SingeAllocator *all
     def.surface_detail = (float)options->detail;
     def.contact.enabled = options->contact;
     if (allocator) def.allocator = *allocator;
+
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
     result = burning_fill(*sim, options, springs);

@@ -16,6 +16,7 @@ enum { CELLS = 32, ROW = CELLS + 1, WARM_UP = 60, MEASURED = 20 };
 static SingeResult instructions_build(SingeSim *sim) {
     static float positions[ROW * ROW][3];
     static uint32_t cells[CELLS * CELLS][4];
+
     for (uint32_t v = 0; v < ROW * ROW; v++) {
         positions[v][0] = 0.1f * (float)(v % ROW) / CELLS;
         positions[v][2] = 0.1f * (float)(v / ROW) / CELLS;
@@ -34,6 +35,7 @@ static SingeResult instructions_build(SingeSim *sim) {
     def.positions = positions[0];
     def.cell_count = CELLS * CELLS;
     def.cells = cells[0];
+
     const SingeField noise = {.kind = SINGE_FIELD_NOISE, .noise = {0.02f, 4, 1}};
     const float rate = def.material.mass_rate.value;
     def.material.mass_rate = singe_param_field(rate, 2 * rate, &noise);
@@ -44,6 +46,7 @@ static SingeResult instructions_build(SingeSim *sim) {
     SingePinDef pin = singe_default_pin();
     SingePinId pin_id;
     const float corners[6] = {0, 0, 0.1f, 0.1f, 0, 0.1f};
+
     pin.sheet = sheet;
     pin.point_count = 2;
     pin.points = corners;
@@ -53,6 +56,7 @@ static SingeResult instructions_build(SingeSim *sim) {
     const SingePoseKey across[2] = {{0, {0.02f, 0, 0.04f}, {0, 0, 0, 1}}, {0.5f, {0.08f, 0, 0.04f}, {0, 0, 0, 1}}};
     SingeSourceDef ball = singe_default_source();
     SingeSourceId source_id;
+
     ball.kind = SINGE_SOURCE_BALL;
     ball.radius = 0.012f;
     ball.falloff = 0.006f;
@@ -101,8 +105,10 @@ int main(int argc, char **argv) {
         fprintf(stderr, "singe_bench_instructions: %s\n", error.message);
         return 1;
     }
+
     SingeResult result = instructions_build(sim);
     if (!result) result = steps(sim);
+
     SingeStats stats = singe_sim_stats(sim);
     if (result) fprintf(stderr, "singe_bench_instructions: %s\n", singe_sim_error(sim)->message);
     else

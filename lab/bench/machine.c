@@ -98,11 +98,13 @@ void workers_run(int count, int threads, void (*run)(void *context, int i), void
     Workers w = {.count = count, .run = run, .done = done, .context = context};
     pthread_t ids[THREADS_MAX];
     bool started[THREADS_MAX] = {false};
+
     w.ran = calloc((size_t)count, sizeof *w.ran);
     if (!w.ran) { // no threads: one after the other
         for (int i = 0; i < count; i++) run(context, i), done(context, i);
         return;
     }
+
     pthread_mutex_init(&w.lock, NULL);
     if (threads > THREADS_MAX) threads = THREADS_MAX;
     for (int t = 1; t < threads; t++) started[t] = pthread_create(&ids[t], NULL, workers_work, &w) == 0;

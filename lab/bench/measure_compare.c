@@ -34,6 +34,7 @@ static SingeResult compare_follow(const Comparison *c, const BenchSetup *setup, 
                                   Outcome *outcome) {
     Trajectory *t = trajectory_run(setup, frames, STEPS, budget, c->error);
     if (!t) return c->error->code;
+
     *outcome = (Outcome){.frames = t->frames, .step_ms = t->dynamics_ms / STEPS, .fall = t->fall_end};
     outcome->blue = strain_percent(&t->strain[SINGE_BLUE]);
     for (int colour = 1; colour < SINGE_COLOUR_COUNT; colour++) strain_merge(&t->strain[0], &t->strain[colour]);
@@ -60,6 +61,7 @@ static SingeResult compare_add(const Comparison *c, const char *kind, const Benc
                        : edges                                    ? "edges"
                        : all                                      ? "all"
                                                                   : "no";
+
     table_text(c->table, "kind", 10, kind);
     table_text(c->table, "state", 6, state_name(setup->state));
     table_number(c->table, "springs", "%.0f", 8, springs);
@@ -68,6 +70,7 @@ static SingeResult compare_add(const Comparison *c, const char *kind, const Benc
     table_number(c->table, "projections", "%.0f", 11, solver->projections);
     table_number(c->table, "frames", "%.0f", 6, outcome->frames);
     table_number(c->table, "step_ms", "%.4g", 9, outcome->step_ms);
+
     table_parts(c->table, "blue_pct", "%.3g", 20, "max/p99/mean", outcome->blue);
     table_parts(c->table, "all_pct", "%.3g", 20, "max/p99/mean", outcome->all);
     table_number(c->table, "fall_m", "%.3f", 7, outcome->fall);
@@ -94,6 +97,7 @@ static SingeResult trajectories(const Comparison *c, BenchState state, double sp
 
     if (!result) result = compare_add(c, "trajectory", &setup, springs, &paper, &paper);
     double best_edges = 0, best_all = 0;
+
     setup = method_setup(c, state, springs, SINGE_SOLVER_STRAND);
     for (size_t i = 0; i < sizeof substeps / sizeof *substeps && !result; i++) {
         setup.solver.substeps = substeps[i];
@@ -127,6 +131,7 @@ static SingeResult full(const Comparison *c, double springs, SingeSolverMethod m
     int warm_up = springs > 5e4 ? 5 : 40, steps = springs > 5e4 ? 5 : 11;
     result = timing_measure(&timing, sim, NULL, warm_up, steps);
     if (result) *c->error = *singe_sim_error(sim);
+
     double ms = result ? 0 : timing_median(&timing, TIMED_PROJECTION);
     if (method == SINGE_SOLVER_PAPER) *paper_ms = ms;
     timing_free(&timing);

@@ -35,16 +35,19 @@ static SingeResult hold(SingeSim *sim, SingeSheetId sheet, const SingeView *view
     SingePinDef pin = singe_default_pin();
     uint32_t *vertices = malloc(view->vertex_count * sizeof *vertices);
     if (!vertices) return SINGE_ERROR_MEMORY;
+
     for (uint32_t v = 0; v < view->vertex_count; v++) {
         double x = (double)view->rest_position[v][0];
         if (right ? x > (length + arc) / 2 - 1e-5 : x < (length - arc) / 2 + 1e-5) vertices[pin.vertex_count++] = v;
     }
+
     pin.sheet = sheet;
     pin.vertices = vertices;
     if (right) {
         pin.path_count = KEYS;
         pin.path = path;
     }
+
     SingeResult result = singe_sim_add_pin(sim, &pin, id);
     free(vertices);
     return result;
@@ -71,6 +74,7 @@ static SingeResult fold_fill(SingeSim *sim, Fold *fold) {
     sheet.material.thickness = singe_param(1.5e-3f);
     sheet.material.compliance[SINGE_RED] = singe_param(0.1f); // less would kink between cells of 1.25 mm
     sheet.material.compliance[SINGE_GREEN] = singe_param(0.25f);
+
     const int cells[2] = {(int)lround(length / fold->cell), (int)lround(width / fold->cell)};
     const float size[2] = {(float)length, (float)width};
     SingeResult result = sheet_add_strip(sim, &sheet, cells, size, false, &id);
@@ -112,6 +116,7 @@ static SingeResult fold_fill(SingeSim *sim, Fold *fold) {
 static SingeResult fold_run(const BenchOptions *options, Fold *fold, bool creases, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
+
     def.thread_count = options->threads;
     def.instructions = options->instructions;
     def.time_step = (float)fold->step;
@@ -119,13 +124,16 @@ static SingeResult fold_run(const BenchOptions *options, Fold *fold, bool crease
     def.solver.creases = creases;
     for (int axis = 0; axis < 3; axis++) def.gravity[axis] = 0;
     fold->inverted = 0;
+
     SingeResult result = singe_sim_create(&def, &sim, error);
     if (result) return result;
+
     result = fold_fill(sim, fold);
     if (result) {
         *error = *singe_sim_error(sim);
         error->code = result;
     }
+
     singe_sim_destroy(sim);
     return result;
 }
@@ -139,11 +147,13 @@ SingeResult bench_fold(const BenchOptions *options, BenchTable *table, SingeErro
     for (int i = 0; i < 2 * 2 * 4 && !result; i++) {
         const int setting = i % 4, towards = i / 4 % 2, bend = i / 8;
         if (options->quick && setting == 3) continue;
+
         Fold fold = {
             .angle = (towards ? 1 : -1) * bends[bend] * pi / 180, .cell = cells[setting], .step = 1 / steps[setting]};
         result = fold_run(options, &fold, false, error);
         double elastic = fold.left;
         if (!result) result = fold_run(options, &fold, true, error);
+
         if (!result) {
             table_text(table, "towards", 8, towards ? "centres" : "corners");
             table_number(table, "bent_deg", "%.0f", 8, bends[bend]);

@@ -77,6 +77,7 @@ static const char *finding(const BenchMaterial *material, FrontDirection directi
         return result->hottest < (double)material->temperature[0] ? "colder" : "hotter";
     if (!holds(result->residue, material->residue))
         return result->residue < (double)material->residue[0] ? "less left" : "more left";
+
     return material->speed[1] > 0 ? "as sources say" : "no source";
 }
 
@@ -98,6 +99,7 @@ static SingeResult front_material(const BenchOptions *options, const BenchMateri
             setup.length = 0.15f;
             setup.width = 0.05f;
         }
+
         if (direction == FRONT_UP || direction == FRONT_DOWN) {
             setup.gravity[0] = direction == FRONT_UP ? setup.gravity[2] : -setup.gravity[2];
             setup.gravity[2] = 0;
@@ -109,9 +111,11 @@ static SingeResult front_material(const BenchOptions *options, const BenchMateri
 
         static const float nothing[2] = {0};
         const bool level = direction == FRONT_STILL || direction == FRONT_LEVEL;
+
         table_text(table, "material", 13, material->name);
         table_number(table, "g_m2", "%.0f", 4, 1e3 * (double)material->def.grammage.value);
         table_text(table, "direction", 9, direction_names[direction]);
+
         table_number(table, "cell_mm", "%.2g", 7, 1e3 * (double)setup.cell);
         table_number(table, "gas_mm", "%.2g", 6, setup.gas ? 1e3 * (double)setup.gas_cell : NAN);
         table_number(table, "step_ms", "%.2f", 7, 1e3 * (double)setup.time_step);

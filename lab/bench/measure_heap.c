@@ -34,6 +34,7 @@ static SingeResult add_cloth(SingeSim *sim, int n) {
         geometry_grid((uint32_t)n, (uint32_t)n, cells);
         SingeSheetDef def = singe_default_sheet();
         SingeSheetId id;
+
         def.vertex_count = row * row;
         def.positions = x;
         def.cell_count = (uint32_t)(n * n);
@@ -50,8 +51,10 @@ static SingeResult add_ball(SingeSim *sim, int cells_a_side) {
     uint32_t n = (uint32_t)cells_a_side;
     SingeSheetDef def = singe_default_sheet();
     SingeSheetId id;
+
     def.vertex_count = 6 * n * n + 2;
     def.cell_count = 6 * n * n;
+
     float *x = malloc(3 * (size_t)def.vertex_count * sizeof *x);
     uint32_t *cells = malloc(4 * (size_t)def.cell_count * sizeof *cells);
     SingeResult result = x && cells ? SINGE_OK : SINGE_ERROR_MEMORY;
@@ -104,6 +107,7 @@ static SingeResult heap_build(const BenchOptions *options, int cells, bool close
     def.solver.substeps = options_substeps(options);
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
+
     result = closed ? add_ball(*sim, cells) : add_cloth(*sim, cells);
     if (!result) result = singe_sim_commit(*sim);
 
@@ -111,11 +115,13 @@ static SingeResult heap_build(const BenchOptions *options, int cells, bool close
     SingeColliderDef solid = singe_default_collider();
     SingePoseKey key = {.rotation = {0, 0, 0, 1}};
     SingeColliderId id;
+
     solid.path_count = 1;
     solid.path = &key;
     solid.friction = 0.4f;
     solid.offset = 1e-3f;
     if (!result) result = singe_sim_add_collider(*sim, &solid, &id);
+
     solid.kind = SINGE_COLLIDER_SPHERE;
     solid.radius = sphere;
     key.position[2] = sphere;
@@ -145,6 +151,7 @@ static SingeResult heap_measure(const BenchOptions *options, int cells, bool clo
         SingeStats stats = singe_sim_stats(sim);
         double springs = timing_springs(sim), a_frame = 1e3 / frames, steps = (double)t.steps;
         double mean = numbers_mean(frame_ms, frames), median = numbers_median(frame_ms, frames);
+
         table_number(table, "cells", "%.0f", 5, cells);
         table_number(table, "springs", "%.0f", 8, springs);
         table_number(table, "threads", "%.0f", 7, options->threads);
@@ -165,6 +172,7 @@ static SingeResult heap_measure(const BenchOptions *options, int cells, bool clo
                      (double)t.contact_repulsions / steps / options_substeps(options));
         table_number(table, "stops_step", "%.1f", 10, (double)t.contact_stops / steps);
         table_number(table, "crossing", "%.0f", 8, (double)(t.contact_unresolved + t.contact_dropped));
+
         table_parts(table, "strain_pct", "%.3g", 20, "max/p99/mean", strain_of(&stats));
         table_number(table, "inverted", "%.0f", 8, stats.inverted_cells);
         table_number(table, "speed", "%.3f", 8, stats.speed_rms_unburnt);

@@ -12,6 +12,7 @@ static SingeResult measure_contact(const BenchOptions *options, double springs, 
     SingeSim *sim;
     with.contact = true;
     if (burning_build(&with, &counting, springs, 1, &sim, error)) return error->code;
+
     SingeResult result = singe_sim_step(sim);
     if (result) *error = *singe_sim_error(sim);
     *held_bytes = held.now;
@@ -30,11 +31,13 @@ SingeResult bench_memory(const BenchOptions *options, BenchTable *table, SingeEr
         size_t with_contact = 0;
         if (measure_contact(options, springs.values[i], &with_contact, error)) return error->code;
         if (burning_build(options, &counting, springs.values[i], 1, &sim, error)) return error->code;
+
         size_t building = held.max;
         result = singe_sim_step(sim);
         size_t simulation = held.now;
         if (!result) result = singe_sim_surface(sim, &surface);
         if (result) *error = *singe_sim_error(sim);
+
         double count = timing_springs(sim);
         if (!result) {
             table_number(table, "springs", "%.0f", 8, count);
@@ -47,6 +50,7 @@ SingeResult bench_memory(const BenchOptions *options, BenchTable *table, SingeEr
             table_number(table, "all_mb", "%.2f", 8, 1e-6 * (double)held.now);
             result = table_end_row(table);
         }
+
         singe_surface_free(&surface);
         singe_sim_destroy(sim);
     }

@@ -58,12 +58,14 @@ static SingeResult plate_open(const Plate *plate, bool disc, SingeSim **sim, Mes
                             .angle = plate->angle};
     result = turned_grid(&cut, mesh, error);
     if (result) return result;
+
     sheet.vertex_count = mesh->vertex_count;
     sheet.positions = mesh->positions;
     sheet.uv = mesh->uv;
     sheet.cell_count = mesh->cell_count;
     sheet.cells = mesh->cells;
     sheet_inert(material);
+
     material->grammage = singe_param((float)grammage);
     material->damping = singe_param(disc ? 4 : 20);
     if (disc) {
@@ -115,6 +117,7 @@ static void draw_plate(const Plate *plate, bool disc, const SingeView *view) {
     const double y0 = DRAW_TOP + DRAW_HIGH * (0.5 + 2 * disc + plate->isotropic);
     fprintf(svg, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"0.6\" d=\"",
             plate->isotropic ? "#b2182b" : "#2166ac");
+
     for (uint32_t s = 0; s < view->spring_count[SINGE_BLUE]; s++)
         for (int end = 0; end < 2; end++) {
             const float *p = view->position[view->springs[SINGE_BLUE][s][end]];
@@ -138,11 +141,13 @@ static SingeResult strip_bend(const Plate *plate, double *ratio, SingeError *err
     SingePinId id;
     float *points = malloc(3 * (size_t)view.particle_count * sizeof *points);
     if (!points) return fail(sim, &mesh, SINGE_ERROR_MEMORY, error);
+
     for (uint32_t i = 0; i < view.particle_count; i++)
         if ((double)view.rest_position[i][0] < clamped - strip_length / 2 + 1e-5) {
             float *point = points + 3 * (size_t)pin.point_count++;
             for (int k = 0; k < 3; k++) point[k] = view.rest_position[i][k];
         }
+
     pin.points = points;
     pin.radius = 1e-5f;
     pin.sheet = (SingeSheetId){0, 1};
@@ -187,6 +192,7 @@ static SingeResult plate_row(const Plate *plate, bool disc, BenchTable *table, S
     double ratio = NAN, curvature[2] = {NAN, NAN}, rolls = NAN;
     SingeResult result = disc ? disc_roll(plate, curvature, &rolls, error) : strip_bend(plate, &ratio, error);
     if (result) return result;
+
     table_text(table, "part", 6, disc ? "disc" : "strip");
     table_text(table, "isotropic", 10, plate->isotropic ? "yes" : "no");
     table_number(table, "mesh_deg", "%.0f", 9, plate->angle * 180 / pi);
@@ -196,6 +202,7 @@ static SingeResult plate_row(const Plate *plate, bool disc, BenchTable *table, S
     table_number(table, "k1_per_m", "%.2f", 9, curvature[0]);
     table_number(table, "k2_per_m", "%.2f", 9, curvature[1]);
     table_number(table, "rolls_deg", "%.0f", 10, rolls);
+
     return table_end_row(table);
 }
 
@@ -212,6 +219,7 @@ SingeResult bench_plate(const BenchOptions *options, BenchTable *table, SingeErr
                 "font-family=\"sans-serif\" font-size=\"13\"><rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
                 DRAW_LEFT + 4 * DRAW_WIDE, DRAW_TOP + 4 * DRAW_HIGH, DRAW_LEFT + 4 * DRAW_WIDE,
                 DRAW_TOP + 4 * DRAW_HIGH);
+
         for (int k = 0; k < 4; k++) {
             fprintf(svg, "<text x=\"%d\" y=\"20\" text-anchor=\"middle\">mesh at %d°</text>\n",
                     DRAW_LEFT + DRAW_WIDE * k + DRAW_WIDE / 2, 15 * k);

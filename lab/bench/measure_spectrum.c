@@ -55,8 +55,10 @@ static SingeResult strip_hold(SingeSim *sim, const Strip *strip, SingeSheetId id
     uint32_t *top = malloc(row * sizeof *top);
     if (!top) return SINGE_ERROR_MEMORY;
     for (uint32_t i = 0; i < row; i++) top[i] = row * (uint32_t)strip->up + i;
+
     SingePinDef pin = singe_default_pin();
     SingePinId pin_id;
+
     pin.sheet = id;
     pin.vertex_count = row;
     pin.vertices = top;
@@ -79,17 +81,20 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
     sheet.material.temperature =
         singe_param_field(293, 1100, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "hot"});
     sheet.material.thickening = 2.07f; // that of cells of 2 mm
+
     SingeField front = *sheet.material.shrink_front.field;
     front.noise.seed += 16 * seed;
     sheet.material.shrink_front.field = &front;
     sheet.material.damping = singe_param(3);
     if (thickness > 0) sheet.material.thickness = singe_param((float)thickness);
+
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
 
     const uint32_t row = (uint32_t)strip->across + 1, rows = (uint32_t)strip->up + 1;
     float *positions = malloc((size_t)3 * row * rows * sizeof *positions), *hot = malloc(row * rows * sizeof *hot);
     uint32_t *cells = malloc((size_t)4 * row * rows * sizeof *cells);
+
     result = SINGE_ERROR_MEMORY;
     if (positions && hot && cells) {
         for (uint32_t v = 0; v < row * rows; v++) {
@@ -102,6 +107,7 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
 
         geometry_grid(row - 1, rows - 1, cells);
         const SingeAttribute attribute = {"hot", hot};
+
         sheet.vertex_count = row * rows;
         sheet.positions = positions;
         sheet.cell_count = (row - 1) * (rows - 1);
@@ -129,6 +135,7 @@ static bool read_line(const SingeView *view, const Strip *strip, double z, doubl
     for (int c = 0; c < strip->across; c++)
         for (int k = 0; k < 4; k++)
             if (!(view->particle_flags[(j + k / 2) * row + c + k % 2] & SINGE_ALIVE)) return false;
+
     double before[3] = {0};
     for (int i = 0; i <= SAMPLES; i++) {
         double x = (double)i / SAMPLES * strip->across, point[3];
@@ -139,6 +146,7 @@ static bool read_line(const SingeView *view, const Strip *strip, double z, doubl
         for (int a = 0; a < 3; a++)
             point[a] =
                 (1 - f) * ((1 - g) * (double)p[a] + g * (double)q[a]) + f * ((1 - g) * (double)r[a] + g * (double)s[a]);
+
         double d[3] = {point[0] - before[0], point[1] - before[1], point[2] - before[2]};
         if (i > 0) angle[i - 1] = atan2(d[1], sqrt(d[0] * d[0] + d[2] * d[2]));
         for (int a = 0; a < 3; a++) before[a] = point[a];
@@ -157,18 +165,21 @@ static SingeResult spectrum_observe(const BenchOptions *options, int setting, ui
     if (settings[setting].thickness != 1)
         thickness = settings[setting].thickness *
                     (thickness > 0 ? thickness : (double)singe_default_material().thickness.value);
+
     SingeSim *sim = NULL;
     SingeResult result = strip_build(options, &strip, thickness, step, seed, &sim, error);
     for (int look = 0; look < TIMES && !result; look++) {
         double until = seconds * (0.4 + 0.2 * look);
         while (!result && singe_sim_view(sim).time < until) result = singe_sim_step(sim);
         if (result) *error = *singe_sim_error(sim);
+
         SingeView view = singe_sim_view(sim);
         if (!result) {
             // the rest height up to which the sheet's centre line has lost mass
             const int row = strip.across + 1;
             int j = 0;
             while (j < strip.up && view.mass[j * row + strip.across / 2] < 0.99f) j++;
+
             const double height = j * strip.cell;
             double line[SAMPLES], top = fmin(height + 0.012, (strip.up - 2) * strip.cell);
             for (double z = 0.001; z < top; z += 0.002)

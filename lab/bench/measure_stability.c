@@ -57,6 +57,7 @@ static void stability_run(void *context, int i) {
         const int steps = (int)ceil(c->seconds / h), every = h < 0.015 ? (int)(0.015 / h) : 1;
         SingeView view = singe_sim_view(sim);
         double energy = geometry_energy(&view, gravity);
+
         c->finite = true;
         for (int step = 1; step <= steps && c->finite; step++) {
             if (singe_sim_step(sim)) c->finite = false;
@@ -86,6 +87,7 @@ static void done(void *context, int i) {
     Cases *cases = context;
     const Case *c = &cases->list[i];
     if (c->failed) return;
+
     const double energy_limit = c->setup.state == BENCH_SWING ? 0.5 : 10;
     const char *verdict = "ok";
     if (!c->finite) verdict = "NaN";
@@ -98,6 +100,7 @@ static void done(void *context, int i) {
     table_number(cases->table, "t_over_s", "%.3g", 8, c->t_over_s);
     table_number(cases->table, "h_ms", "%.3g", 5, 1e3 * (double)c->setup.time_step);
     table_text(cases->table, "result", 9, verdict);
+
     table_number(cases->table, "max_strain_pct", "%.3g", 14, c->strain.number[0]);
     table_number(cases->table, "p99_pct", "%.3g", 8, c->strain.number[1]);
     table_number(cases->table, "speed", "%.3g", 7, c->speed);
@@ -115,6 +118,7 @@ SingeResult bench_stability(const BenchOptions *options, BenchTable *table, Sing
     Cases cases = {.table = table, .list = calloc(2 * CELLS_MAX * RATIOS_MAX * STEPS_MAX, sizeof *cases.list)};
     SingeResult result = SINGE_OK;
     if (!cases.list) return SINGE_ERROR_MEMORY;
+
     if (table->text)
         fputs("NaN: a step failed or a number is not finite. exploded: energy_gain > 0.5 J/kg (shrink 10) or\n"
               "speed > 100 m/s. stretched: reach > 1.5. crumpled: gyration < 0.35 of a flat sheet's, or folded > 0.25\n"

@@ -16,6 +16,7 @@ static SingeResult stack_fill(SingeSim *sim, uint32_t sheets, uint32_t cells, Si
     SingeSheetDef def = singe_default_sheet();
     SingeSheetId id;
     if (singe_material_preset("cotton", &def.material, error)) return error->code;
+
     def.material.mass_loss = singe_param(0);
     grid.size[0] = grid.size[1] = side;
     grid.cells[0] = grid.cells[1] = cells;
@@ -25,6 +26,7 @@ static SingeResult stack_fill(SingeSim *sim, uint32_t sheets, uint32_t cells, Si
         SingeMesh *mesh;
         grid.seed = k + 1;
         if (singe_mesh_create_grid(&grid, &mesh, error)) return error->code;
+
         singe_mesh_fill_sheet(mesh, &def);
         float *lifted = malloc(3 * (size_t)def.vertex_count * sizeof *lifted);
         for (size_t i = 0; lifted && i < 3 * (size_t)def.vertex_count; i++)
@@ -42,6 +44,7 @@ static SingeResult stack_fill(SingeSim *sim, uint32_t sheets, uint32_t cells, Si
     SingeColliderDef solid = singe_default_collider();
     SingePoseKey key = {.rotation = {0, 0, 0, 1}};
     SingeColliderId collider;
+
     solid.path_count = 1;
     solid.path = &key;
     if (!result) result = singe_sim_add_collider(sim, &solid, &collider);
@@ -56,6 +59,7 @@ static SingeResult stack_measure(const BenchOptions *options, uint32_t sheets, u
     MachineHeld held = {0};
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
+
     def.allocator = (SingeAllocator){machine_resize, &held};
     def.thread_count = options->threads;
     def.time_step = 1.0f / (STEPS_FRAME * FPS);
@@ -80,10 +84,12 @@ static SingeResult stack_measure(const BenchOptions *options, uint32_t sheets, u
     uint64_t crossing = 0;
     if (result && !error->code) *error = *singe_sim_error(sim);
     if (!result) result = geometry_crossings(sim, &crossing, error);
+
     if (!result) {
         const SingeTimers t = singe_sim_timers(sim);
         const SingeStats stats = singe_sim_stats(sim);
         const double a_step = 1.0 / steps;
+
         table_number(table, "sheets", "%.0f", 6, sheets);
         table_number(table, "cells", "%.0f", 5, cells);
         table_number(table, "springs", "%.0f", 8, timing_springs(sim));
@@ -98,6 +104,7 @@ static SingeResult stack_measure(const BenchOptions *options, uint32_t sheets, u
         table_number(table, "looks_step", "%.0f", 10, a_step * (double)t.contact_looks);
         table_number(table, "pairs_step", "%.0f", 10, a_step * (double)t.contact_pairs);
         table_number(table, "halts", "%.0f", 5, (double)t.contact_halts);
+
         table_parts(table, "strain_pct", "%.3g", 20, "max/p99/mean", strain_of(&stats));
         table_number(table, "worst_p99_pct", "%.3g", 13, 100 * worst_p99); // of all frames
         table_number(table, "crossing", "%.0f", 8, (double)crossing);      // pairs of drawn triangles

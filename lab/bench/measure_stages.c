@@ -14,12 +14,14 @@ static SingeResult stages_judge(const BenchOptions *options, const Timing *timin
     double step = timing_median(timing, TIMED_SCALED), limit = options->limit_ms;
     double slowness = fmax(1, timing_median(timing, TIMED_YARDSTICK) / timing_yardstick_reference());
     if (limit <= 0) return SINGE_OK;
+
     if (table->text)
         fprintf(table->text,
                 "%.2f ms at the pace of the reference machine (this one is %.2f times slower); "
                 "limit %.4g ms\n",
                 step, slowness, limit);
     if (step <= limit) return SINGE_OK;
+
     return refuse(error, SINGE_ERROR_LIMIT, "", -1,
                   "%.2f ms per step at the pace of the reference machine, above the limit of %.4g ms", step, limit);
 }
@@ -38,6 +40,7 @@ static SingeResult stages_measure(const BenchOptions *options, double springs, Y
         const double actual = timing_springs(sim), step = timing_median(&timing, TIMED_STEP);
         table_number(table, "springs", "%.0f", 8, actual);
         table_text(table, "solver", 11, enum_words.SingeSolverMethod[options->solver]);
+
         table_number(table, "curvature_max", "%.0f", 13, options->curvature.values[0]);
         table_number(table, "threads", "%.0f", 7, options->threads);
         table_number(table, "step_ms", "%.4g", 8, step);
@@ -54,6 +57,7 @@ static SingeResult stages_measure(const BenchOptions *options, double springs, Y
         table_number(table, "burnt_pct", "%.2f", 9, 100 * singe_sim_stats(sim).burnt_fraction);
         table_number(table, "bytes_spring", "%.1f", 12, (double)singe_sim_counts(sim).memory / actual);
         table_number(table, "yardstick_ms", "%.2f", 12, timing_median(&timing, TIMED_YARDSTICK));
+
         result = table_end_row(table);
         if (!result) result = stages_judge(options, &timing, table, error);
     }
@@ -75,6 +79,7 @@ SingeResult bench_step(const BenchOptions *options, BenchTable *table, SingeErro
             limited.curvature = (BenchList){.count = 1, .values = {limits.values[l]}};
             result = stages_measure(&limited, springs.values[i], yardstick, table, error);
         }
+
     yardstick_destroy(yardstick);
     return result;
 }

@@ -12,6 +12,7 @@ static SingeResult surface_measure(const BenchOptions *options, double springs, 
     SingeSim *sim;
     SingeSurface surface = {0};
     if (burning_build(options, NULL, springs, fire_pace, &sim, error)) return error->code;
+
     SingeResult result = SINGE_OK;
     int steps = options->steps ? options->steps : BURNING_STEPS;
     for (int step = 0; step < steps && !result; step++) result = singe_sim_step(sim);
@@ -27,6 +28,7 @@ static SingeResult surface_measure(const BenchOptions *options, double springs, 
 
     const double wall = numbers_median(walls, DRAWINGS), cpu = numbers_median(cpus, DRAWINGS);
     if (result) *error = *singe_sim_error(sim);
+
     double triangles = surface.triangle_count;
     if (!result) {
         table_number(table, "springs", "%.0f", 8, timing_springs(sim));
@@ -40,6 +42,7 @@ static SingeResult surface_measure(const BenchOptions *options, double springs, 
         table_number(table, "cache_mb", "%.2f", 8, 1e-6 * (92.0 * surface.vertex_count + 13 * triangles));
         result = table_end_row(table);
     }
+
     singe_surface_free(&surface);
     singe_sim_destroy(sim);
     return result;
@@ -55,5 +58,6 @@ SingeResult bench_surface(const BenchOptions *options, BenchTable *table, SingeE
             with.detail = details[k];
             result = surface_measure(&with, springs.values[i], table, error);
         }
+
     return result;
 }

@@ -27,6 +27,7 @@ static SingeResult run_all(const BenchOptions *options, BenchSetup *setup, int s
                            const BenchList *cells, const BenchList *thickness, BenchTable *table, SingeError *error) {
     if (options->steps) steps = options->steps;
     const int frames = (int)fmax(1, round((options->time > 0 ? options->time : seconds) * BENCH_FPS));
+
     setup->pins = options->pins ? options->pins : 2;
     setup->time_step = 1.0f / (float)(BENCH_FPS * steps);
     for (int c = 0; c < cells->count; c++)
@@ -64,6 +65,7 @@ static SingeResult run_all(const BenchOptions *options, BenchSetup *setup, int s
             trajectory_free(trajectory);
             if (table_end_row(table)) return SINGE_ERROR_MEMORY;
         }
+
     return SINGE_OK;
 }
 

@@ -65,9 +65,11 @@ static SingeResult add_grip(SingeSim *sim, uint32_t nx, uint32_t ny, bool last, 
     if (!held) return SINGE_ERROR_MEMORY;
     for (uint32_t j = 0; j <= ny; j++)
         for (uint32_t i = 0; i < columns_held; i++) held[count++] = j * (nx + 1) + (last ? nx - i : i);
+
     const SingePoseKey path[2] = {{0, {0, 0, 0}, {0, 0, 0, 1}}, {seconds, {by, 0, 0}, {0, 0, 0, 1}}};
     SingePinDef pin = singe_default_pin();
     SingePinId pin_id;
+
     pin.sheet = id;
     pin.vertex_count = count;
     pin.vertices = held;
@@ -92,10 +94,12 @@ static SingeResult pull(const BenchOptions *options, uint32_t nx, uint32_t ny, i
     def.solver.substeps = options->substeps ? options->substeps : SUBSTEPS;
     SingeResult result = singe_sim_create(&def, &sim, error);
     if (result) return result;
+
     result = add_strip(sim, nx, ny, &id);
     if (!result) result = singe_sim_commit(sim);
     if (!result) result = add_grip(sim, nx, ny, false, 0, id);
     if (!result) result = add_grip(sim, nx, ny, true, speed * seconds, id);
+
     *pulled = (Pulled){0};
     for (int k = 0; k < (int)(seconds * (float)rate) && !result; k++) {
         result = singe_sim_step(sim);
@@ -152,5 +156,6 @@ SingeResult bench_tear(const BenchOptions *options, BenchTable *table, SingeErro
             table_number(table, "aside", "%.0f", 6, pulled.aside); // vertices that tore away from the line
             if (table_end_row(table)) return SINGE_ERROR_MEMORY;
         }
+
     return SINGE_OK;
 }

@@ -17,6 +17,7 @@ static SingeResult wind_fill(SingeSim *sim, uint32_t cells, float speed, SingeEr
     SingeWindDef wind = singe_default_wind();
     SingePinId pin_id;
     SingeMesh *mesh;
+
     grid.size[0] = grid.size[1] = side;
     grid.cells[0] = grid.cells[1] = cells;
     if (singe_mesh_create_grid(&grid, &mesh, error)) return error->code;
@@ -41,6 +42,7 @@ static SingeResult wind_measure(const BenchOptions *options, uint32_t cells, flo
                                 BenchTable *table, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
+
     def.thread_count = options->threads;
     def.time_step = 1.0f / STEPS_SECOND;
     def.contact.enabled = true;
@@ -57,9 +59,11 @@ static SingeResult wind_measure(const BenchOptions *options, uint32_t cells, flo
     uint64_t crossing = 0;
     if (result && !error->code) *error = *singe_sim_error(sim);
     if (!result) result = geometry_crossings(sim, &crossing, error);
+
     if (!result) {
         const SingeTimers timers = singe_sim_timers(sim);
         const SingeStats stats = singe_sim_stats(sim);
+
         table_number(table, "cells", "%.0f", 5, cells);
         table_number(table, "wind_m_s", "%.0f", 8, (double)speed); // mean, and of gusts
         table_number(table, "steps", "%.0f", 5, steps);
@@ -68,10 +72,12 @@ static SingeResult wind_measure(const BenchOptions *options, uint32_t cells, flo
         table_number(table, "rounds_step", "%.2f", 11, (double)timers.contact_rounds / steps);
         table_number(table, "looks_step", "%.0f", 10, (double)timers.contact_looks / steps);
         table_number(table, "halts", "%.0f", 5, (double)timers.contact_halts);
+
         table_parts(table, "strain_pct", "%.3g", 20, "max/p99/mean", strain_of(&stats));
         table_number(table, "crossing", "%.0f", 8, (double)crossing); // pairs of drawn triangles
         result = table_end_row(table);
     }
+
     singe_sim_destroy(sim);
     return result;
 }

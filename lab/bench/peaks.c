@@ -97,16 +97,19 @@ static void *worker_run(void *context) {
     Worker *worker = context;
     long rounds = 1;
     for (size_t i = 0; i < 3 * worker->elements; i++) worker->arrays[i] = 1;
+
     for (int trial = 0; trial < TRIALS;) {
         const size_t n = worker->elements;
         double begun = machine_clock(), done = n ? 12.0 * (double)n * (double)rounds : fma_run(1000 * rounds);
         for (long round = 0; n && round < rounds; round++)
             triad(worker->arrays, worker->arrays + n, worker->arrays + 2 * n, n);
+
         double taken = machine_clock() - begun;
         if (taken < worker->seconds && rounds < 1L << 30) {
             rounds *= 2; // too short to be measured
             continue;
         }
+
         worker->rate = fmax(worker->rate, done / taken);
         trial++;
     }
@@ -120,6 +123,7 @@ static double run_threads(int threads, size_t elements, double seconds) {
     pthread_t ids[THREADS_MAX];
     bool started[THREADS_MAX] = {false}, good = true;
     double rate = 0;
+
     for (int t = 0; t < threads; t++) {
         workers[t] = (Worker){.seconds = seconds, .elements = elements};
         if (elements) workers[t].arrays = aligned_alloc(64, 3 * elements * sizeof(float));
@@ -128,6 +132,7 @@ static double run_threads(int threads, size_t elements, double seconds) {
 
     for (int t = 1; good && t < threads; t++) started[t] = pthread_create(&ids[t], NULL, worker_run, &workers[t]) == 0;
     if (good) worker_run(&workers[0]);
+
     for (int t = 0; t < threads; t++) {
         if (started[t]) pthread_join(ids[t], NULL);
         rate += workers[t].rate;

@@ -16,6 +16,7 @@ void table_fact(BenchTable *table, const char *name, double number) {
 static void add_cell(BenchTable *table, BenchColumn column, BenchValue value) {
     if (table->row_count == 0 && table->column_count < BENCH_COLUMNS_MAX)
         table->columns[table->column_count++] = column;
+
     if (table->cell_count == table->capacity) {
         const int capacity = table->capacity ? 2 * table->capacity : 16 * BENCH_COLUMNS_MAX;
         BenchValue *cells = realloc(table->cells, (size_t)capacity * sizeof *cells);
@@ -58,6 +59,7 @@ SingeResult table_end_row(BenchTable *table) {
         char shown[96];
         int length = 0;
         if (cell->text) length = snprintf(shown, sizeof shown, "%s", cell->text);
+
         for (int part = 0; !cell->text && part < (column->parts ? 3 : 1); part++) {
             size_t left = sizeof shown - (size_t)length;
             if (part) length += snprintf(shown + length, left, "/"), left--;
@@ -88,6 +90,7 @@ static void write_key(FILE *file, const BenchColumn *column, int part) {
     const char *parts = column->parts;
     int p = part;
     while (p--) parts = strchr(parts, '/') + 1;
+
     const char *end = strchr(parts, '/');
     length = (int)(end ? (size_t)(end - parts) : strlen(parts));
     const char *name = parts;
@@ -108,6 +111,7 @@ void table_write_json(const BenchTable *table, FILE *file) {
     text_json_string(file, machine_name());
     fputs(", \"version\": ", file);
     text_json_string(file, singe_version());
+
     for (int f = 0; f < table->fact_count; f++) {
         fprintf(file, ", \"%s\": ", table->facts[f].name);
         write_number(file, table->facts[f].number, "null");
@@ -139,6 +143,7 @@ void table_write_csv(const BenchTable *table, FILE *file) {
     fprintf(file, "# singe bench %s, version %s, %s\n", table->command, singe_version(), machine_name());
     for (int f = 0; f < table->fact_count; f++)
         fprintf(file, "# %s %.7g\n", table->facts[f].name, table->facts[f].number);
+
     for (int r = -1; r < table->row_count; r++) {
         for (int c = 0; c < table->column_count; c++)
             for (int part = 0; part < (table->columns[c].parts ? 3 : 1); part++) {

@@ -45,6 +45,7 @@ SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, 
         if (step == 0) first = before;
         SingeResult result = singe_sim_step(sim);
         if (result) return result;
+
         SingeTimers after = singe_sim_timers(sim);
         if (step >= 0) {
             double total = 0;
@@ -76,6 +77,7 @@ SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, 
     after.projection_bytes -= first.projection_bytes;
     timing->total = after;
     for (int what = 0; what < TIMED_COUNT; what++) numbers_median(timing->ms[what], steps); // sorts
+
     return SINGE_OK;
 }
 
@@ -108,6 +110,7 @@ struct Yardstick {
 Yardstick *yardstick_create(void) {
     Yardstick *yardstick = malloc(sizeof *yardstick);
     if (!yardstick) return NULL;
+
     uint32_t link = 0;
     for (uint32_t direction = 0; direction < 2; direction++)
         for (uint32_t line = 0; line < SIDE; line++)
@@ -115,6 +118,7 @@ Yardstick *yardstick_create(void) {
                 uint32_t a = direction ? k * SIDE + line : line * SIDE + k, b = a + (direction ? SIDE : 1);
                 yardstick->links[link++] = (Link){.ends = {a, b}, .length = 1.05f};
             }
+
     return yardstick;
 }
 
@@ -165,6 +169,7 @@ double yardstick_run(Yardstick *yardstick) {
                 }
             }
         }
+
     clock_gettime(CLOCK_MONOTONIC, &end);
     return 1e3 * (double)(end.tv_sec - start.tv_sec) + 1e-6 * (double)(end.tv_nsec - start.tv_nsec);
 }

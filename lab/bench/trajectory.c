@@ -12,8 +12,10 @@ static const int marks[TRAJECTORY_MARKS] = {8, 12, 16}; // frames
 Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, double budget, SingeError *error) {
     SingeSim *sim;
     if (sheet_build(setup, &sim, error)) return NULL;
+
     Trajectory *trajectory = calloc(1, sizeof *trajectory);
     if (trajectory) trajectory->cpu_ms = calloc((size_t)frames, sizeof *trajectory->cpu_ms);
+
     if (!trajectory || !trajectory->cpu_ms) {
         *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
         trajectory_free(trajectory);

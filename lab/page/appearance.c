@@ -10,17 +10,20 @@ enum { RIM_NEAR = 3 }; ///< bands: 4 mm
 SingeResult look_take(Play *play, double cut, Look *look, SingeError *error) {
     SingeResult result = play_surface(play, error);
     if (result) return result;
+
     const SingeView view = singe_sim_view(play->sim);
     const SingeStats stats = singe_sim_stats(play->sim);
     const SingeTimers timers = singe_sim_timers(play->sim);
     double seconds = 0;
     for (int s = 0; s < SINGE_STAGE_COUNT; s++) seconds += timers.seconds[s];
+
     look->step_ms = timers.steps ? 1e3 * seconds / (double)timers.steps : 0;
     look->dynamics = timers.seconds[SINGE_STAGE_DYNAMICS] / fmax(seconds, 1e-9);
     look->heat = timers.seconds[SINGE_STAGE_HEAT] / fmax(seconds, 1e-9);
     look->strain_mean = fmax(look->strain_mean, stats.strain_mean);
     look->strain_p99 = fmax(look->strain_p99, stats.strain_p99);
     if (stats.cells) look->inverted = fmax(look->inverted, (double)stats.inverted_cells / stats.cells);
+
     look->bend = fmax(look->bend, shape_bend(&view));
     look->hottest = fmax(look->hottest, (double)stats.temperature_max);
     look->left = shape_left(&view);

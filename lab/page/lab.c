@@ -17,12 +17,14 @@ SingeResult play_open(Play *play, Lab *lab, const char *scene, const char *const
     if (lab->quick) set_add(&list, "preview.size=[320, 240]"), set_add(&list, "preview.samples=4");
     for (; sets && *sets; sets++)
         if (**sets) set_add(&list, *sets);
+
     char *path = text_format("%s/%s", lab->scenes, scene);
     lab->console.quiet = true; // suppress the scene's own messages
     ExitCode code = job_open(&play->job, &lab->console, path, &list, lab->threads);
     if (!code) code = job_build(&play->job, &lab->console, &play->sim);
     lab->console.quiet = false;
     set_free(&list);
+
     if (code) {
         *error = (SingeError){.code = SINGE_ERROR_FORMAT, .element = -1};
         snprintf(error->message, sizeof error->message, "%s cannot be used", path);
@@ -155,6 +157,7 @@ static SingeResult add_grid(const LabGrid *grid, SingeSim *sim, SingeError *erro
 
     if (grid->inside) cut_grid(&mesh, grid->inside);
     const SingeAttribute attributes[] = {{"field", field}, {"mass", grid->mass ? grid->mass : field}};
+
     sheet.material = grid->material;
     sheet.vertex_count = mesh.vertex_count;
     sheet.positions = mesh.positions;
@@ -168,6 +171,7 @@ static SingeResult add_grid(const LabGrid *grid, SingeSim *sim, SingeError *erro
     if (result) *error = *singe_sim_error(sim);
     free(field);
     mesh_free(&mesh);
+
     return result;
 }
 
@@ -181,6 +185,7 @@ SingeResult lab_build(const Lab *lab, const LabGrid *grid, SingeSim **sim, Singe
     def.pace = grid->pace;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
+
     result = add_grid(grid, *sim, error);
     if (result) singe_sim_destroy(*sim), *sim = NULL;
     return result;
@@ -202,6 +207,7 @@ void lab_sets_mass(SingeMaterialDef *material) {
     material->ash_exponent = singe_param(0);
     material->ash_density = singe_param(1);
     material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
+
     static const SingeField mass = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "mass"};
     material->mass_min = singe_param_field(0, 1, &mass);
     material->mass_loss = material->char_yield = singe_param(0);
@@ -252,6 +258,7 @@ int shape_pieces(const SingeView *view, double share) {
     static const double none = 0;
     double *area = calloc(MAX, sizeof *area), all = none;
     int count = 0;
+
     for (uint32_t i = view->vertex_count; area && i < view->particle_count; i++) {
         all += (double)view->area[i];
         if (view->particle_flags[i] & SINGE_ALIVE && view->piece[i] >= 0)
@@ -329,9 +336,11 @@ SingeResult shape_spectrum(const SingeView *view, int across, int along, double 
     *spectrum = (ShapeSpectrum){0};
     double *line = malloc((size_t)(across > along ? across : along) * sizeof *line);
     if (!line) return SINGE_ERROR_MEMORY;
+
     const uint32_t row = (uint32_t)across + 1;
     for (int j = 0; j <= along; j++) add_line(view, (uint32_t)j * row, 1, across, cell, line, spectrum);
     for (int i = 0; i <= across; i++) add_line(view, (uint32_t)i, row, along, cell, line, spectrum);
+
     for (int b = 0; b < SHAPE_BANDS; b++) {
         spectrum->wave[b] = 2 * cell * pow(2, (b + 0.5) / 2);
         int waves = 0; // integer numbers of waves on a line that lie in the band
@@ -390,9 +399,11 @@ SingeResult spot_spread(Lab *lab, const SpotMesh *mesh, SingeHeatOperator operat
     grid.context = centre;
     grid.time_step = 0.004f;
     grid.material.thickness = singe_param(1e-4f);
+
     SingeSim *sim;
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
+
     SingeView view = singe_sim_view(sim);
     double before[2], after[2];
     variances(&view, before);
@@ -430,6 +441,7 @@ double texture_correlation(const SingeView *view, const SingeTexture *picture, b
         column = column < 0 ? 0 : column >= picture->width ? picture->width - 1 : column;
         row = row < 0 ? 0 : row >= picture->height ? picture->height - 1 : row;
         double a = (double)picture->values[row * picture->width + column], b = (double)field[v];
+
         n++;
         x += a;
         y += b;

@@ -45,10 +45,12 @@ static void run_item(Queue *queue, int index, int threads, bool echo) {
     lab.threads = threads;
     lab.report = report_begin(queue->report, item->name, item->heading, item->shows, echo);
     if (lab.report) result = item->run(&lab, &error);
+
     char time[32];
     console_duration(console_clock() - begun, time);
     pthread_mutex_lock(&queue->lock);
     console_note(&lab.console, "%s: %s", item->name, time);
+
     if (result && !queue->result) {
         queue->result = result;
         queue->error = error;
@@ -111,6 +113,7 @@ static ExitCode fill(Queue *queue) {
     if (queue->result) code = fail(&queue->error);
     for (int i = 0; i < queue->page->count; i++)
         if (queue->done[i]) report_end(queue->report, queue->done[i]);
+
     int failed = 0, missing = 0;
     SingeError error;
     if (report_page_close(queue->report, &failed, &missing, &error)) code = fail(&error);
@@ -129,6 +132,7 @@ static ExitCode run(const Page *page, const PageRequest *request) {
         .page = page, .request = request, .lab = &lab, .done = calloc((size_t)page->count, sizeof *queue.done)};
     if (queue.done) queue.report = report_page_open(request->folder, page->title, page->lead, page->grade, &error);
     else error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
+
     ExitCode code = EXIT_FAILED;
     if (queue.report) {
         lab.scenes = text_format("%s/scenes", request->folder);
@@ -140,6 +144,7 @@ static ExitCode run(const Page *page, const PageRequest *request) {
             queue.result = file_write(path, file->bytes, file->size, &queue.error);
             free(path);
         }
+
         code = fill(&queue);
         free(lab.scenes);
     } else {

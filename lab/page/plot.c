@@ -32,6 +32,7 @@ static Axis axis_fit(const Plot *plot, bool vertical) {
             axis.low = fmin(axis.low, scaled(&axis, value));
             axis.high = fmax(axis.high, scaled(&axis, value));
         }
+
     if (!(axis.low <= axis.high)) {
         axis.low = 0;
         axis.high = 1;
@@ -91,12 +92,14 @@ void plot_draw(const Plot *plot, FILE *file) {
             "<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">%s</text>\n<text x=\"8\" y=\"%d\">%s</text>\n",
             WIDTH, HEIGHT, WIDTH, HEIGHT, LEFT, plot->title, (LEFT + WIDTH - RIGHT) / 2, HEIGHT - 12, plot->x_label,
             TOP - 12, plot->y_label);
+
     draw_ticks(file, &x, false);
     draw_ticks(file, &y, true);
     for (int l = 0; l < plot->line_count; l++) {
         bool pen = false;
         fprintf(file, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"%s\"%s d=\"", plot->lines[l].colour,
                 plot->lines[l].dots ? "0" : "2", plot->lines[l].dashed ? " stroke-dasharray=\"6 4\"" : "");
+
         for (int i = 0; i < plot->lines[l].count; i++) {
             if (!shown(&x, line_x(&plot->lines[l], i)) || !shown(&y, plot->lines[l].y[i])) {
                 pen = false;

@@ -71,6 +71,7 @@ static void draft_free(Draft *draft) {
 ReportPage *report_page_open(const char *folder, const char *title, const char *lead, ReportGradeFn *grade,
                              SingeError *error) {
     if (folder_make(folder, error)) return NULL;
+
     ReportPage *page = calloc(1, sizeof *page);
     if (!page || !draft_open(&page->text) || !draft_open(&page->index) || !draft_open(&page->csv) ||
         !draft_open(&page->json)) {
@@ -89,8 +90,10 @@ ReportPage *report_page_open(const char *folder, const char *title, const char *
             title, style, title, lead);
     fprintf(page->csv.file, "item,measure,value,low,high,verdict,what,bad,bad_what%s\n", grade ? ",grade" : "");
     fprintf(page->json.file, "{\"title\": ");
+
     text_json_string(page->json.file, title);
     fprintf(page->json.file, ",\n \"measures\": [");
+
     return page;
 }
 
@@ -157,6 +160,7 @@ static void row(Report *report, const char *text, const char *tag) {
     FILE *file = body(report, BLOCK_TABLE), *table = report->table.file;
     echo(echo_file(report), text);
     fputs("<tr>", file);
+
     for (;; text++) {
         int length = (int)strcspn(text, "|");
         fprintf(table, "\"%.*s\"%c", length, text, text[length] ? ',' : '\n');
@@ -213,6 +217,7 @@ void report_picture(Report *report, const char *caption, int width, int height, 
         report->result = result;
         report->error = error;
     }
+
     fprintf(report->body.file,
             "<figure><img src=\"%s\" alt=\"%s\" width=\"%d\" "
             "height=\"%d\"><figcaption>%s</figcaption></figure>\n",
@@ -254,12 +259,14 @@ void report_bar(Report *report, const char *name, const char *what, double value
         fprintf(body(report, BLOCK_MEASURES),
                 "<div class=\"wide\"><table><tr><th>measure</th><th>is</th><th>bar</th><th></th><th>%s</th></tr>\n",
                 graded ? "grade" : "a case that fails it");
+
     FILE *file = body(report, BLOCK_MEASURES);
     fprintf(file, "<tr><td>%s</td><td>%.4g</td><td>", what, value);
     print_bar(file, low, high, "&ge; %.4g", "&le; %.4g", "%.4g to %.4g");
     fprintf(file, "</td><td class=\"%s\">%s</td><td>%s", words[2], words[1], grade.word ? grade.word : "");
     if (bad_what) fprintf(file, "%.4g: %s", bad, bad_what);
     fprintf(file, "</td></tr>\n");
+
     FILE *echo = echo_file(report);
     fprintf(echo, "  %-26s %11.4g  ", name, value);
     print_bar(echo, low, high, "at least %.4g", "at most %.4g", "%.4g to %.4g");
@@ -280,17 +287,20 @@ void report_bar(Report *report, const char *name, const char *what, double value
             report->name, name);
     text_json_number(json, value);
     fprintf(json, ", \"low\": ");
+
     text_json_number(json, low);
     fprintf(json, ", \"high\": ");
     text_json_number(json, high);
     fprintf(json, ", \"holds\": %s, \"what\": ", verdict == REPORT_HOLDS ? "true" : "false");
     text_json_string(json, what);
+
     if (bad_what) {
         fprintf(json, ", \"bad\": ");
         text_json_number(json, bad);
         fprintf(json, ", \"bad_what\": ");
         text_json_string(json, bad_what);
     }
+
     if (grade.word)
         fprintf(json, ", \"grade\": \"%s\", \"known_to_miss\": %s", grade.word, grade.misses ? "true" : "false");
 
@@ -333,6 +343,7 @@ void report_end(ReportPage *page, Report *report) {
     const char *class = words[2], *verdict = words[1];
     Draft *drafts[] = {&report->body, &report->csv, &report->json, &report->echo};
     bool good = true;
+
     body(report, BLOCK_NONE);
     for (int i = 0; i < 4; i++) {
         if (!drafts[i]->file) continue;
@@ -358,6 +369,7 @@ void report_end(ReportPage *page, Report *report) {
     ReportTaken *larger = realloc(page->taken, (count + 1) * sizeof *larger);
     if (larger) page->taken = larger;
     else page->result = SINGE_ERROR_MEMORY;
+
     for (int i = 0; i < report->measures; i++) {
         if (larger) larger[page->measures++] = report->taken[i];
         else taken_free(&report->taken[i]);
@@ -395,11 +407,13 @@ SingeResult report_page_close(ReportPage *page, int *failed, int *missing, Singe
             "measures.csv</a>, <a href=\"measures.json\">measures.json</a>.</p>\n",
             page->measures - page->failed - page->missing, page->measures);
     fprintf(page->json.file, "\n ],\n \"failed\": %d, \"missing\": %d}\n", page->failed, page->missing);
+
     SingeResult result = page->result;
     if (result) {
         *error = page->error;
         error->code = result;
     }
+
     if (!result) result = write_draft(page, "index.html", &page->index, &page->text, error);
     if (!result) result = write_draft(page, "measures.csv", &page->csv, NULL, error);
     if (!result) result = write_draft(page, "measures.json", &page->json, NULL, error);

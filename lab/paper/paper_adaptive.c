@@ -51,6 +51,7 @@ static SingeResult strip_run(Lab *lab, int i, Strip *strip, SingeError *error) {
         strip->cells += cells / LOOKS;
         if (k == 2) strip->first = cells;
         if (k == 10 || k == 13 || k == 16) result = look_take(&play, 0, &strip->look, error);
+
         if (k == 16) {
             for (int c = 0; c < SINGE_COLOUR_COUNT; c++) strip->springs += view.spring_count[c];
             strip->speed = 1e3 * singe_sim_stats(play.sim).front_speed;
@@ -86,14 +87,17 @@ static SingeResult fan_build(SingeSim *sim, int n) {
     const uint32_t around = 2 * (uint32_t)n, last = FAN_RINGS - 1;
     float positions[3 * (1 + 32 * FAN_RINGS)] = {0};
     uint32_t cells[4 * (16 + 32 * (FAN_RINGS - 1))], *c = cells;
+
     for (uint32_t ring = 0, v = 3; ring < FAN_RINGS; ring++)
         for (uint32_t i = 0; i < around; i++, v += 3) {
             const double angle = 2 * acos(-1) * i / around, radius = 0.05 * (ring + 1) / FAN_RINGS;
             positions[v] = (float)(radius * cos(angle));
             positions[v + 1] = (float)(radius * sin(angle));
         }
+
     for (uint32_t i = 0; i < around; i += 2, c += 4)
         memcpy(c, (uint32_t[4]){0, 1 + i, 2 + i, 1 + (i + 2) % around}, 4 * sizeof *c);
+
     for (uint32_t ring = 0; ring < last; ring++)
         for (uint32_t i = 0; i < around; i++, c += 4) {
             const uint32_t inner = 1 + ring * around, outer = inner + around, next = (i + 1) % around;
@@ -102,18 +106,22 @@ static SingeResult fan_build(SingeSim *sim, int n) {
 
     SingeSheetDef def = singe_default_sheet();
     SingeSheetId sheet;
+
     def.vertex_count = 1 + around * FAN_RINGS;
     def.positions = positions;
     def.cell_count = (uint32_t)(c - cells) / 4;
     def.cells = cells;
     def.material.damping = singe_param(2);
     for (int k = 0; k < SINGE_COLOUR_COUNT; k++) def.material.compliance[k] = singe_param(0);
+
     SingeResult result = singe_sim_add_sheet(sim, &def, &sheet);
     if (!result) result = singe_sim_commit(sim);
     if (result) return result;
+
     SingePinDef pin = singe_default_pin();
     const uint32_t centre[] = {0};
     SingePinId id;
+
     pin.sheet = sheet;
     pin.vertex_count = 1;
     pin.vertices = centre;
@@ -126,12 +134,14 @@ static SingeResult fan_run(const Lab *lab, int n, SingeSolverMethod method, floa
                            SingeError *error) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
+
     singe_init_solver_method(&def.solver, sizeof def.solver, method);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) def.solver.regularisation[c] = floor;
     def.time_step = 0.002f;
     def.thread_count = lab->threads;
     SingeResult result = singe_sim_create(&def, &sim, error);
     if (result) return result;
+
     if ((result = fan_build(sim, n))) *error = *singe_sim_error(sim);
     int steps = 0;
     while (!result && steps < FAN_STEPS && !singe_sim_step(sim)) steps++;
@@ -144,6 +154,7 @@ static SingeResult fan_run(const Lab *lab, int n, SingeSolverMethod method, floa
 static SingeResult fans_report(Lab *lab, SingeError *error) {
     double worst = 0, literal = 0, strain[3];
     report_heads(lab->report, "springs of a colour at a point|strain %, floor of 1e-4|of 1e-6|to the letter");
+
     for (int i = 0; i < FANS; i++) {
         bool whole[3];
         SingeResult result = fan_run(lab, fan_cells[i], SINGE_SOLVER_PAPER, 1e-4f, &whole[0], &strain[0], error);
@@ -151,6 +162,7 @@ static SingeResult fans_report(Lab *lab, SingeError *error) {
         if (!result)
             result = fan_run(lab, fan_cells[i], SINGE_SOLVER_PAPER_LITERAL, 1e-4f, &whole[2], &strain[2], error);
         if (result) return result;
+
         report_row(lab->report, "%d|%.4f|%.4f|%.4f", fan_cells[i], 100 * strain[0], 100 * strain[1], 100 * strain[2]);
         worst = fmax(worst, fmax(strain[0], strain[1]));
         literal = fmax(literal, strain[2]);
@@ -169,19 +181,23 @@ SingeResult paper_adaptive(Lab *lab, SingeError *error) {
     SingeResult result = SINGE_OK;
     report_pictures(lab->report, 2);
     for (int i = 0; i < STRIPS && !result; i++) result = strip_run(lab, i, &s[i], error);
+
     int steps[2] = {0};
     if (!result) result = steps_taken(lab, "solver=paper", &steps[0], error);
     if (!result) result = steps_taken(lab, "solver=paper-literal", &steps[1], error);
     if (result) return result;
+
     report_heads(lab->report, "cells|springs|front mm/s|ms a step|curl, median|90 of 100|slope, median|strain p99 %");
     for (int i = 0; i < PLAIN; i++)
         report_row(lab->report, "%s|%.0f|%.2f|%.2f|%.1f|%.1f|%.1f|%.1f", strips[i].name, s[i].springs, s[i].speed,
                    s[i].look.step_ms, look_curl(&s[i].look, 0.5), look_curl(&s[i].look, 0.9),
                    look_slope(&s[i].look, 0.5), 100 * s[i].look.strain_p99);
+
     const double saving = 1 / s[FINE].cells, cost = s[EQUAL].look.step_ms / s[GRADED].look.step_ms;
     const double speeds[3] = {s[FINE].speed, s[GRADED].speed, s[EQUAL].speed};
     const double low = fmin(s[COARSE].speed, fmin(speeds[0], fmin(speeds[1], speeds[2])));
     const double high = fmax(s[COARSE].speed, fmax(speeds[0], fmax(speeds[1], speeds[2])));
+
     report_text(
         lab->report,
         "Strands take a mesh of two sizes of cells as it is, with vertices of three and five edges between them: "
@@ -197,6 +213,7 @@ SingeResult paper_adaptive(Lab *lab, SingeError *error) {
                high / fmax(s[PLAIN].speed, 1e-3), "coarse cells whose front is not thickened");
     report_bar(lab->report, "cost", "ms a step, uniform cells of 1.8 mm over graded ones", cost, 0.5, 1.5,
                s[COARSE].look.step_ms / s[GRADED].look.step_ms, "uniform cells of 4.5 mm");
+
     const double fine = look_curl(&s[FINE].look, 0.9), coarse = look_curl(&s[COARSE].look, 0.9);
     report_bar(lab->report, "curl", "curl of the rim, 90 of 100 have less, uniform cells of 1.8 mm over 1.5 mm",
                look_curl(&s[EQUAL].look, 0.9) / fine, 0.8, 1.25, coarse / fine, "uniform cells of 4.5 mm");
@@ -208,5 +225,6 @@ SingeResult paper_adaptive(Lab *lab, SingeError *error) {
                "steps of 96 on the graded strip, whose springs have up to 8 "
                "neighbours, by the paper's solver",
                steps[0], IRREGULAR_STEPS, IRREGULAR_STEPS, steps[1], "to its letter");
+
     return fans_report(lab, error);
 }

@@ -24,6 +24,7 @@ static SingeResult set_print(Lab *lab, SingeNetwork *network, uint32_t set, cons
         singe_network_jacobian(network, set, jacobian);
         if (singular_values(jacobian, rows, columns, values) == 0) result = SINGE_OK;
     }
+
     if (!result) {
         while (rank < count && values[rank] > zero_share * values[0]) rank++;
         report_row(lab->report, "%s|%zu|%zu|%zu|%.2e", name, rows, rank, rows - rank,
@@ -41,12 +42,14 @@ static SingeResult ranks_print(Lab *lab, const SingeSim *sim, SingeNetwork *all,
     SingeView view = singe_sim_view(sim);
     uint32_t free_count = 0, springs = singe_network_set_size(all, 0);
     double spare, colour_spare = 0;
+
     for (uint32_t i = 0; i < view.particle_count; i++) free_count += !(view.particle_flags[i] & SINGE_PINNED);
     report_text(lab->report,
                 "%d x %d cells: %u constraints, %u degrees of freedom: 10 to %.2f. On a sheet without end it is 10 to "
                 "6. The singular values are those of J M<sup>-1/2</sup>; %g of the largest counts as 0.",
                 CELLS, CELLS, springs, 3 * free_count, 10.0 * 3 * free_count / springs, zero_share);
     report_heads(lab->report, "springs|constraints|rank|too many|smallest above 0, over the largest");
+
     SingeResult result = set_print(lab, all, 0, "all", view.particle_count, &spare);
     for (uint32_t c = 0; c < SINGE_COLOUR_COUNT && !result; c++) {
         double more = 0;
@@ -93,21 +96,25 @@ SingeResult paper_all_at_once(Lab *lab, SingeError *error) {
     SingeSim *sim;
     SingeResult result = paper_sim(PAPER_SWING, CELLS, &solver, 1, &sim, error);
     if (result) return result;
+
     result = lab_steps(sim, WARM_STEPS, error);
     if (!result) {
         const double floor = singe_default_network().regularisation;
         Contender contenders[CONTENDERS] = {
             {.sets = 1}, {.sets = SINGE_COLOUR_COUNT}, {.sets = 1}, {.sets = SINGE_COLOUR_COUNT}};
+
         result = SINGE_OK;
         for (int i = 0; i < CONTENDERS && !result; i++)
             result = paper_network(sim, PAPER_SWING, contenders[i].sets == 1, i < 2 ? 0 : floor, 0,
                                    &contenders[i].network, error);
         if (!result) result = ranks_print(lab, sim, contenders[0].network, contenders[1].network);
+
         if (!result) {
             static const char *const inks[CONTENDERS] = {"#b2182b", "#2166ac", "#e08214", "#5aae61"};
             double errors[CONTENDERS][STEPS + 1], ends[CONTENDERS];
             uint32_t iterations[CONTENDERS] = {0};
             bool broken[CONTENDERS] = {false};
+
             report_text(
                 lab->report,
                 "Error |C| of all springs in m after each projection step, with nothing on the diagonal and with a floor "
@@ -115,6 +122,7 @@ SingeResult paper_all_at_once(Lab *lab, SingeError *error) {
                 floor);
             report_heads(lab->report,
                          "step|all at once|colour after colour|all at once, floor|colour after colour, floor");
+
             for (int step = 0; step <= STEPS; step++) {
                 for (int i = 0; i < CONTENDERS; i++)
                     errors[i][step] = contender_step(&contenders[i], step, &iterations[i], &broken[i]);
@@ -125,6 +133,7 @@ SingeResult paper_all_at_once(Lab *lab, SingeError *error) {
             report_row(lab->report, "iterations|%u%s|%u%s|%u%s|%u%s", iterations[0], broken[0] ? ", broke down" : "",
                        iterations[1], broken[1] ? ", broke down" : "", iterations[2], broken[2] ? ", broke down" : "",
                        iterations[3], broken[3] ? ", broke down" : "");
+
             Plot plot = {.title = "All colours in one system, and one after another",
                          .x_label = "projection step",
                          .y_label = "|C|, m",
@@ -142,6 +151,7 @@ SingeResult paper_all_at_once(Lab *lab, SingeError *error) {
                 "mends it, and all at once then ends at %.2g of the error that colour after colour ends at with the same "
                 "floor, for %.1f times the iterations.",
                 ends[2] / ends[3], (double)iterations[2] / iterations[3]);
+
             report_bar(lab->report, "all_diverges", "no floor: error after 7 steps over that before, all at once",
                        ends[0], 1, INFINITY, ends[1], names[1]);
             report_bar(lab->report, "colours_converge", "no floor: the same, colour after colour", ends[1], 0, 0.9,

@@ -33,9 +33,11 @@ SingeResult paper_fig1(Lab *lab, SingeError *error) {
         result = play_open(&play, lab, "fig1.yaml", sets, error);
         const SingeTexture *picture = &play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture;
         if (!result && !plain) report_pictures(lab->report, 4), texture_show(lab, picture);
+
         for (int shot = 0; shot < FIG1_SHOTS && !result; shot++) {
             result = plain ? play_until(&play, times[shot], error) : play_shoot_at(&play, times[shot], error);
             if (result) break;
+
             SingeView view = singe_sim_view(play.sim);
             if (shot == 0) {
                 runs[i].correlation = -texture_correlation(&view, picture, false, view.mass);
@@ -61,8 +63,10 @@ SingeResult paper_fig1(Lab *lab, SingeError *error) {
         play_close(&play);
     }
     if (result) return result;
+
     const Fig1 *fig = &runs[0], *flat = &runs[1];
     static const char *const without = "the same sheet without shrinkage";
+
     report_bar(lab->report, "correlation", "correlation of the texture with the mass lost after 0.1 s",
                fig->correlation, 0.9, 1, fig->mirrored, "with its mirror image");
     report_bar(lab->report, "curl", "curl of the rim over 10 mm, 90 of 100 have less, degrees",
@@ -77,6 +81,7 @@ SingeResult paper_fig1(Lab *lab, SingeError *error) {
                fig->inner, 3, INFINITY, flat->inner, without);
     report_bar(lab->report, "burnt", "share of cells gone after 3 s", 1 - fig->look.left, 0.3, 1, fig->gone,
                "after 0.1 s");
+
     return SINGE_OK;
 }
 
@@ -95,6 +100,7 @@ static void fig4_report(Report *report, const Look *look) {
     static const char *const same = "(a) over itself", *const whole = "(b), which stays whole";
     static const char *const short_names[COLUMNS] = {"(a)", "(b)", "(c)", "(d)"};
     const Look *a = &look[0], *b = &look[1], *c = &look[2], *d = &look[3], *mean = &look[FIG4_MEAN];
+
     report_heads(report, "|cells left %|pieces over 5 %|bend, degrees|curl, median|90 of 100|slope, median|border");
     for (int i = 0; i < COLUMNS; i++)
         report_row(report, "%s|%.1f|%d|%.2f|%.1f|%.1f|%.1f|%.2f", short_names[i], 100 * look[i].left, look[i].pieces,
@@ -103,6 +109,7 @@ static void fig4_report(Report *report, const Look *look) {
     report_text(report, "Curl: of the rim over 10 mm, degrees; slope: of the last 4 mm, from the plane of the sheet, "
                         "degrees; both over 2.3, 2.7 and 3.6 s. (b) loses nothing: its rim is where that of (c) would "
                         "be, at m_loss. Border: over the root of the area, at rest.");
+
     report_bar(report, "b_whole", "(b) share of cells left", b->left, 1, 1, c->left, "(c)");
     report_bar(report, "a_parts", "(a) pieces of more than 5 %: the shell separates into two parts", a->pieces, 2,
                INFINITY, b->pieces, whole);
@@ -115,6 +122,7 @@ static void fig4_report(Report *report, const Look *look) {
                look_slope(b, 0.5) / look_slope(a, 0.5), 1.5, INFINITY, 1, same);
     report_bar(report, "c_slope", "the same, (c) over (a)", look_slope(c, 0.5) / look_slope(a, 0.5), 1.5, INFINITY, 1,
                same);
+
     const double ragged = fire_border(c, b);
     report_bar(report, "d_border", "borders that fire makes by what it takes, (d) over (c): it is ragged",
                fire_border(d, b) / ragged, 1.5, INFINITY, fire_border(mean, b) / ragged,
@@ -136,21 +144,25 @@ SingeResult paper_fig4(Lab *lab, SingeError *error) {
                                                           "fig4c.yaml"};
         char mean[60] = "";
         if (i == FIG4_MEAN) snprintf(mean, sizeof mean, "sheets.0.material.mass_rate=%g", rate);
+
         const double cut = i == 1 ? 0.2 : 0; // the scene's mass_loss: where the edge of (b) would be
         Play play;
         const char *sets[] = {mean, lab->quick ? small_grid : "", lab->quick ? "preview.size=[320, 384]" : "", NULL};
         result = play_open(&play, lab, scenes[i], sets, error);
         if (!result && i == FIG4_MEAN - 1)
             rate = 1e-3 + 19e-3 * texture_mean(&play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture);
+
         for (int k = 0; k < ROWS && !result; k++) {
             result = play_until(&play, times[k], error);
             if (!result && i < COLUMNS) result = play_draw(&play, &rgb[i][k], size, error);
             if (!result && times[k] > 2) result = look_take(&play, cut, &look[i], error);
         }
+
         if (!result) result = play_until(&play, 3.6, error);
         if (!result) result = look_take(&play, cut, &look[i], error);
         play_close(&play);
     }
+
     if (!result) report_pictures(lab->report, COLUMNS);
     for (int k = 0; k < ROWS; k++)
         for (int i = 0; i < COLUMNS; i++) {
@@ -159,6 +171,7 @@ SingeResult paper_fig4(Lab *lab, SingeError *error) {
             if (!result && rgb[i][k]) report_picture(lab->report, caption, size[0], size[1], rgb[i][k]);
             free(rgb[i][k]);
         }
+
     if (!result) fig4_report(lab->report, look);
     return result;
 }
@@ -176,6 +189,7 @@ SingeResult paper_fig11(Lab *lab, SingeError *error) {
     SingeStats stats = {0};
     SingeResult result = SINGE_OK;
     report_pictures(lab->report, 3);
+
     for (int plain = 0; plain < 2 && !result; plain++) { // the second does not shrink
         Play play;
         const char *sets[] = {lab->quick ? "sheets.0.mesh=torus-small.obj" : "",
@@ -209,6 +223,7 @@ SingeResult paper_fig11(Lab *lab, SingeError *error) {
 
         play_close(&play);
     }
+
     if (result) return result;
     report_bar(lab->report, "start", "of 12 sectors around the hole, those alight after 1.5 s", lit[1], 1, 6,
                lit[FIG11_SHOTS - 1], "after 8 s");
@@ -217,6 +232,7 @@ SingeResult paper_fig11(Lab *lab, SingeError *error) {
     report_bar(lab->report, "left", "share of cells left then", looks[0].left, 0, 0.8, first, "after 0.5 s");
     report_bar(lab->report, "shrunk", "area of the last 4 mm at the rim over that at rest, from 3 to 6 s",
                look_area(&looks[0]), 0.3, 0.8, look_area(&looks[1]), flat);
+
     const double in = stats.heat_in + stats.heat_of_combustion, kept = stats.heat_stored;
     report_bar(lab->report, "ledger", "error of the heat ledger", stats.ledger_error, 0, 1e-4,
                fabs(in - kept) / fmax(fabs(in), fabs(kept)), "without what is lost to the air in it");
@@ -234,11 +250,13 @@ SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
     int pieces[CASES] = {0};
     SingeResult result = SINGE_OK;
     report_pictures(lab->report, CASES);
+
     for (int i = 0; i < CASES && !result; i++) {
         Play play;
         const char *laid[] = {sets[i], lab->quick ? "sheets.0.grid.cells=[20, 28]" : small_grid, "contact=no",
                               "tearing=no", NULL};
         result = play_open(&play, lab, "fig1.yaml", laid, error);
+
         fifth[i] = INFINITY;
         for (int k = 0; k < LOOKS && !result; k++) {
             time[k] = 0.05 * k;
@@ -246,6 +264,7 @@ SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
             SingeView view = singe_sim_view(play.sim);
             left[i][k] = shape_left(&view);
             if (left[i][k] < 0.8 && time[k] < fifth[i]) fifth[i] = time[k];
+
             char caption[80];
             snprintf(caption, sizeof caption, "%s, %.1f s", names[i], time[k]);
             if (!result && k == (i == 2 ? 11 : 30)) result = play_shoot(&play, caption, error);
@@ -257,9 +276,11 @@ SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
         play_close(&play);
     }
     if (result) return result;
+
     Plot plot = {.title = "Cells left", .x_label = "s", .y_label = "share"};
     for (int i = 0; i < CASES; i++) plot_add(&plot, (PlotLine){names[i], inks[i], time, left[i], LOOKS, false, false});
     report_plot(lab->report, &plot);
+
     report_bar(lab->report, "whole", "m_loss below m_min: share of cells left after 3 s", left[0][LOOKS - 1], 1, 1,
                left[1][LOOKS - 1], "m_loss 30 %");
     report_bar(lab->report, "one_piece", "the same: pieces", pieces[0], 1, 1, pieces[1], "m_loss 30 %");
@@ -269,6 +290,7 @@ SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
                "m_loss near m_init: a fifth is gone in this share of the time of m_loss "
                "30 %",
                fifth[2] / fifth[1], 0, 0.4, fifth[1] / fifth[1], "m_loss 30 % itself");
+
     return SINGE_OK;
 }
 
@@ -290,6 +312,7 @@ static void rival_draw(FILE *file, const double (*profile)[RIVAL_POINTS][2], con
     const double scale = 2800, length = 0.06;
     fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"840\" height=\"180\" font-family=\"sans-serif\" "
                   "font-size=\"12\">\n");
+
     for (int s = 0; s < RIVAL_SHOTS; s++) {
         const double left = 20 + 208 * s, k = bend[s];
         fprintf(file,
@@ -300,6 +323,7 @@ static void rival_draw(FILE *file, const double (*profile)[RIVAL_POINTS][2], con
             fprintf(file, "%.1f,%.1f ", left + 84 + scale * profile[s][i][0], 70 - scale * profile[s][i][1]);
         fprintf(file, "\"/>\n<polyline fill=\"none\" stroke=\"#b2182b\" stroke-width=\"3\" stroke-dasharray=\"6 4\" "
                       "points=\"");
+
         for (int i = 0; i < RIVAL_POINTS; i++) {
             double at = length * ((double)i / (RIVAL_POINTS - 1) - 0.5);
             double x = k > 1e-3 ? sin(k * at) / k : at, z = k > 1e-3 ? (1 - cos(k * at)) / k : 0;
@@ -328,9 +352,11 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
         enum { ALONG = 30 };
         double front = 0, back = 0, angle = 0, length = 0;
         const uint32_t row = ALONG + 1;
+
         for (uint32_t i = 0; i < view.cell_count; i++)
             front += (double)view.temperature[view.vertex_count + i] / view.cell_count;
         for (uint32_t v = 0; v < view.vertex_count; v++) back += (double)view.temperature[v] / view.vertex_count;
+
         for (uint32_t i = 2; i + 3 < row; i++) {
             const float *p = view.position[row + i], *q = view.position[row + i + 1], *r = view.position[row + i + 2];
             double a[2] = {(double)q[0] - (double)p[0], (double)q[2] - (double)p[2]};
@@ -358,11 +384,13 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
 
     play_close(&play);
     if (result) return result;
+
     double max = 0, hottest = 0;
     for (int k = 0; k < RIVAL_LOOKS; k++) {
         max = fmax(max, fabs(curvature[k]));
         hottest = fmax(hottest, fabs(difference[k]));
     }
+
     report_text(lab->report,
                 "A strip of card is heated from below for a second and cools. The lower side is up to %.0f K hotter, "
                 "and chars and shrinks more; the strip curls to %.0f /m. A model that bends by the temperature "
@@ -371,10 +399,12 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
     scale_to_one(difference, RIVAL_LOOKS), scale_to_one(curvature, RIVAL_LOOKS);
     for (int s = 0; s < RIVAL_SHOTS; s++) bend[s] = max * difference[rival_shots[s]];
     rival_draw(report_drawing(lab->report), (const double(*)[RIVAL_POINTS][2])profiles, bend);
+
     Plot plot = {.title = "Curl while it is heated and cools", .x_label = "s", .y_label = "share of the largest"};
     plot_add(&plot, (PlotLine){"by temperature", "#b2182b", time, difference, RIVAL_LOOKS, false, true});
     plot_add(&plot, (PlotLine){"by shrinkage (here)", "#2166ac", time, curvature, RIVAL_LOOKS, false, false});
     report_plot(lab->report, &plot);
+
     const double rival_end = difference[RIVAL_LOOKS - 1], here_end = curvature[RIVAL_LOOKS - 1];
     report_bar(lab->report, "curl", "largest curvature, 1/m", max, 3, INFINITY, max * curvature[0],
                "before it is heated");

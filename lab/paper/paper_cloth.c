@@ -38,6 +38,7 @@ SingeResult paper_fig7ab(Lab *lab, SingeError *error) {
             result = play_until(&play, lab->quick ? 0.55 * times[k] : times[k], error);
             if (!result) result = play_shoot(&play, caption, error);
         }
+
         if (!result) {
             SingeView view = singe_sim_view(play.sim);
             double low[3], high[3];
@@ -85,15 +86,18 @@ static SingeResult shrink_run(Lab *lab, int i, int n, bool drawn, Wrinkling *out
     char grid[60], usual[160] = "";
     snprintf(grid, sizeof grid, "sheets.0.grid.cells=[%d, %d]", n, n);
     if (i == SHRINK_STRAND) lab_usual_compliance(usual, sizeof usual);
+
     const char *sets[] = {shrink_cases[i].set, grid, usual, NULL};
     Play play;
     SingeResult result = play_open(&play, lab, shrink_cases[i].scene, sets, error);
     for (int k = 0; k < MOMENTS && !result; k++) {
         result = play_until(&play, 0.1 * (k + 1), error);
         if (result) break;
+
         const SingeView view = singe_sim_view(play.sim);
         ShapeSpectrum spectrum;
         result = shape_spectrum(&view, n, n, cell, &spectrum);
+
         double power = 0;
         for (int b = 0; b < SHAPE_BANDS; b++)
             if (!isnan(spectrum.height[b]) && spectrum.wave[b] >= 4 * cell && spectrum.wave[b] <= 0.05)
@@ -101,6 +105,7 @@ static SingeResult shrink_run(Lab *lab, int i, int n, bool drawn, Wrinkling *out
         out->height[k] = sqrt(power);
         out->bend[k] = shape_bend(&view);
         if (result || !drawn || (k != 3 && k != 6 && k != 9 && k != MOMENTS - 1)) continue;
+
         char caption[80];
         snprintf(caption, sizeof caption, "%s, %.1f s, blue %.0f %% shorter", shrink_cases[i].name, 0.1 * (k + 1),
                  fmin(30, 2 * (k + 1)));
@@ -137,16 +142,19 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
     if (!result) result = shrink_run(lab, SHRINK_SOFT, FINER, false, &finer, error);
     if (!result) result = shrink_run(lab, SHRINK_SCENE, FINER, false, &pressed, error);
     if (result) return result;
+
     Plot plot = {.title = "Wrinkles while the blue layer shrinks by 30 % in 1.5 s",
                  .x_label = "s",
                  .y_label = "rms height, m",
                  .log_y = true};
+
     for (int k = 0; k < MOMENTS; k++) percent[k] = 0.1 * (k + 1);
     for (int i = 0; i < SHRINK_CASES; i++)
         plot_add(&plot,
                  (PlotLine){shrink_cases[i].name, shrink_cases[i].ink, percent, w[i].height, MOMENTS, false, false});
     report_plot(lab->report, &plot);
     report_heads(lab->report, "s|strand, mm|degrees|paper's solver|degrees|1 N/m|degrees|100 N/m|degrees");
+
     for (int k = 0; k < MOMENTS; k++)
         report_row(lab->report, "%.1f|%.3f|%.1f|%.3f|%.1f|%.3f|%.1f|%.3f|%.1f", percent[k], 1e3 * w[0].height[k],
                    w[0].bend[k], 1e3 * w[1].height[k], w[1].bend[k], 1e3 * w[2].height[k], w[2].bend[k],
@@ -155,6 +163,7 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
         lab->report,
         "Root mean square height of waves from four cells to 5 cm along the grid's lines, and the angle from cell "
         "to cell, at all moments.");
+
     const double soft = shrink_share(&w[SHRINK_PAPER], &w[SHRINK_SOFT], 0);
     const double firm = shrink_share(&w[SHRINK_STIFF], &w[SHRINK_PAPER], 0);
     const int last = MOMENTS - 1;
@@ -175,6 +184,7 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
                 "in those, which stay flat. What wrinkles is higher than by the paper's method, because it gives in "
                 "its plane, too.",
                 weight * pow(0.2 / n, 4), weight * pow(0.2 / FINER, 4), FINER, weight * pow(0.2 / FINER, 4) / 0.04);
+
     report_bar(lab->report, "soft",
                "share of the moments in which the paper's method has higher wrinkles than "
                "springs of 1 N/m",
@@ -190,6 +200,7 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
                0.9, 1, shrink_share(&w[SHRINK_STRAND], &w[SHRINK_STIFF], 0), "than springs of 100 N/m");
     report_bar(lab->report, "stiff", "m, the least height from 0.2 s on of springs of 100 N/m: they do not lose them",
                least_height(&w[SHRINK_STIFF]), 1e-4, INFINITY, least_height(&w[SHRINK_SOFT]), "springs of 1 N/m");
+
     return SINGE_OK;
 }
 
@@ -234,6 +245,7 @@ static SingeResult shell_run(Lab *lab, const Shell10 *shell, int n, bool papers,
     snprintf(caption, sizeof caption, "%s%s", shell->name, papers ? ", the paper's solver" : "");
     if (!result && shell < &shells[SHELL_B_NEAR] && (papers || n == FIG10_DRAWN))
         result = play_shoot(&play, caption, error);
+
     const SingeView view = play.sim ? singe_sim_view(play.sim) : (SingeView){0};
     double down = 0, slope = 0;
     if (!result) {
@@ -274,12 +286,14 @@ static SingeResult shell_runs(Lab *lab, const Shell10 *shell, double *sag, doubl
 SingeResult paper_fig10(Lab *lab, SingeError *error) {
     double sag[2][SHELLS] = {{0}}, bend[2][SHELLS] = {{0}}, more[2] = {0}, unused = 0;
     SingeResult result = SINGE_OK;
+
     report_pictures(lab->report, SHELLS);
     for (int i = 0; i < SHELLS && !result; i++) result = shell_runs(lab, &shells[i], &sag[0][i], &bend[0][i], error);
     for (int i = 0; i < SHELLS && !result; i++)
         result = shell_run(lab, &shells[i], FIG10_PAPERS, true, &sag[1][i], &bend[1][i], error);
     for (int i = 0; i < 2 && !result; i++)
         result = shell_runs(lab, &shells[SHELL_B_NEAR + i], &unused, &more[i], error);
+
     if (!result) {
         report_heads(lab->report, "thickness, weight|sag, mm|bend, degrees|paper's solver, mm|degrees");
         for (int i = 0; i < SHELLS; i++)
@@ -290,6 +304,7 @@ SingeResult paper_fig10(Lab *lab, SingeError *error) {
             "Sag: height of the centre over the mean of the border. Bend: the mean slope of the border's cells, "
             "across the border. By strands both are means over sheets of 24, 28, 32 and 36 cells a side, which fold "
             "in different ways; by the paper's solver the sheet has 16.");
+
         const double near = more[0] / bend[0][SHELL_B], weak = more[1] / bend[0][SHELL_C];
         report_bar(lab->report, "sag_b_a", "sag, (b) over (a)", sag[0][SHELL_B] / sag[0][SHELL_A], 1.5, INFINITY,
                    sag[0][SHELL_C] / sag[0][SHELL_B], "(c) over (b)");
@@ -310,6 +325,7 @@ SingeResult paper_weights(Lab *lab, SingeError *error) {
     double fall[2][2] = {{0}}; // of the scene, and with the soft weight everywhere
     SingeResult result = SINGE_OK;
     report_pictures(lab->report, 3);
+
     for (int even = 0; even < 2 && !result; even++) {
         static const char *const soft = "sheets.0.material.weight={green: 0.02, blue: 0.1, yellow: 0.1}";
         Play play;
@@ -320,6 +336,7 @@ SingeResult paper_weights(Lab *lab, SingeError *error) {
         if (!result && !even) result = play_shoot(&play, "0.5 s", error);
         if (!result) result = play_until(&play, 2, error);
         if (!result && !even) result = play_shoot(&play, "2 s", error);
+
         SingeView view = play.sim ? singe_sim_view(play.sim) : (SingeView){0};
         if (!result) {
             // m, sag of the outer 2 cm, of the stiff half and of the soft one
@@ -336,6 +353,7 @@ SingeResult paper_weights(Lab *lab, SingeError *error) {
 
         play_close(&play);
     }
+
     if (result) return result;
     report_text(lab->report, "The outer 2 cm hang %.1f mm on the soft side and %.1f mm on the stiff one.",
                 1e3 * fall[0][1], 1e3 * fall[0][0]);

@@ -37,6 +37,7 @@ static SingeResult fig8_project(const SingeSim *sim, PaperState state, double fl
         fig->error[SINGE_COLOUR_COUNT][step] = paper_errors(network, SINGE_COLOUR_COUNT, errors);
         for (int c = 0; c < SINGE_COLOUR_COUNT; c++) fig->error[c][step] = errors[c];
     }
+
     if (result) *error = (SingeError){.code = result, .element = -1};
     singe_network_destroy(network);
     return result;
@@ -57,6 +58,7 @@ static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, Sing
     size_t size = 0;
     FILE *file = open_memstream(&csv, &size);
     if (!file) return *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1}, error->code;
+
     fprintf(file, "step,red,green,blue,yellow,sum\n");
     for (int step = 0; step <= STEPS; step++) {
         fprintf(file, "%d", step);
@@ -70,6 +72,7 @@ static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, Sing
     else *error = (SingeError){.code = result, .element = -1};
     free(csv);
     if (result) return result;
+
     snprintf(title, sizeof title, "Error of each colour: %s, %d springs", state, 10 * CELLS * CELLS);
     Plot plot = {.title = title, .x_label = "projection step", .y_label = "|C|, m", .log_y = true};
     for (int l = 0; l < LINES; l++)
@@ -90,10 +93,12 @@ SingeResult paper_fig8(Lab *lab, SingeError *error) {
         Fig8Count *own = &count[i];
         SingeSolverDef solver = singe_default_solver();
         singe_init_solver_method(&solver, sizeof solver, SINGE_SOLVER_PAPER);
+
         SingeSim *sim;
         Fig8 shown = {0}, counted;
         result = paper_sim(run->state, CELLS, &solver, 1, &sim, error);
         if (result) break;
+
         for (int step = 0; step <= run->last && !result; step++) {
             if (step == run->shown) result = fig8_project(sim, run->state, floor, STEPS, &shown, error);
             for (int bare = 0; bare < 2 && !result && step % EVERY == 0; bare++) {
@@ -105,6 +110,7 @@ SingeResult paper_fig8(Lab *lab, SingeError *error) {
                 for (int k = 0; k < COUNTED; k++) rises = rises || sum[k + 1] > sum[k];
                 own->rises[bare] += rises;
                 if (bare) continue;
+
                 own->states++;
                 own->lower += sum[COUNTED] < sum[0];
                 if (sum[0] > 0 && sum[COUNTED] / sum[0] > own->worst) own->worst = sum[COUNTED] / sum[0];
@@ -114,8 +120,10 @@ SingeResult paper_fig8(Lab *lab, SingeError *error) {
 
         singe_sim_destroy(sim);
         if (result) break;
+
         const char *name = paper_state_names[run->state];
         const double *sum = shown.error[SINGE_COLOUR_COUNT];
+
         result = fig8_write(lab, name, &shown, error);
         report_text(
             lab->report,
@@ -131,6 +139,7 @@ SingeResult paper_fig8(Lab *lab, SingeError *error) {
         all.lower += count[i].lower;
     }
     if (result) return result;
+
     const double rises = (double)all.rises[1] / all.states, lower = (double)all.lower / all.states;
     report_bar(lab->report, "rises",
                "share of all states in which the sum rises in one of 7 steps, with nothing on the diagonal, "
@@ -140,5 +149,6 @@ SingeResult paper_fig8(Lab *lab, SingeError *error) {
                0.05, fell[0], "the sheet that swings");
     report_bar(lab->report, "lower", "share of all states in which the sum is lower after 7 steps", lower, 0.95, 1,
                1 - rises, "in which it falls in each of them, without the floor");
+
     return SINGE_OK;
 }

@@ -35,6 +35,7 @@ static void march_cell(March *march, const SingeView *view, const float *mass, u
 
         march->expected += share * side * side / 4;
         march->cases[inside]++;
+
         double *centroid = march->centroids[march->count++];
         for (int d = 0; d < 2; d++)
             centroid[d] = ((double)view->rest_position[a][d] + (double)view->rest_position[b][d] +
@@ -71,10 +72,12 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
     const double cell = 0.01;
     float mass[ROW * ROW];
     LabGrid grid = lab_grid(MARCH_CELLS, MARCH_CELLS, (float)cell);
+
     for (int v = 0; v < ROW * ROW; v++)
         mass[v] = (float)(0.5 + 0.3 * sin(1.3 * (v % ROW) + 0.4) * cos(0.9 * (v / ROW) + 0.2 * (v % ROW)) + 0.03);
     lab_sets_mass(&grid.material);
     grid.material.shrink_front = grid.material.shrink_back = singe_param(0);
+
     SingeSim *sim;
     SingeSurface surface = {0};
     SingeResult result = paper_burn_to(lab, &grid, mass, march_loss, &sim, &surface, error);
@@ -83,6 +86,7 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
         March march = {.count = 0}, fresh = {.count = 0};
         float ones[ROW * ROW];
         for (int v = 0; v < ROW * ROW; v++) ones[v] = 1;
+
         for (uint32_t c = 0; c < view.cell_count; c++) {
             march_cell(&march, &view, mass, c, cell);
             march_cell(&fresh, &view, ones, c, cell);
@@ -95,6 +99,7 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
         const int count = march.count;
         static const char *const fills[] = {"#fff", "#fdd0a2", "#fdae6b", "#c9dcf0"};
         const double scale = 56 / cell;
+
         fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"360\" height=\"360\">\n");
         for (int i = 0; i < count; i++) // which case each triangle is
             fprintf(file,
@@ -102,6 +107,7 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
                     "stroke=\"#bbb\"/>\n",
                     12 + scale * march.centroids[i][0], 348 - scale * march.centroids[i][1],
                     fills[(int)march.centroids[i][2]]);
+
         for (uint32_t t = 0; t < surface.triangle_count; t++) {
             fprintf(file, "<polygon fill=\"#9ab\" fill-opacity=\".35\" stroke=\"#234\" stroke-width=\".8\" points=\"");
             for (int k = 0; k < 3; k++) {
@@ -123,6 +129,7 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
         for (int k = 3; k >= 0; k--) report_row(lab->report, "%d|%s|%d", k, shapes[k], march.cases[k]);
         report_bar(lab->report, "cases", "triangles of the rarest case", march_fewest(&march), 1, INFINITY,
                    march_fewest(&fresh), "the sheet before it burns");
+
         double whole = 0; // what the bar must not pass: cells drawn whole where any of their triangles is
         for (int i = 0; i < march.count; i++) whole += march.centroids[i][2] > 0 ? cell * cell / 4 : 0;
         report_bar(lab->report, "area", "drawn area over that of eq 7", drawn_area(&surface) / march.expected, 0.999,

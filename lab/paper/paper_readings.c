@@ -35,12 +35,14 @@ static double spring_error(double w, bool divided) {
 static SingeResult centre_moves(bool with_mass, double *moved, SingeError *error) {
     SingeNetworkDef def = singe_default_network();
     SingeNetwork *network;
+
     def.particle_count = 2;
     def.positions = (const double[]){0, 0, 0, 1.2, 0, 0};
     def.inverse_masses = with_mass ? (const double[]){1, 1 / 9.0} : NULL;
     def.spring_count = 1, def.ends = (const uint32_t[]){0, 1}, def.lengths = (const double[]){1};
     SingeResult result = singe_network_create(&def, &network, error);
     if (result) return result;
+
     result = singe_network_project(network, 0, NULL);
     const double *x = singe_network_positions(network);
     *moved = fabs((x[0] + 9 * x[3]) / 10 - 0.9 * 1.2) / 0.2;
@@ -55,6 +57,7 @@ static SingeResult steps_taken(SingeSolverMethod method, int max, int *steps, Si
     SingeSim *sim;
     SingeResult result = paper_sim(PAPER_SWING, 8, &solver, 1, &sim, error);
     if (result) return result;
+
     for (*steps = 0; *steps < max && !singe_sim_step(sim); ++*steps)
         if (fabs((double)singe_sim_view(sim).position[40][2]) > 1e3) break; // thrown away
     singe_sim_destroy(sim);
@@ -87,8 +90,10 @@ static SingeResult length_after(Lab *lab, double *length, SingeError *error) {
     LabGrid grid = lab_grid(2, 2, 0.01f);
     float mass[9];
     for (int i = 0; i < 9; i++) mass[i] = 0.9f;
+
     SingeSim *sim;
     SingeSurface surface = {0};
+
     lab_sets_mass(&grid.material);
     SingeResult result = paper_burn_to(lab, &grid, mass, 0, &sim, &surface, error);
     if (!result) {
@@ -110,22 +115,27 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
     if (!result) result = steps_taken(SINGE_SOLVER_PAPER_LITERAL, 200, &literal, error);
     if (!result) result = steps_taken(SINGE_SOLVER_PAPER, 200, &ours, error);
     if (result) return result;
+
     LabGrid grid = lab_grid(6, 6, 0.01f);
     SingeSim *sim;
     if ((result = lab_build(lab, &grid, &sim, error))) return result;
+
     SingeView view = singe_sim_view(sim);
     row = row_length(&view);
     singe_sim_destroy(sim);
     grid = lab_grid(6, 1, 0.01f);
     if ((result = lab_build(lab, &grid, &sim, error))) return result;
+
     view = singe_sim_view(sim);
     const int narrow = row_length(&view);
     singe_sim_destroy(sim);
     double by_triangles, by_cells;
     if ((result = paper_longest_side(lab, true, &by_triangles, error))) return result;
     if ((result = paper_longest_side(lab, false, &by_cells, error))) return result;
+
     const double divided = spring_error(0.1, true), multiplied = spring_error(0.1, false);
     report_heads(lab->report, "where|the paper|our reading|the other reading");
+
     report_row(lab->report,
                "eq 6|l_rest|l_init, which is the same length|compounded, a spring of v = 0.9 is at %.0e of its length "
                "after 100 steps",
@@ -157,6 +167,7 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
     report_row(lab->report,
                "sections 5, 8|balls in Figs 1, 11, textures in 4; or a hot start in 1, balls in 4, 11|section 8|all of "
                "these sources are there");
+
     report_bar(lab->report, "literal_steps", "eq 9 to the letter: steps that the sheet lasts", literal, 0, 100, ours,
                "with h, as read here");
     report_bar(lab->report, "ours_steps", "as read: steps of 200", ours, 200, 200, literal, "to the letter");
@@ -169,6 +180,7 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
     report_bar(lab->report, "removal", "longest side of a cell with one corner left, over that at rest", by_cells, 0.9,
                1.1, by_triangles, "by section 6's rule of triangles");
     report_bar(lab->report, "row", "entries in a row of the matrix", row, 7, 7, narrow, "a strip one cell wide");
+
     return SINGE_OK;
 }
 
@@ -176,21 +188,25 @@ SingeResult paper_readings(Lab *lab, SingeError *error) {
     report_heads(lab->report, "where|the paper|our reading|the other reading");
     SingeMaterialDef usual = singe_default_material(), lossless, still;
     StripResult ours, hot, radiating;
+
     usual.char_yield = singe_param(0);
     usual.mass_loss = singe_param(0.25f);
     usual.heat_share = singe_param(0.2f);
     lossless = usual;
     lossless.convection = lossless.emissivity = singe_param(0);
+
     SingeResult result = burn_strip(&usual, &ours, error);
     if (!result) result = burn_strip(&lossless, &hot, error);
     still = usual;
     still.convection = singe_param(0);
     if (!result) result = burn_strip(&still, &radiating, error);
     if (result) return result;
+
     static const SpotMesh meshes[] = {{"2 : 1", {36, 72}, {.144f, .144f}, 0}, {"squares", {60, 60}, {.12f, .12f}, 0}};
     double spread[2][2];
     for (int i = 0; i < 2; i++)
         if ((result = spot_spread(lab, &meshes[i], SINGE_HEAT_UMBRELLA, spread[i], error))) return result;
+
     const double aspect = spread[0][0] / spread[0][1], square = spread[1][0] / spread[1][1];
     const double printed = mass_left(-1), read = mass_left(1);
     report_row(lab->report,
@@ -211,13 +227,16 @@ SingeResult paper_readings(Lab *lab, SingeError *error) {
                "eq 4|a straight line to m_min|slower near the end, p = 0.5|the last tenth above m_min takes 10 %% of "
                "the time by the line, %.0f %% by ours: ash is seen before it goes",
                100 * sqrt(0.1));
+
     report_bar(lab->report, "eq1_printed", "eq 1 as printed: share of mass at which fire puts itself out", printed, 0.9,
                1, read, "with the sign turned, as read here");
     report_bar(lab->report, "eq1_read", "eq 1 as read: share of mass left", read, 0.149, 0.151, printed, "as printed");
     report_bar(lab->report, "losses", "K of the hottest without losses over that with them", hot.hottest / ours.hottest,
                1.1, INFINITY, radiating.hottest / ours.hottest, "without convection alone");
+
     double stays = NAN;
     if ((result = length_after(lab, &stays, error))) return result;
+
     report_bar(lab->report, "l_rest", "eq 6 from l_init: share of its length after 200 steps at v = 0.9", stays, 0.8999,
                0.9001, pow(0.9, 200), "from the length that it has");
     report_bar(lab->report, "umbrella_long", "the umbrella on cells of 2 : 1, along x over along y", aspect, 1.2,

@@ -23,6 +23,7 @@ static bool particle_burnt(uint32_t particle) {
 /// Whether both triangles that share a side, or the line from a corner to a centre, have disappeared.
 static bool triangles_gone(const SingeView *view, const uint32_t *ends) {
     if (!particle_burnt(ends[0]) || !particle_burnt(ends[1])) return false;
+
     for (uint32_t c = 0; c < view->cell_count; c++) {
         const uint32_t *corner = view->cells[c], centre = view->vertex_count + c;
         for (int i = 0; i < 4; i++) {
@@ -35,6 +36,7 @@ static bool triangles_gone(const SingeView *view, const uint32_t *ends) {
             if (shared == 2 && left > 0) return false;
         }
     }
+
     return true;
 }
 
@@ -78,6 +80,7 @@ SingeResult paper_longest_side(Lab *lab, bool by_triangles, double *longest, Sin
     SingeNetwork *network;
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
+
     const SingeView view = singe_sim_view(sim);
     result = strip_network(&view, by_triangles, &network, error);
 
@@ -92,6 +95,7 @@ SingeResult paper_longest_side(Lab *lab, bool by_triangles, double *longest, Sin
             if (i % 3 == 2) velocity[i] -= h * gravity;
             x[i] += h * velocity[i];
         }
+
         for (int k = 0; k < SINGE_COLOUR_COUNT * STRIP_PROJECTIONS && !result; k++)
             result = singe_network_project(network, (uint32_t)k % SINGE_COLOUR_COUNT, NULL);
         for (uint32_t i = 0; i < 3 * PARTICLES; i++) velocity[i] = (x[i] - before[i]) / h;

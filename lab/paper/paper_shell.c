@@ -31,6 +31,7 @@ static Sight sight_fit(const SingeView *view, double turn, double tilt, int widt
         sight_position(&sight, view->position[i], p);
         for (int k = 0; k < 2; k++) low[k] = fmin(low[k], p[k]), high[k] = fmax(high[k], p[k]);
     }
+
     sight.x = (low[0] + high[0] - width) / 2;
     sight.y = -(low[1] + high[1] - height) / 2;
     sight.scale = fmin((width - 24) / (high[0] - low[0] + 1e-9), (height - 24) / (high[1] - low[1] + 1e-9));
@@ -41,10 +42,12 @@ static Sight sight_fit(const SingeView *view, double turn, double tilt, int widt
 static void draw_springs(FILE *file, const SingeView *view, const Sight *sight, const char *colours) {
     fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\">\n", sight->width,
             sight->height);
+
     static const char letters[] = "rgby";
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
         const char *at = colours;
         while (*at && *at != letters[c]) at++;
+
         for (uint32_t s = 0; *at && s < view->spring_count[c]; s++) {
             double a[2], b[2];
             sight_position(sight, view->position[view->springs[c][s][0]], a);
@@ -70,6 +73,7 @@ static double spring_counts(Report *report, const SingeView *view) {
     static const double expected[] = {4, 2, 2, 2};
     double worst = 0;
     if (report) report_heads(report, "springs|a cell, 60 x 60 cells|without end");
+
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
         const double count = (double)view->spring_count[c] / view->cell_count;
         if (report) report_row(report, "%s|%.3f|%.0f", names[c], count, expected[c]);
@@ -85,6 +89,7 @@ SingeResult paper_fig3(Lab *lab, SingeError *error) {
     SingeSim *sim;
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
+
     SingeView view = singe_sim_view(sim);
     Sight above = sight_fit(&view, 0, acos(-1) / 2, 330, 260), aside = sight_fit(&view, 0.5, 0.45, 460, 260);
     draw_springs(report_drawing(lab->report), &view, &above, "rgby");
@@ -94,6 +99,7 @@ SingeResult paper_fig3(Lab *lab, SingeError *error) {
                 "style=\"color:#2ca02c\">green</b> between the centres of neighbouring cells, <b "
                 "style=\"color:#d62728\">red</b> from centre to corners, <b style=\"color:#e0b000\">yellow</b> across "
                 "a cell. Centres lie one thickness above the corners' plane.");
+
     const double few = spring_counts(NULL, &view);
     singe_sim_destroy(sim);
 
@@ -101,6 +107,7 @@ SingeResult paper_fig3(Lab *lab, SingeError *error) {
     enum { LARGE = 60 };
     grid = lab_grid(LARGE, LARGE, 0.01f);
     if ((result = lab_build(lab, &grid, &sim, error))) return result;
+
     view = singe_sim_view(sim);
     const double worst = spring_counts(lab->report, &view);
     singe_sim_destroy(sim);
@@ -151,19 +158,23 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
         Play play;
         snprintf(set, sizeof set, "sheets.0.material.mass_min=%g", 1 - curl_shrink[i]);
         result = play_open(&play, lab, "fig2.yaml", (const char *const[]){set, NULL}, error);
+
         SingeView view = {0};
         if (!result) view = singe_sim_view(play.sim);
         if (!result && i == 0) {
             Sight sight = sight_fit(&view, 0, 0, 460, 60);
             draw_springs(report_drawing(lab->report), &view, &sight, "rgb");
         }
+
         if (!result) flat = fmax(flat, fabs(curl_measure(&view) / curl_beam(curl_shrink[i]) - 1));
         if (!result) result = play_until(&play, 4, error);
+
         if (!result && curl_shrink[i] > 0.04) {
             view = singe_sim_view(play.sim);
             Sight sight = sight_fit(&view, 0, 0, 400, 200);
             draw_springs(report_drawing(lab->report), &view, &sight, "rgb");
         }
+
         if (!result) {
             view = singe_sim_view(play.sim);
             measured[i] = curl_measure(&view);
@@ -177,6 +188,7 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
 
         play_close(&play);
     }
+
     if (result) return result;
     report_text(lab->report,
                 "A strip of %g mm thickness in cells of %g mm, seen from the side: at rest, and with its blue layer 5 "
@@ -186,11 +198,13 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
     report_heads(lab->report, "shrunk by %|curvature 1/m|shell, exact|beam, e/((1-e)t)");
     for (int i = 0; i < CURL_CASES; i++)
         report_row(lab->report, "%.0f|%.2f|%.2f|%.2f", percent[i], measured[i], exact[i], beam[i]);
+
     Plot plot = {.title = "Curvature by shrinkage of one layer", .x_label = "shrunk by, %", .y_label = "1/m"};
     plot_add(&plot, (PlotLine){"two-layer beam", "#999", percent, beam, CURL_CASES, false, true});
     plot_add(&plot, (PlotLine){"shell, exact", "#2166ac", percent, exact, CURL_CASES, false, false});
     plot_add(&plot, (PlotLine){"simulated", "#b2182b", percent, measured, CURL_CASES, true, false});
     report_plot(lab->report, &plot);
+
     report_bar(lab->report, "exact", "largest difference from the shell's exact curvature", worst, 0, 0.02, apart,
                "that of a shell whose red springs keep their length");
     report_bar(lab->report, "beam", "largest difference from the two-layer beam", off, 0, 0.15, flat,
@@ -245,9 +259,11 @@ static void state_table(Lab *lab, const double *ratio, const double *cut, double
     static const char *const states[] = {"shrunk", "shrunk", "partly burnt", "partly burnt", "burnt"};
     *worst = *worst_cut = 0;
     report_heads(lab->report, "case|m_0|m_1|state|length|paper|cut at t|eq 7");
+
     for (int i = 0; i < STATES; i++) {
         char length[40] = "removed|removed", cuts[40] = "-|-";
         if (ratio[i] >= 0) snprintf(length, sizeof length, "%.2f %%|%.1f %%", 100 * ratio[i], 100 * state_length[i]);
+
         if (state_is_cut(i)) {
             const double t = state_left(i, 0) / (state_left(i, 0) - state_left(i, 1));
             if (ratio[i] >= 0) snprintf(cuts, sizeof cuts, "%.4f|%.4f", cut[i], t);
@@ -269,6 +285,7 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
     for (int i = 0; i < STATES; i++)
         for (int k = 0; k < 2; k++) mass[state_column(i) + k * STATE_COLUMNS] = (float)fmin(state_mass[i][k], 0.999999);
     lab_sets_mass(&grid.material);
+
     SingeSim *sim;
     SingeSurface surface = {0};
     SingeResult result = paper_burn_to(lab, &grid, mass, state_loss, &sim, &surface, error);
@@ -293,6 +310,7 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
         fprintf(file,
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"560\" height=\"150\" font-family=\"sans-serif\" "
                 "font-size=\"12\">\n");
+
         for (int i = 0; i < STATES; i++) {
             double x = 60 + 110 * i, length = ratio[i] < 0 ? 0 : 100 * ratio[i], end = cut[i] < 0 ? 1 : cut[i];
             fprintf(file, "<line x1=\"%g\" x2=\"%g\" y1=\"120\" y2=\"20\" stroke=\"#ddd\" stroke-width=\"6\"/>\n", x,
@@ -303,6 +321,7 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
                         "stroke-dasharray=\"3 3\"/><line x1=\"%g\" x2=\"%g\" y1=\"120\" y2=\"%.1f\" stroke=\"#1f77b4\" "
                         "stroke-width=\"4\"/>\n",
                         x, x, 120 - length, x, x, 120 - length * end);
+
             for (int k = 0; k < 2; k++)
                 fprintf(file,
                         "<circle cx=\"%g\" cy=\"%.1f\" r=\"6\" fill=\"%s\" stroke=\"#333\"/><text x=\"%g\" "

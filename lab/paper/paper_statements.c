@@ -110,6 +110,7 @@ enum { COUNT = sizeof statements / sizeof *statements };
 SingeResult paper_statements(Lab *lab, SingeError *error) {
     int counts[VERDICTS] = {0}, taken = 0, holding = 0;
     report_heads(lab->report, "section|the paper states|verdict|measure|is|found|fails for");
+
     for (const Statement *s = statements; s < statements + COUNT; s++) {
         const ReportTaken *found = report_find(lab->report, s->item, s->measure);
         const bool fails = found && found->verdict == REPORT_FAILS;
@@ -128,6 +129,7 @@ SingeResult paper_statements(Lab *lab, SingeError *error) {
         "ours. A statement's measure has its bar with its experiment: of a refuted one it is what refutes it.",
         counts[REPRODUCED], counts[CORRECTED], counts[CHOICE], counts[NOT_REPRODUCED], counts[NOT_FOLLOWED],
         counts[REFUTED], counts[OURS]);
+
     if (taken)
         report_bar(lab->report, "measures", "share of these measures that hold, of those taken",
                    (double)holding / taken, 1, 1, (double)(holding - 1) / taken, "one that does not");

@@ -17,6 +17,7 @@ static SingeResult state_build(SingeSim *sim, PaperState state, int n) {
     def.material.thickness = singe_param(1e-3f);
     def.material.drag = def.material.damping = singe_param(0);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) def.material.compliance[c] = singe_param(0); // eq 16 has none
+
     if (state == PAPER_SHRINK) {
         // burns at one rate, down to 0.8 of its mass in half a second; lengths follow the mass, and nothing is removed
         const float rate = 4e-3f; // 1/(K s), at 100 K above ignition
@@ -40,9 +41,11 @@ static SingeResult state_build(SingeSim *sim, PaperState state, int n) {
     SingeResult result = sheet_add(sim, &def, n, 1, false, &sheet);
     if (!result) result = singe_sim_commit(sim);
     if (result || state != PAPER_SWING) return result;
+
     SingePinDef pin = singe_default_pin();
     const uint32_t corners[] = {0, (uint32_t)n};
     SingePinId id;
+
     pin.sheet = sheet;
     pin.vertex_count = 2;
     pin.vertices = corners;
@@ -57,6 +60,7 @@ SingeResult paper_sim(PaperState state, int cells, const SingeSolverDef *solver,
     def.thread_count = threads;
     def.air_density = 0;
     if (state == PAPER_SHRINK) def.gravity[2] = 0;
+
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
     result = state_build(*sim, state, cells);
@@ -75,6 +79,7 @@ SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, d
     double *lengths = malloc(springs * sizeof *lengths);
     uint32_t(*ends)[2] = malloc(springs * sizeof *ends), *sets = malloc(springs * sizeof *sets);
     SingeResult result = SINGE_ERROR_MEMORY;
+
     *network = NULL;
     if (positions && inverse_masses && lengths && ends && sets) {
         // the particles' positions and masses after eq 8 and 9
@@ -95,6 +100,7 @@ SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, d
                 lengths[k] = (double)view.spring_length[c][i];
                 sets[k] = one_set ? 0 : c;
             }
+
         def.particle_count = view.particle_count;
         def.positions = positions;
         def.inverse_masses = inverse_masses;

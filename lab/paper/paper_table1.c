@@ -30,6 +30,7 @@ static SingeResult table1_run(bool swapped, double ours[2][STEPS + 1], double *e
 
     if (result) return result;
     const double *x = singe_network_positions(network) + 3;
+
     *worst = 0;
     for (int step = 0; step < STEPS && !result; step++)
         for (uint32_t set = 0; set < 2 && !result; set++) {
@@ -37,6 +38,7 @@ static SingeResult table1_run(bool swapped, double ours[2][STEPS + 1], double *e
             ours[set][step + 1] = floor(1e4 * x[0] + 1e-9) / 1e4;
             *worst = fmax(*worst, fabs(ours[set][step + 1] - table1[step][set]));
         }
+
     *end = x[0];
     singe_network_destroy(network);
     return result;
@@ -47,6 +49,7 @@ SingeResult paper_table1(Lab *lab, SingeError *error) {
     SingeResult result = table1_run(true, unused, &end, &other, error);
     if (!result) result = table1_run(false, ours, &end, &worst, error);
     if (result) return result;
+
     for (int step = 0; step < STEPS; step++)
         for (int set = 0; set < 2; set++) paper[set][step + 1] = table1[step][set];
     report_heads(lab->report, "step|S_G here|S_G paper|S_B here|S_B paper");
@@ -60,6 +63,7 @@ SingeResult paper_table1(Lab *lab, SingeError *error) {
     const double at[2] = {0, x};
     fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"420\" height=\"90\" font-size=\"12\" "
                   "font-family=\"sans-serif\">\n");
+
     for (int k = 0; k < 2; k++) {
         double y = 25 + 40 * k, p = 210 + 150 * at[k];
         fprintf(file,
@@ -77,6 +81,7 @@ SingeResult paper_table1(Lab *lab, SingeError *error) {
     plot_add(&plot, (PlotLine){"paper's digits", "#111", NULL, paper[0], STEPS + 1, true, false});
     plot_add(&plot, (PlotLine){"", "#111", NULL, paper[1], STEPS + 1, true, false});
     report_plot(lab->report, &plot);
+
     report_text(lab->report,
                 "The paper's digits are cut, not rounded, and come out when the system takes the two fixed points for "
                 "free and they are put back after each projection.");

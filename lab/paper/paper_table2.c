@@ -30,6 +30,7 @@ static SingeResult cost_measure(int cells, const SingeSolverDef *solver, int thr
     SingeSim *sim;
     SingeResult result = paper_sim(PAPER_SWING, cells, solver, threads, &sim, error);
     if (result) return result;
+
     double times[TIMED_STEPS];
     SingeTimers first = singe_sim_timers(sim), before = first;
     const int warm = cells < LARGE_CELLS ? WARM_STEPS : LARGE_STEPS;
@@ -41,6 +42,7 @@ static SingeResult cost_measure(int cells, const SingeSolverDef *solver, int thr
         if (step + 1 == warm) first = now;
         before = now;
     }
+
     if (result) *error = *singe_sim_error(sim);
     *cost = (Cost){numbers_median(times, timed),
                    (double)(before.projection_iterations - first.projection_iterations) / timed,
@@ -74,14 +76,17 @@ static SingeResult capped_step(PaperState state, int cells, int steps, CappedSte
     SingeNetwork *network;
     SingeResult result = paper_sim(state, cells, &solver, 1, &sim, error);
     if (result) return result;
+
     result = lab_steps(sim, steps, error);
     if (!result)
         result = paper_network(sim, state, false, singe_default_network().regularisation, CAP, &network, error);
+
     const SingeView view = singe_sim_view(sim);
     double lengths[SINGE_COLOUR_COUNT] = {0};
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t i = 0; i < view.spring_count[c]; i++) lengths[c] += pow((double)view.spring_length[c][i], 2);
     singe_sim_destroy(sim);
+
     *capped = (CappedStep){0, 7};
     for (int p = 0; p < 7 && !result; p++) {
         bool below = true;
@@ -93,6 +98,7 @@ static SingeResult capped_step(PaperState state, int cells, int steps, CappedSte
         }
         if (below) capped->projections = fmin(capped->projections, p + 1);
     }
+
     if (result && error->code != result) *error = (SingeError){.code = result, .element = -1};
     if (!result) singe_network_destroy(network);
     return result;
@@ -118,12 +124,15 @@ static SingeResult table2_row(Lab *lab, const Table2Row *row, Table2 *table, Sin
     if (!result) result = cost_measure(row->cells, &full_solver, 1, &full, error);
     if (!result) result = cost_measure(row->cells, &strand_solver, 1, &strand, error);
     if (result) return result;
+
     const int i = table->count++;
     result = capped_step(PAPER_SHRINK, row->cells, 0, &table->rest, error);
     if (!result) result = capped_step(PAPER_SWING, row->cells, LARGE_STEPS, &table->moving, error);
     if (result) return result;
+
     table->capped[i] = table->moving.iterations;
     double springs = table->springs[i] = 10.0 * row->cells * row->cells;
+
     table->early[i] = early.ms;
     table->full[i] = full.ms;
     table->strand[i] = strand.ms;
@@ -131,19 +140,23 @@ static SingeResult table2_row(Lab *lab, const Table2Row *row, Table2 *table, Sin
     table->early_iterations[i] = early.iterations;
     table->paper[0][i] = row->early;
     table->paper[1][i] = row->full;
+
     report_row(lab->report, "%.0f|%.2f|%.2f|%.4f|%.2f|%.2f|%.5f|%.0f|%.3f|%.0f|%.1e|%.1e", springs, row->early,
                row->full, row->full / springs, early.ms, full.ms, full.ms / springs, full.iterations, strand.ms,
                full.ms / strand.ms, full.strain, strand.strain);
+
     return SINGE_OK;
 }
 
 SingeResult paper_table2(Lab *lab, SingeError *error) {
     Table2 table = {0};
     SingeResult result = SINGE_OK;
+
     report_text(lab->report,
                 "ms a step: 7 projections of all colours, h = 2 ms, a swinging sheet, one thread. (b) with early exit, "
                 "(c) fully iterated, (c)/(a) ms a spring; CG: iterations a step; the paper's columns, then the paper's "
                 "solver here, then strands. Strain: mean over the mesh's edges at the end.");
+
     report_heads(lab->report,
                  "springs|paper (b)|paper (c)|(c)/(a)|here (b)|here (c)|(c)/(a)|CG|strand|(c)/strand|strain "
                  "paper|strain strand");
@@ -177,6 +190,7 @@ SingeResult paper_table2(Lab *lab, SingeError *error) {
         table.full[last] / table.full[0] * table.springs[0] / table.springs[last],
         table.paper[1][last] / table.paper[1][0] * table.springs[0] / table.springs[last], CAP, table.capped[0],
         table.capped[last], table.rest.projections, table.moving.projections);
+
     report_bar(lab->report, "iterations",
                "iterations a step grow with the springs to the power, on top of their own time", iterations, 0.2, 1,
                paper - 1, "what the paper's (c)/(a) leaves for them");
@@ -190,5 +204,6 @@ SingeResult paper_table2(Lab *lab, SingeError *error) {
     report_bar(lab->report, "strand_gain", "(c) over strands at the largest size",
                table.full[last] / table.strand[last], 10, INFINITY, table.full[last] / table.early[last],
                "(c) over (b)");
+
     return SINGE_OK;
 }

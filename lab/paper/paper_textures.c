@@ -16,6 +16,7 @@ SingeResult paper_heat(Lab *lab, SingeError *error) {
     Look looks[RUNS] = {{.left = 0}};
     SingeResult result = SINGE_OK;
     report_pictures(lab->report, 5);
+
     for (int plain = 0; plain < RUNS && !result; plain++) { // the second does not shrink
         Play play;
         const char *sets[] = {lab->quick ? "sheets.0.grid.cells=[30, 42]" : "",
@@ -35,6 +36,7 @@ SingeResult paper_heat(Lab *lab, SingeError *error) {
 
         play_close(&play);
     }
+
     if (result) return result;
     report_text(lab->report, "%.0f %% has burnt after 1.6 s.", 100 * burnt);
     report_bar(lab->report, "correlation", "correlation of the texture with the temperature after 0.3 s",
@@ -70,9 +72,11 @@ SingeResult paper_alpha(Lab *lab, SingeError *error) {
             left = fmax(left, -x);
             right = fmax(right, x);
         }
+
         if (!result) ratio[even] = right > 0 ? left / right : (double)NAN;
         play_close(&play);
     }
+
     if (result) return result;
     report_text(lab->report, "Speed goes with the root of the diffusivity, which is four times as high on the left.");
     report_bar(lab->report, "ratio", "way of the fire to the left over that to the right", ratio[0], 1.2, 2.2, ratio[1],
@@ -89,6 +93,7 @@ SingeResult paper_crossing(Lab *lab, SingeError *error) {
     Look looks[RUNS] = {{.left = 0}};
     SingeResult result = SINGE_OK;
     report_pictures(lab->report, RUNS);
+
     for (int i = 0; i < RUNS && !result; i++) {
         Play play;
         const char *laid[] = {
@@ -99,14 +104,17 @@ SingeResult paper_crossing(Lab *lab, SingeError *error) {
             result = play_until(&play, 1.2 + 0.4 * k, error);
             if (!result) result = look_take(&play, 0, &looks[i], error);
         }
+
         if (!result) result = play_shoot(&play, names[i], error);
         play_close(&play);
     }
+
     if (result) return result;
     report_heads(lab->report, "layers|cells turned over %|normal at 3 to 15 mm, degrees|degrees from cell to cell");
     for (int i = 0; i < RUNS; i++)
         report_row(lab->report, "%s|%.1f|%.2f|%.2f", names[i], 100 * looks[i].inverted, look_wrinkles(&looks[i]),
                    looks[i].bend);
+
     const double apart = look_wrinkles(&looks[1]), added = look_wrinkles(&looks[0]) / apart;
     report_bar(lab->report, "turned", "share of cells turned over where layers may cross", looks[0].inverted, 0.01, 1,
                looks[1].inverted, "where they are kept apart");

@@ -59,9 +59,11 @@ static SingeResult whole_run(Lab *lab, const Figure *figure, int system, const c
     // runs until the marks are reached; the failure of a system is a result, not an error
     for (double time = 0; run->reached < MARKS && time < figure->ends[system] && !result;) {
         if (play_until(&play, time += 0.05, error)) break;
+
         const SingeStats stats = singe_sim_stats(play.sim);
         if (!(stats.burnt_fraction >= figure->marks[run->reached])) continue;
         run->times[run->reached++] = time;
+
         const SingeView view = singe_sim_view(play.sim);
         for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
             // the mean over the springs that are left, against their targets
@@ -79,6 +81,7 @@ static SingeResult whole_run(Lab *lab, const Figure *figure, int system, const c
 
         result = look_take(&play, 0, &run->look, error);
         if (result || !drawn || run->reached == 1) continue;
+
         char caption[100];
         snprintf(caption, sizeof caption, "%s, %s, %.0f %% burnt, %.1f s", figure->name, names[system],
                  100 * stats.burnt_fraction, time);
@@ -115,6 +118,7 @@ SingeResult paper_whole(Lab *lab, SingeError *error) {
     static const char *const no_shrinkage[] = {"sheets.0.material.shrink_front=0", "sheets.0.material.shrink_back=0",
                                                NULL};
     SingeResult result = SINGE_OK;
+
     report_pictures(lab->report, 4);
     for (int f = 0; f < FIGURES && !result; f++)
         for (int s = 0; s < SYSTEMS && !result; s++) result = whole_run(lab, &figures[f], s, NULL, &runs[f][s], error);
@@ -127,6 +131,7 @@ SingeResult paper_whole(Lab *lab, SingeError *error) {
     report_heads(lab->report,
                  "|marks|s at the last|hottest K|curl, median|90 of 100|slope, median|area|strain, mean %|p99 "
                  "%|cells turned over %|ms a step");
+
     for (int f = 0; f < FIGURES; f++)
         for (int s = 0; s < SYSTEMS; s++) {
             const Run *run = &runs[f][s];
@@ -156,6 +161,7 @@ SingeResult paper_whole(Lab *lab, SingeError *error) {
         "figures do. It does not keep lengths: seven projections of colours that contradict each other leave the "
         "mean strain as shown, and much of the sheet has its layers on the wrong sides, as section 8.2 says. "
         "Without losses the sheet gets hotter than any fire of paper.");
+
     report_bar(lab->report, "reached", "share of the marks that the paper's system reaches",
                (double)reached / (FIGURES * MARKS), 1, 1, (double)literal.reached / MARKS, "to its letter, Fig 4");
     report_bar(lab->report, "strain_all", "Fig 1, mean strain of all four colours, the least of the orders of colours",
@@ -179,5 +185,6 @@ SingeResult paper_whole(Lab *lab, SingeError *error) {
     report_bar(lab->report, "dynamics", "share of a step's time in dynamics, the paper's system, the least",
                over_figures(runs, PAPERS, OF(dynamics), false), 0.5, 1, over_figures(runs, PAPERS, OF(heat), true),
                "in heat, the most");
+
     return SINGE_OK;
 }

@@ -69,11 +69,13 @@ static SingeResult cone_burn(Lab *lab, const SingeMaterialDef *cotton, const Boa
     SingeSim *sim;
     SingeSourceDef source = singe_default_source();
     SingeSourceId id;
+
     // what the sheet absorbs of the heater's radiation is its emissivity at the heater's temperature: 0.88 at 600 K, 0.77
     // at 1200 K (FSRI); the heater is black and fills 0.8 of the view
     const double heater = pow(1e3 * kilowatt / (0.8 * STEFAN_BOLTZMANN), 0.25);
     Cone cone = {cotton, board, {0}, 1e3 * kilowatt * (0.88 - 0.11 * (heater - 600) / 600)};
     for (int k = 0; k < BOARD_CELLS; k++) cone.temperature[k] = ambient;
+
     grid.material = *cotton;
     grid.material.mass_loss = singe_param(0);                         // burnt or not, it stays on its plate
     grid.material.thickening = 1;                                     // no front
@@ -81,10 +83,12 @@ static SingeResult cone_burn(Lab *lab, const SingeMaterialDef *cotton, const Boa
     source.kind = SINGE_SOURCE_CALLBACK;
     source.callback = cone_heats;
     source.callback_context = &cone;
+
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
     if ((result = singe_sim_add_source(sim, &source, &id))) *error = *singe_sim_error(sim);
     *run = (ConeRun){.ignition = NAN};
+
     const double step = (double)grid.time_step, grammage = (double)cotton->grammage.value;
     double before = 1, window = 0;
     for (double time = 0; time < 40 && !result; time += step) {
@@ -101,13 +105,16 @@ static SingeResult cone_burn(Lab *lab, const SingeMaterialDef *cotton, const Boa
                 flux[k] = board->conductivity / board_cell * (cone.temperature[k - 1] - cone.temperature[k]);
             for (int k = 0; k < BOARD_CELLS; k++) cone.temperature[k] += per_cell * (flux[k] - flux[k + 1]);
         }
+
         double mass = 0;
         for (uint32_t i = 0; i < view.particle_count; i++) mass += (double)view.mass[i] / view.particle_count;
         if (isnan(run->ignition) && mass < 0.9999) run->ignition = time;
+
         const double heat = before > (double)cotton->char_yield.value ? (double)cotton->heat_of_combustion.value
                                                                       : (double)cotton->char_heat.value;
         const double joule = (before - mass) * grammage * heat; // per square metre
         before = mass;
+
         const int second = isnan(run->ignition) ? 0 : (int)lround(time - run->ignition);
         if (second >= SECONDS) break;
         run->release[second] += 1e-3 * joule / (second ? 1 : 0.5);
@@ -115,6 +122,7 @@ static SingeResult cone_burn(Lab *lab, const SingeMaterialDef *cotton, const Boa
         window += (1e-3 * joule / step - window) * step / 0.25; // of the calorimeter's time between two readings
         run->peak = fmax(run->peak, window);
     }
+
     singe_sim_destroy(sim);
     return result;
 }
@@ -128,6 +136,7 @@ SingeResult validate_cone(Lab *lab, SingeError *error) {
     SingeResult result = SINGE_OK;
     report_heads(lab->report,
                  "on|kW/m2|ignites after s|measured s|here over measured|peak kW/m2|measured|here over measured");
+
     for (int b = 0; b < BOARDS; b++)
         for (int i = 0; i < FLUXES && !result; i++) {
             ConeRun *run = &all[b][i];
@@ -138,6 +147,7 @@ SingeResult validate_cone(Lab *lab, SingeError *error) {
                            run->ignition, measured[i], run->ignition / measured[i], run->peak, cone_peak[i],
                            run->peak / cone_peak[i]);
         }
+
     SingeMaterialDef fierce = cotton;
     fierce.air_supply = singe_param(INFINITY);
     ConeRun most;
@@ -148,10 +158,12 @@ SingeResult validate_cone(Lab *lab, SingeError *error) {
         seconds[i] = i;
         total += 1e-3 * cone_release[i] * (i && i < SECONDS - 1 ? 1 : 0.5);
     }
+
     Plot plot = {.title = "Cotton under 50 kW/m2", .x_label = "s after ignition", .y_label = "kW/m2"};
     plot_add(&plot, (PlotLine){"FSRI", "#111", seconds, cone_release, SECONDS, true, false});
     plot_add(&plot, (PlotLine){"here", "#b2182b", seconds, runs[1].release, SECONDS, false, false});
     report_plot(lab->report, &plot);
+
     report_text(
         lab->report,
         "Nothing was set by these runs but the sheet's mass per area (1.06 g on 88.4 cm²). Its rates are those of a "
@@ -159,10 +171,12 @@ SingeResult validate_cone(Lab *lab, SingeError *error) {
         "reaches it: a whole sheet that is heated at once burns by <code>air_supply</code>, on its one open "
         "face. Times to ignition depend on the board as much as on the sheet; which one it was is not "
         "reported.");
+
     static const char *const names[FLUXES] = {"ignition_25", "ignition_50", "ignition_75"};
     for (int i = 0; i < FLUXES; i++)
         report_bar(lab->report, names[i], "time to ignition over the measured one", runs[i].ignition / measured[i],
                    VALIDATE_LOW, VALIDATE_HIGH, all[AIR][i].ignition / measured[i], "without the board");
+
     const double power = log(runs[2].ignition / runs[0].ignition) / log(cone_flux[2] / cone_flux[0]);
     report_measure(lab->report, "power", "exponent of the time to ignition over the flux, less the measured one",
                    power - log(measured[2] / measured[0]) / log(cone_flux[2] / cone_flux[0]), -0.25, 0.25);

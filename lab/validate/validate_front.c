@@ -29,10 +29,12 @@ SingeResult validate_front(Lab *lab, SingeError *error) {
     options.quick = lab->quick;
     options.material_count = materials.count;
     options.materials = materials.items;
+
     SingeResult result = bench_front(&options, &table, error);
     if (!result) {
         report_heads(lab->report,
                      "material|g/m2|direction|cell mm|step ms|mm/s|sources|change %|hottest C|basis|finding");
+
         for (int row = 0; row < table.row_count; row++) {
             const BenchValue *speed = cell(&table, row, "speed_mm_s"), *hottest = cell(&table, row, "hottest_C");
             const char *material = cell(&table, row, "material")->text,
@@ -109,6 +111,7 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
     double ours[SHEETS], formula[SHEETS], ratio = 0, spread = 0;
     SingeResult result = SINGE_OK;
     report_heads(lab->report, "um|g/m2|BASS-II mm/s|de Ris|here|here over BASS-II");
+
     for (int i = 0; i < SHEETS && !result; i++) {
         SingeMaterialDef material = singe_default_material();
         StripResult strip;
@@ -122,6 +125,7 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
         material.mass_loss = singe_param(0.1f);
         material.char_yield = singe_param(0);
         material.heat_share = singe_param(0.2f); // no char: one reaction
+
         StripSetup setup = narrow_strip(lab, &material, 0.12f);
         setup.time_step *= (float)(bass_um[i] / 100); // in proportion to the grammage, as the fire is
         result = strip_burn(&setup, &strip, error);
@@ -132,6 +136,7 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
         const double um = bass_um[i];
         double flame = (pmma_flame - pmma_vapour) / (pmma_vapour - ambient);
         const double ris = 1e3 * sqrt(2) * gas_k * flame / (pmma_rho * pmma_c * um / 2 * 1e-6);
+
         ours[i] = 1e3 * strip.speed;
         formula[i] = ris;
         report_row(lab->report, "%.0f|%.0f|%.3g|%.3g|%.3g|%.2f", bass_um[i], 1e3 * (double)material.grammage.value,
@@ -146,6 +151,7 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
     plot_add(&plot, (PlotLine){"de Ris", "#999", bass_um, formula, SHEETS, false, true});
     plot_add(&plot, (PlotLine){"here", "#b2182b", bass_um, ours, SHEETS, false, false});
     report_plot(lab->report, &plot);
+
     const double measured = slope(bass_um, bass_mm_s, SHEETS), here = slope(bass_um, ours, SHEETS);
     report_text(lab->report,
                 "A prediction: density, specific heat, vaporisation temperature (670 K) and heat of combustion are "
@@ -153,6 +159,7 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
                 "speed goes with the thickness to the power %.2f; theory and this model have -1, and so are too fast "
                 "where it is thick. de Ris with gas of %.2g W/(m K), air at 670 K, and a flame of %.0f K.",
                 measured, gas_k, pmma_flame);
+
     report_measure(lab->report, "power", "exponent of the speed over the thickness; -1 by theory", here, -1.05, -0.95);
     report_measure(lab->report, "power_measured", "the same exponent, minus the measured one", here - measured, -0.25,
                    0.25);
@@ -174,6 +181,7 @@ static SingeResult oxygen_least(Lab *lab, const SingeMaterialDef *usual, bool co
     const double cold = 293.15 - (double)usual->ignition_temperature.value; // K
     double low = 0;                                                         // it goes out
     SingeResult result = SINGE_OK;
+
     *least = 20.95;
     for (int i = 0; i < 6 && !result; i++) {
         // where air limits a rate, by rate_ceiling and char_rate, the rate is in proportion to oxygen; the heat that a
@@ -182,28 +190,33 @@ static SingeResult oxygen_least(Lab *lab, const SingeMaterialDef *usual, bool co
         const double flame = (cold + flame_rise(0.232 * share)) / (cold + flame_rise(0.232));
         SingeMaterialDef material = *usual;
         StripResult strip;
+
         if (cooler) material.heat_share.value *= (float)fmax(flame, 0);
         material.rate_ceiling.value *= (float)share;
         material.char_rate = singe_param((float)(1.6 * share)); // the middle of its patches
         const StripSetup setup = narrow_strip(lab, &material, 0.08f);
         result = strip_burn(&setup, &strip, error);
+
         const bool burns = strip.end == STRIP_THROUGH;
         *(burns ? least : &low) = oxygen;
         if (!result)
             report_row(lab->report, "%s|%.1f|%.2f|%.3g|%.0f|%s", cooler ? "cooler" : "as hot", oxygen,
                        cooler ? flame : 1, 1e3 * strip.speed, strip.hottest - 273.15, burns ? "burns" : "goes out");
     }
+
     return result;
 }
 
 SingeResult validate_oxygen(Lab *lab, SingeError *error) {
     SingeMaterialDef cotton = singe_default_material();
     if (singe_material_preset("cotton", &cotton, error)) return error->code;
+
     double least, as_hot;
     report_heads(lab->report, "flame|oxygen %|its heat, of that in air|mm/s|hottest C|");
     SingeResult result = oxygen_least(lab, &cotton, true, &least, error);
     if (!result) result = oxygen_least(lab, &cotton, false, &as_hot, error);
     if (result) return result;
+
     report_text(
         lab->report,
         "Oxygen is no quantity of the model. Here it scales what air limits, and the heat that the flame gives "
@@ -223,12 +236,14 @@ static SingeResult preignition(Lab *lab, const SingeMaterialDef *material, doubl
     SingeSim *sim;
     SingeSourceDef source = singe_default_source();
     SingeSourceId id;
+
     grid.material = *material;
     grid.material.convection = grid.material.emissivity = singe_param(0);
     grid.material.thickening = 1; // no front
     source.kind = SINGE_SOURCE_TEXTURE;
     source.texture = (SingeTexture){1, 1, &white};
     source.flux = 20e3f; // into either layer
+
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
 
@@ -254,12 +269,14 @@ static SingeResult quenching(const Lab *lab, const SingeMaterialDef *material, d
         SingeSim *sim;
         SingeSourceDef heater = singe_default_source(), rain = heater;
         SingeSourceId id;
+
         grid.material = *material;
         grid.material.moisture = singe_param(1e-3f); // else it takes up none
         grid.material.thickening = 1;                // no front
         heater.kind = SINGE_SOURCE_TEXTURE;
         heater.texture = (SingeTexture){1, 1, &white};
         heater.flux = 20e3f; // into either layer
+
         rain.kind = SINGE_SOURCE_WATER;
         rain.texture = heater.texture;
         rain.wetting = (float)(2 * flux);
@@ -280,10 +297,12 @@ static SingeResult quenching(const Lab *lab, const SingeMaterialDef *material, d
             result = lab_steps(sim, steps, error);
             burnt = singe_sim_stats(sim).burnt_fraction;
         }
+
         *(burnt > 0.5 ? &low : least) = flux;
         if (result) *error = *singe_sim_error(sim);
         singe_sim_destroy(sim);
     }
+
     return result;
 }
 
@@ -297,8 +316,10 @@ SingeResult validate_damp(Lab *lab, SingeError *error) {
     enum { COUNT = sizeof shares / sizeof *shares, ROOM = 2, DAMP = 4, WET = 5 };
     SingeMaterialDef cotton = singe_default_material();
     if (singe_material_preset("cotton", &cotton, error)) return error->code;
+
     double speed[COUNT], dry_heat = 0, fastest = 0, top = 0, added = 0, worst = 1;
     report_heads(lab->report, "water, % of the mass|mm/s||heat until it ignites, kJ/kg|of fine fuels|here over them");
+
     for (int k = 0; k < COUNT; k++) {
         StripResult strip;
         double heat;
@@ -340,6 +361,7 @@ SingeResult validate_damp(Lab *lab, SingeError *error) {
         "Water that falls on a sheet that burns all over puts it out from %.0f g/(m2 s) on either face. Burning "
         "surfaces without heat from elsewhere take 12.9 (Hansen 2012, in Penney, Habibi and Cattani 2019).",
         1e3 * water);
+
     const double slowing = speed[DAMP] / speed[ROOM] / exp(-3.22 * (double)(shares[DAMP] - shares[ROOM]));
     report_measure(lab->report, "slowing", "speed with 25 % of water over that with 5 %, over excelsior's .53", slowing,
                    0.8, 1.2);
@@ -348,9 +370,11 @@ SingeResult validate_damp(Lab *lab, SingeError *error) {
     report_measure(lab->report, "preignition", "all heat until ignition over fine fuels', where it is farthest off",
                    worst, 0.8, 1.2);
     report_measure(lab->report, "limit", "cotton with 34 % of water burns through; 1: it does", speed[WET] > 0, 1, 1);
+
     report_bar(lab->report, "quenching",
                "least water that puts out a sheet that burns all over, over 12.9 g/(m2 s) on a burning face",
                water / 12.9e-3, 0.8, 1.2, fiercely / 12.9e-3, "with as much air as in a front");
     report_measure(lab->report, "fastest", "water with which the front is fastest, %; 2 was measured", fastest, 1, 3);
+
     return SINGE_OK;
 }

@@ -82,6 +82,7 @@ ReportGrade validate_grade(const char *item, const char *measure) {
 SingeResult validate_grades(Lab *lab, SingeError *error) {
     int counts[GRADES] = {0}, missing = 0;
     report_heads(lab->report, "item|measure|grade|is|bar|compared with");
+
     for (const Graded *g = graded; g < graded + COUNT; g++) {
         const ReportTaken *taken = report_find(lab->report, g->item, g->measure);
         counts[g->grade]++;

@@ -19,6 +19,7 @@ static SingeResult slab_error(Lab *lab, int cells, int steps, double *off, Singe
     LabGrid grid = warm_grid(cells, 3, (float)slab / (float)cells, SINGE_HEAT_SURFACE);
     grid.field = slab_mode;
     grid.time_step = (float)(seconds / steps);
+
     SingeSim *sim;
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
@@ -32,6 +33,7 @@ static SingeResult slab_error(Lab *lab, int cells, int steps, double *off, Singe
         sum += area * c * ((double)view.temperature[v] - WARM_MEAN);
         norm += area * c * c;
     }
+
     *off = fabs(sum / norm / (WARM_AMPLITUDE * exp(-WARM_DIFFUSIVITY * k * k * seconds)) - 1);
     singe_sim_destroy(sim);
     return result;
@@ -49,8 +51,10 @@ SingeResult validate_heat(Lab *lab, SingeError *error) {
         size[0][i] = 1e3 * slab / cells;
         size[1][i] = 4e3 / steps;
     }
+
     if (result) return result;
     report_heads(lab->report, "cells mm|error|order|step ms|error|order");
+
     double order[2][CASES] = {{NAN, NAN, NAN, NAN}, {NAN, NAN, NAN, NAN}}, min[2] = {INFINITY, INFINITY};
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < 2 && i > 0; k++) {
@@ -70,6 +74,7 @@ SingeResult validate_heat(Lab *lab, SingeError *error) {
                  .log_y = true};
     double second[CASES];
     for (int i = 0; i < count; i++) second[i] = off[0][0] * pow(size[0][i] / size[0][0], 2);
+
     plot_add(&plot, (PlotLine){"second order", "#999", size[0], second, count, false, true});
     plot_add(&plot, (PlotLine){"surface", "#2166ac", size[0], off[0], count, true, false});
     report_plot(lab->report, &plot);
@@ -96,6 +101,7 @@ SingeResult validate_umbrella(Lab *lab, SingeError *error) {
     double surface[CASES][2], umbrella[CASES][2], off = 0;
     SingeResult result = SINGE_OK;
     report_heads(lab->report, "mesh|surface, x|y|umbrella, x|y|umbrella by formula, x|y");
+
     for (int i = 0; i < CASES && !result; i++) {
         result = spot_spread(lab, &meshes[i], SINGE_HEAT_SURFACE, surface[i], error);
         if (!result) result = spot_spread(lab, &meshes[i], SINGE_HEAT_UMBRELLA, umbrella[i], error);
@@ -106,6 +112,7 @@ SingeResult validate_umbrella(Lab *lab, SingeError *error) {
                        umbrella[i][0], umbrella[i][1], umbrella_factor(dx, dy), umbrella_factor(dy, dx));
         for (int k = 0; k < 2; k++) off = fmax(off, fabs(surface[i][k] - 1));
     }
+
     if (result) return result;
     report_text(lab->report,
                 "The diffusivity at which a hot spot spreads, over the specified alpha. On squares the umbrella has "
@@ -115,5 +122,6 @@ SingeResult validate_umbrella(Lab *lab, SingeError *error) {
     report_measure(lab->report, "umbrella_squares", "umbrella on squares", umbrella[0][0], 0.47, 0.53);
     report_measure(lab->report, "umbrella_long", "umbrella on cells of 2 : 1, along x over along y",
                    umbrella[1][0] / umbrella[1][1], 1.2, INFINITY);
+
     return SINGE_OK;
 }

@@ -46,11 +46,13 @@ static KineticsRun kinetics_run(double kelvin_per_minute, double step, double *r
         y = plus(&x, &c, h / 2);
         Kinetics d = kinetics_rate(&y, t + step / 2);
         y = plus(&x, &d, h);
+
         Kinetics e = kinetics_rate(&y, t + step);
         Kinetics sum = {a.cellulose + 2 * c.cellulose + 2 * d.cellulose + e.cellulose,
                         a.char_mass + 2 * c.char_mass + 2 * d.char_mass + e.char_mass,
                         a.ash + 2 * c.ash + 2 * d.ash + e.ash};
         double loss = -(a.cellulose + a.char_mass + a.ash) / b;
+
         x = plus(&x, &sum, h / 6);
         if (loss > run.peak_rate) {
             run.peak_rate = loss;
@@ -81,6 +83,7 @@ static KineticsRun one_reaction(double kelvin_per_minute, double step) {
             double y = k ? x + (k == 3 ? h : h / 2) * f[k - 1] : x;
             f[k] = -one_a * exp(-one_e / (r * at[k])) * pow(fmax(y, 0), one_order);
         }
+
         if (-f[0] / b > run.peak_rate) {
             run.peak_rate = -f[0] / b;
             run.peak = t;
@@ -122,19 +125,23 @@ static SingeResult one_simulated(Lab *lab, double kelvin_per_minute, KineticsRun
     grid.material.mass_loss = singe_param(0);
     grid.material.char_yield = singe_param(0);
     grid.material.shrink_front = grid.material.shrink_back = singe_param(0);
+
     SingeSim *sim;
     SingeSourceDef source = singe_default_source();
     SingeSourceId id;
     source.kind = SINGE_SOURCE_CALLBACK;
     source.callback = furnace_flux;
     source.callback_context = &furnace;
+
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
+
     if ((result = singe_sim_add_source(sim, &source, &id))) *error = *singe_sim_error(sim);
     *run = (KineticsRun){0};
     for (int step = 0; step < 400 && !result; step++) {
         double before = (double)singe_sim_view(sim).mass[0];
         result = lab_steps(sim, 1, error);
+
         SingeView view = singe_sim_view(sim);
         double loss = (before - (double)view.mass[0]) / (1 - char_left);
         if (loss > run->peak_rate) {
@@ -157,15 +164,18 @@ SingeResult validate_kinetics(Lab *lab, SingeError *error) {
     static double loss[RATES][LOOKS], temperature[LOOKS];
     double off = 0, residue = 0, apart = 0, first = 0, rising = INFINITY;
     SingeResult result = SINGE_OK;
+
     for (int i = 0; i < LOOKS; i++) temperature[i] = 300 + 5 * i - 273.15;
     report_heads(lab->report,
                  "heated by|three reactions: peak C|residue %|one reaction, fine: peak C|residue %|simulated: peak "
                  "C|residue %");
+
     for (int i = 0; i < RATES && !result; i++) {
         KineticsRun three = kinetics_run(rates[i], 0.05, NULL, 0), one = one_reaction(rates[i], 0.05), sim;
         kinetics_run(rates[i], 0.5, loss[i], LOOKS);
         result = one_simulated(lab, rates[i], &sim, error);
         if (result) return result;
+
         report_row(lab->report, "%s|%.1f|%.2f|%.1f|%.2f|%.1f|%.2f", names[i], three.peak - 273.15, 100 * three.residue,
                    one.peak - 273.15, 100 * one.residue, sim.peak - 273.15, 100 * sim.residue);
         off = fmax(off, fabs(sim.peak - one.peak));
@@ -179,6 +189,7 @@ SingeResult validate_kinetics(Lab *lab, SingeError *error) {
     for (int i = 0; i < RATES; i++)
         plot_add(&plot, (PlotLine){names[i], inks[i], temperature, loss[i], LOOKS, false, false});
     report_plot(lab->report, &plot);
+
     const double ignition = (double)singe_default_material().ignition_temperature.value;
     report_text(lab->report,
                 "Three reactions: Kashiwagi and Nambu's, integrated here by themselves. The simulation has one, the "
@@ -186,6 +197,7 @@ SingeResult validate_kinetics(Lab *lab, SingeError *error) {
                 "of the material (<code>pre_exponential</code>, <code>activation_energy</code>); by default it burns "
                 "by eq 4, from %.0f C on.",
                 ignition - 273.15);
+
     report_measure(lab->report, "peak",
                    "simulated at one kelvin per step: distance of the peak from the fine reference, K", off, 0, 2);
     report_measure(lab->report, "residue", "the same: difference in the residue", residue, 0, 1e-3);
@@ -195,6 +207,7 @@ SingeResult validate_kinetics(Lab *lab, SingeError *error) {
                    40);
     report_measure(lab->report, "threshold", "peak at 1 K/min less eq 4's ignition temperature, K", first - ignition, 0,
                    80);
+
     return SINGE_OK;
 }
 
@@ -207,15 +220,18 @@ SingeResult validate_ledgers(Lab *lab, SingeError *error) {
                                            {"a torus", "fig11.yaml"}};
     double heat = 0, mass = 0;
     SingeResult result = SINGE_OK;
+
     report_heads(lab->report,
                  "scene|heat in J|combustion J|lost J|stored J|heat ledger|mass ledger|kinetic mJ|elastic mJ|gravity "
                  "mJ|lost mJ");
+
     for (int i = 0; i < 4 && !result; i++) {
         const char *sets[] = {i == 1 ? "gas=yes" : "", i == 3 ? "sheets.0.mesh=torus-small.obj" : "",
                               i == 2 ? "sheets.0.grid.cells=[30, 42]" : "", NULL};
         Play play;
         result = play_open(&play, lab, cases[i][1], sets, error);
         if (!result) result = play_until(&play, lab->quick ? 1 : 2, error);
+
         if (!result) {
             SingeStats s = singe_sim_stats(play.sim);
             report_row(lab->report, "%s|%.3g|%.3g|%.3g|%.3g|%.1e|%.1e|%.3g|%.3g|%.3g|%.3g", cases[i][0], s.heat_in,
@@ -227,6 +243,7 @@ SingeResult validate_ledgers(Lab *lab, SingeError *error) {
 
         play_close(&play);
     }
+
     if (result) return result;
     report_measure(lab->report, "heat", "largest error of the heat ledger, over its largest entry", heat, 0, 1e-5);
     report_measure(lab->report, "mass", "largest error of the mass ledger, over the mass at the start", mass, 0, 1e-6);

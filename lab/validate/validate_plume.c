@@ -32,6 +32,7 @@ static SingeResult build(const Fire *fire, SingeSim *sim) {
     const uint32_t cell[4] = {0, 1, 2, 3};
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId id;
+
     sheet.vertex_count = 4;
     sheet.positions = &corners[0][0];
     sheet.cell_count = 1;
@@ -42,11 +43,14 @@ static SingeResult build(const Fire *fire, SingeSim *sim) {
     const double apart = fire->diameter / ACROSS, middle = 0.5 * (ACROSS - 1);
     int count = 0;
     for (int k = 0; k < ACROSS * ACROSS; k++) count += hypot(k % ACROSS - middle, k / ACROSS - middle) < 0.5 * ACROSS;
+
     for (int k = 0; k < ACROSS * ACROSS && !result; k++) {
         const double x = k % ACROSS - middle, y = k / ACROSS - middle;
         if (hypot(x, y) >= 0.5 * ACROSS) continue;
+
         SingeSourceDef source = singe_default_source();
         SingeSourceId flame;
+
         source.kind = SINGE_SOURCE_BALL;
         source.temperature = (float)ambient; // its gas alone is hot
         source.power = (float)(1e3 * fire->power / count);
@@ -55,6 +59,7 @@ static SingeResult build(const Fire *fire, SingeSim *sim) {
         source.position[2] = (float)(0.5 * apart);
         result = singe_sim_add_source(sim, &source, &flame);
     }
+
     return result ? result : singe_sim_commit(sim);
 }
 
@@ -62,6 +67,7 @@ static SingeResult build(const Fire *fire, SingeSim *sim) {
 static double frequency(const double *series, int count) {
     double mean = 0, most = 0, found = 0;
     for (int s = 0; s < count; s++) mean += series[s] / count;
+
     for (double f = 0.5; f < 15; f += 0.05) {
         double real = 0, imaginary = 0;
         for (int s = 0; s < count; s++) {
@@ -69,16 +75,19 @@ static double frequency(const double *series, int count) {
             real += x * cos(turn * f / RATE);
             imaginary += x * sin(turn * f / RATE);
         }
+
         const double power = real * real + imaginary * imaginary;
         if (power > most) found = f;
         most = fmax(most, power);
     }
+
     return found;
 }
 
 static SingeResult burn(const Lab *lab, Fire *fire, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
+
     def.time_step = 1.0f / RATE;
     def.gravity[2] = -(float)gravity;
     def.ambient_temperature = (float)ambient;
@@ -86,6 +95,7 @@ static SingeResult burn(const Lab *lab, Fire *fire, SingeError *error) {
     def.gas.enabled = true;
     def.gas.cell_size = (float)(fire->diameter / ACROSS);
     def.gas.height = (float)(4 * fire->diameter);
+
     SingeResult result = singe_sim_create(&def, &sim, error);
     if (result) return result;
     if ((result = build(fire, sim))) *error = *singe_sim_error(sim);
@@ -103,9 +113,11 @@ static SingeResult burn(const Lab *lab, Fire *fire, SingeError *error) {
         const size_t axis = (size_t)gas.size[0] * (gas.size[1] / 2) + gas.size[0] / 2;
         const size_t low = (size_t)((0.5 * fire->diameter - (double)gas.origin[2]) / (double)gas.cell);
         if (s < from) continue;
+
         series[s - from] = (double)gas.velocity[axis + plane * low][2];
         mean += series[s - from] / (steps - from);
         square += series[s - from] * series[s - from] / (steps - from);
+
         for (uint32_t k = 0; k < gas.size[2] && k < PLANES_MAX; k++) {
             speed[k] += (double)gas.velocity[axis + plane * k][2] / (steps - from);
             kelvin[k] += (double)gas.temperature[axis + plane * k] / (steps - from);
@@ -120,6 +132,7 @@ static SingeResult burn(const Lab *lab, Fire *fire, SingeError *error) {
         fire->excess[p] =
             (kelvin[k] - ambient) / (pow(factor / (0.9 * sqrt(2 * gravity)), 2) * pow(y, 2 * power - 1) * ambient);
     }
+
     if (!result) {
         fire->puffs = frequency(series, steps - from);
         fire->sways = sqrt(fmax(square - mean * mean, 0)) / mean;
@@ -134,6 +147,7 @@ SingeResult validate_plume(Lab *lab, SingeError *error) {
     SingeResult result = SINGE_OK;
     report_heads(lab->report, "cm|kW|speed over McCaffrey's: flame|between|plume|excess of temperature over his: flame|"
                               "between|plume|puffs, 1/s|1.5/sqrt(D)|sways by");
+
     for (int i = 0; i < DIAMETERS && !result; i++) {
         Fire *fire = &fires[i];
         *fire = (Fire){.diameter = diameters[i], .power = strength * pow(diameters[i], 2.5)};
@@ -151,6 +165,7 @@ SingeResult validate_plume(Lab *lab, SingeError *error) {
         "Cells are a tenth of the burner. Fuel is heat that waits in the air of a cell, and burns as soon as it "
         "is there: the flame stands on the floor instead of around a core of gas, is cool and wide, and the "
         "plume above it sways too little to mix with air as turbulent ones do.");
+
     static const char *const names[2][PLACES] = {{"speed_flame", "speed_between", "speed_plume"},
                                                  {"excess_flame", "excess_between", "excess_plume"}};
     static const char *const wheres[PLACES] = {"in the flame", "where it comes and goes", "in the plume"};
@@ -162,6 +177,7 @@ SingeResult validate_plume(Lab *lab, SingeError *error) {
             report_measure(lab->report, names[k][p], what, k ? fires[0].excess[p] : fires[0].speed[p], VALIDATE_LOW,
                            VALIDATE_HIGH);
         }
+
     report_measure(lab->report, "puffs", "puffs a second over 1.5/sqrt(D), 30 cm",
                    fires[0].puffs * sqrt(fires[0].diameter) / 1.5, 0.85, 1.15);
     report_measure(lab->report, "sways", "deviation of the speed half a diameter up over its mean, the least", least,

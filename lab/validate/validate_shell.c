@@ -30,6 +30,7 @@ static SingeResult hold(SingeSim *sim, const double from[2], const double to[2],
             p[1] = (float)y;
             p[2] = 0;
         }
+
     pin.sheet = (SingeSheetId){0, 1};
     pin.points = points;
     pin.radius = 0.3f * (float)cell;
@@ -62,9 +63,11 @@ static SingeResult beam_sag(Lab *lab, const Beam *beam, double *sag, SingeError 
     grid.material.thickness = singe_param((float)beam->thickness);
     grid.material.compliance[SINGE_GREEN] = singe_param((float)beam->compliance);
     grid.material.compliance[SINGE_RED] = singe_param((float)beam->shear);
+
     SingeSim *sim;
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
+
     result = hold(sim, from, to, (double)beam->cell, 0, NULL, error);
     if (!result) result = lab_steps(sim, 960, error);
     *sag = -(double)singe_sim_view(sim).position[ny / 2 * (nx + 1) + nx][2];
@@ -79,6 +82,7 @@ SingeResult validate_beam(Lab *lab, SingeError *error) {
     double worst = 0;
     SingeResult result = SINGE_OK;
     report_heads(lab->report, "t mm|green mm/N|red m/N|cells mm|D N m|sag mm|plate mm|over plate");
+
     for (int i = 0; i < CASES - (lab->quick ? 1 : 0) && !result; i++) {
         const Beam *b = &beams[i];
         double l = (double)(beam_length - beam_clamped), d = b->thickness * b->thickness / b->compliance, sag;
@@ -115,9 +119,11 @@ static SingeResult disc_bend(Lab *lab, double shrink, int cells, bool isotropic,
     grid.material.damping = singe_param(4);
     grid.solver.substeps = 0; // full stiffness
     grid.solver.isotropic = isotropic;
+
     SingeSim *sim;
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
+
     result = lab_steps(sim, lab->quick ? 960 : 1920, error);
     if (!result) {
         SingeView view = singe_sim_view(sim);
@@ -145,13 +151,16 @@ static SingeResult pull_test(Lab *lab, bool shear, Stiffness *out, SingeError *e
     grid.solver.tearing = true; // for the line force
     grid.material.strength = singe_param(INFINITY);
     grid.material.thickness = singe_param((float)disc_thickness);
+
     SingeMaterialDef usual = singe_default_material();
     grid.material.compliance[SINGE_GREEN] = usual.compliance[SINGE_GREEN];
     grid.material.compliance[SINGE_RED] = usual.compliance[SINGE_RED];
     grid.material.compliance[SINGE_BLUE] = grid.material.compliance[SINGE_YELLOW] = singe_param(1e3f);
+
     SingeSim *sim;
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
+
     const float displacement = (float)(0.02 * length);
     const SingePoseKey path[2] = {{0, {0, 0, 0}, {0, 0, 0, 1}},
                                   {0.5f, {shear ? 0 : displacement, shear ? displacement : 0, 0}, {0, 0, 0, 1}}};
@@ -159,6 +168,7 @@ static SingeResult pull_test(Lab *lab, bool shear, Stiffness *out, SingeError *e
     result = hold(sim, left[0], left[1], cell, 0, NULL, error);
     if (!result) result = hold(sim, right[0], right[1], cell, 2, path, error);
     if (!result) result = lab_steps(sim, 960, error);
+
     if (!result) {
         SingeView view = singe_sim_view(sim);
         const int mid = ACROSS / 2 * ALONG + ALONG / 2;
@@ -170,6 +180,7 @@ static SingeResult pull_test(Lab *lab, bool shear, Stiffness *out, SingeError *e
                 double ahead = (double)(x[mid + step][k] - r[mid + step][k]);
                 g[k][d] = (ahead - (double)(x[mid - step][k] - r[mid - step][k])) / (2 * REACH * cell);
             }
+
         const float *n = view.line_force[mid];
         if (shear) out->shear = fabs((double)n[5]) / fabs(g[0][1] + g[1][0]);
         else {
@@ -225,6 +236,7 @@ SingeResult validate_disc(Lab *lab, SingeError *error) {
         "direction (`singe bench plate`).",
         c.along, 1 / (double)singe_default_material().compliance[SINGE_GREEN].value, c.coupled / c.along, c.shear,
         diagonal, (1 + diagonal) / 2);
+
     report_measure(lab->report, "stiffness", "stiffness along the grid times the compliance",
                    c.along * (double)singe_default_material().compliance[SINGE_GREEN].value, 0.9, 1.1);
     report_measure(lab->report, "poisson_grid", "nu along the grid, by a pull test", c.coupled / c.along, -0.1, 0.1);
@@ -235,5 +247,6 @@ SingeResult validate_disc(Lab *lab, SingeError *error) {
                    -0.1, 0.2);
     report_measure(lab->report, "cylinder", "mean curvature over the natural one of the most bent, less (1 + nu)/2",
                    ratio[CASES - 1] - (1 + diagonal) / 2, -0.1, 0.1);
+
     return SINGE_OK;
 }
