@@ -81,11 +81,13 @@ static inline BurningSheet *burning_spare_sheets(uint32_t sheets, uint32_t nx, u
                                                  uint32_t spares) {
     BurningSheet *b = calloc(1, sizeof *b);
     SheetSource sources[4];
+
     b->memory = memory_make((SingeAllocator){0});
     b->nx = nx, b->ny = ny;
     for (uint32_t k = 0; k < sheets; k++)
         sources[k] = grid_source(&b->memory, nx, ny, cell, (float)k, material, drop_pieces_below);
     for (uint32_t k = 0; k < sheets; k++) sources[k].sheet.spare_count = spares;
+
     assert_int_equal(shell_create(&b->memory, sources, sheets, &b->shell, &b->error), SINGE_OK);
     assert_int_equal(state_create(&b->memory, &b->shell, &b->state), SINGE_OK);
     assert_int_equal(burn_air_create(&b->memory, &b->shell, &b->air), SINGE_OK);

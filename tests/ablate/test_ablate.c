@@ -174,6 +174,7 @@ TEST(burnt_corners_do_not_swing) {
     pin.vertex_count = 4;
     test_add_pin(sim, &pin);
     test_steps(sim, 1);
+
     const Shell *shell = &sim->shell;
     for (int k = 0; k < 3; k++) sim->state.burn.mass[burnt[k]] = 0.1f;
     sim->state.burn.mass[shell_centre(shell, 3)] = 0.1f;
@@ -189,6 +190,7 @@ TEST(burnt_corners_do_not_swing) {
             longest = fmaxf(longest, length / shell->springs[SINGE_BLUE].rest[blue]);
         }
     }
+
     print_message("sides up to %.2f of their length\n", (double)longest);
     assert_true(longest < 1.1f);
     singe_sim_destroy(sim);
@@ -206,6 +208,7 @@ TEST(yellow_and_green_go_with_the_cell) {
     assert_int_equal(b->state.ablate.cell_flags[4] & SINGE_ALIVE, 0);
     assert_int_equal(b->state.ablate.particle_flags[centre] & SINGE_ALIVE, 0);
     assert_int_equal(b->state.ablate.piece_count, 1);
+
     double mass = (double)b->shell.matter.mass[centre], capacity = (double)b->shell.matter.capacity[centre];
     assert_true(fabs(b->state.ablate.mass_removed - 0.125 * mass) < 1e-12 * mass);
     assert_true(fabs(b->state.ablate.heat_removed - capacity * (900 - AMBIENT)) < 1e-12 * capacity * 900);
@@ -216,6 +219,7 @@ TEST(all_can_go) {
     BurningSheet *b = three_by_three();
     AblatePlan *plan = plan_for(b);
     for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.burn.mass[i] = 0.2f;
+
     double mass = mass_left(b);
     sheet_ablate(b, plan);
     expect_springs(b, 0, 0, 0, 0);
@@ -233,6 +237,7 @@ TEST(no_springs_break_without_ablation) {
     material.ablate = false;
     BurningSheet *b = burning_sheet(3, 3, 0.01f, &material);
     AblatePlan *plan = plan_for(b);
+
     for (uint32_t i = 0; i < b->shell.particle_count; i++) burn_out(b, i);
     sheet_ablate(b, plan);
     expect_springs(b, 36, 12, 24, 18);
@@ -249,15 +254,18 @@ TEST(ash_stays_where_loss_is_below_min) {
     AblatePlan *plan = plan_for(b);
     double partial[1];
     float thickening = 1;
+
     for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = 900;
     for (int n = 0; n < 50; n++) { // 0.04 of the mass a step: ash after 18
         assert_int_equal(sheet_burn(b, NULL, 0.1f, 1, &thickening, partial), SINGE_OK);
         sheet_ablate(b, plan);
     }
+
     for (uint32_t i = 0; i < b->shell.particle_count; i++) {
         assert_true(b->state.burn.mass[i] == 0.3f);
         assert_true(b->state.burn.time_burnt[i] == -1);
     }
+
     expect_springs(b, 36, 12, 24, 18);
     assert_true(b->state.ablate.mass_removed == 0);
     assert_int_equal(b->state.ablate.piece_count, 1);
@@ -300,6 +308,7 @@ TEST(pieces_split_and_keep_ids) {
     assert_int_equal(piece[centre_at(b, 8, 2)], 0);
     assert_int_equal(piece[40], 1);
     count_freed(b, 1);
+
     const SingeEvent *event = &b->events.items[b->events.count - 1];
     assert_int_equal(event->element, 2);
     assert_float_equal(event->position[0], 0, 0); // of its smallest particle, corner 0
@@ -354,16 +363,19 @@ TEST(small_loose_pieces_are_dropped) {
     } cases[] = {
         {0, false, 3}, {4.4f, false, 3}, {4.6f, false, 2}, {4.6f, true, 3}, {1e6f, false, 2},
     };
+
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         AblatePlan *plan;
         BurningSheet *b = cut_off(cases[k].below, cases[k].pinned, &plan);
         bool dropped = cases[k].pieces == 2;
+
         assert_int_equal(b->state.ablate.piece_count, cases[k].pieces);
         assert_int_equal(b->state.ablate.cell_flags[cell_at(b, 6, 1)] & SINGE_ALIVE, !dropped);
         assert_int_equal(b->state.ablate.particle_flags[corner_at(b, 7, 1)] & SINGE_ALIVE, !dropped);
         assert_int_equal(b->state.ablate.piece[0], 0);
         assert_int_equal(b->state.ablate.topology_version, 1);
         count_freed(b, dropped ? 0 : 1);
+
         double mass = 0;
         for (uint32_t i = 0; i < b->shell.particle_count; i++)
             mass += (double)b->state.burn.mass[i] * (double)b->shell.matter.mass[i];
@@ -388,6 +400,7 @@ TEST(holes_open_once) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(8, 8, 0.01f, &material);
     AblatePlan *plan = plan_for(b);
+
     b->state.time = 1, burn_out(b, centre_at(b, 2, 2));
     expect_hole(b, plan, centre_at(b, 2, 2));
     b->state.time = 2; // nothing new
@@ -438,6 +451,7 @@ TEST(the_ledger_closes_as_a_sheet_burns_to_pieces) {
         expect_consistent(b);
         for (size_t k = 0; k < b->events.count; k++) freed += b->events.items[k].kind == SINGE_EVENT_PIECE_FREED;
         if (b->state.ablate.piece_count > max) max = b->state.ablate.piece_count;
+
         double gone = b->state.burn.mass_burnt + b->state.ablate.mass_removed;
         assert_true(fabs(initial - mass_left(b) - gone) < 1e-12 * initial);
     }

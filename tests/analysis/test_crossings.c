@@ -56,10 +56,12 @@ TEST(orientation_has_the_exact_sign) {
         random_points(max, p);
         for (int i = 0; i < 4; i++)
             for (int k = 0; k < 3; k++) at[i][k] = ldexpf((float)p[i][k], shift);
+
         const int expected = orient3_of_integers(p);
         flat += expected == 0;
         assert_int_equal(exact_orient3(at[0], at[1], at[2], at[3]), expected);
         assert_int_equal(exact_orient3(at[1], at[0], at[2], at[3]), -expected);
+
         const Wide turn =
             (Wide)(p[0][0] - p[2][0]) * (p[1][1] - p[2][1]) - (Wide)(p[0][1] - p[2][1]) * (p[1][0] - p[2][0]);
         assert_int_equal(exact_orient2(at[0], at[1], at[2], 0, 1), (turn > 0) - (turn < 0));
@@ -75,6 +77,7 @@ TEST(orientation_is_exact_near_a_plane) {
         float at[4][3];
         const int shift = trial % 90;
         random_points(100, p);
+
         for (int k = 0; k < 3; k++) {
             p[3][k] = p[1][k] + p[2][k], p[0][k] %= 2;
             at[0][k] = ldexpf((float)p[0][k], -30);
@@ -150,6 +153,7 @@ static void check_case(const Case *one, int turn) {
     float a[3][3], b[3][3];
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) a[i][(k + turn) % 3] = one->a[i][k], b[i][(k + turn) % 3] = one->b[i][k];
+
     for (int i = 0; i < 36; i++) {
         const int *s = orders[i / 6], *t = orders[i % 6];
         const Corners first = {a[s[0]], a[s[1]], a[s[2]]}, second = {b[t[0]], b[t[1]], b[t[2]]};
@@ -179,6 +183,7 @@ typedef struct Soup {
 static Soup *soup_make(uint32_t count, float size, int steps) {
     Soup *soup = calloc(1, sizeof *soup);
     assert_non_null(soup);
+
     while (soup->count < count) {
         float(*p)[3] = &soup->position[3 * soup->count], centre[3];
         for (int k = 0; k < 3; k++) centre[k] = (float)random_bits() * 0x1p-31f;
@@ -186,6 +191,7 @@ static Soup *soup_make(uint32_t count, float size, int steps) {
             float x = centre[i % 3] + size * ((float)random_bits() * 0x1p-31f - 0.5f);
             p[i / 3][i % 3] = steps ? roundf(x * (float)steps) / (float)steps : x;
         }
+
         if (exact_collinear(p[0], p[1], p[2])) continue;
         for (uint32_t k = 0; k < 3; k++) soup->triangles[soup->count][k] = 3 * soup->count + k;
         soup->count++;
@@ -211,11 +217,14 @@ static void check_soup(Soup *soup) {
             if (triangles_cross(first, second, &touch)) crossing[a * soup->count + b] = true, count++;
             else if (touch) touching[touches][0] = a, touching[touches++][1] = b;
         }
+
     assert_true(hinges_find(position, triangles, soup->count, touching, &touches));
     for (size_t i = 0; i < touches; i++) crossing[touching[i][0] * soup->count + touching[i][1]] = true, count++;
+
     CrossingList list;
     assert_true(crossings_find(position, triangles, soup->count, &list));
     assert_int_equal(list.count, count);
+
     for (size_t i = 0; i < list.count; i++) {
         bool *pair = &crossing[list.pairs[i][0] * soup->count + list.pairs[i][1]];
         assert_true(*pair);
@@ -241,6 +250,7 @@ TEST(the_tree_finds_what_a_plain_search_finds) {
 static void add_sheet(uint32_t cells, int sheet, float tilt, float (*position)[3], uint32_t (*triangles)[3]) {
     const uint32_t side = cells + 1, first = (uint32_t)sheet * side * side;
     uint32_t(*t)[3] = triangles + 2 * (size_t)sheet * cells * cells;
+
     for (uint32_t v = 0; v < side * side; v++) {
         float *p = position[first + v];
         p[0] = (float)(v % side) / (float)cells, p[1] = (float)(v / side) / (float)cells;

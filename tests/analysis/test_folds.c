@@ -14,6 +14,7 @@ static Drawing *folded(float degrees) {
     for (uint32_t v = 0; v < d->sheet->shell.vertex_count; v++) {
         float *rest = d->sheet->shell.rest_position[v], *p = d->sheet->state.dynamics.position[v];
         for (int k = 0; k < 2; k++) rest[k] += 0.15f * cell * (2 * random_unit(random_hash(v, (uint32_t)k, 3, 7)) - 1);
+
         float x = rest[0] - CELLS * cell / 2, y = rest[1] - CELLS * cell / 2;
         float off = x * cosf(turn) - y * sinf(turn), along = x * sinf(turn) + y * cosf(turn), across = 0, height = 0;
         const int steps = 400; // the angle goes as tanh; summed up from the fold

@@ -71,6 +71,7 @@ static Rim look(Sheet sheet) {
             bool moved = sheet.seam && i == seam; // the cells right of the seam have its second vertices
             add_cell(&s, &f, moved ? plain + j : a, a + 1, d + 1, moved ? plain + j + 1 : d);
         }
+
     if (sheet.second) add_second(&s, plain + extra, &f);
     Rim rim = {0};
     assert_true(rim_add(&s, &rim));
@@ -90,6 +91,7 @@ TEST(a_flat_rim_has_no_curl) {
     Rim rim = look((Sheet){.shrunk = 1, .burnt = true});
     near_to(rim_percentile(rim.curl, 0.9), 0, 0.5);
     near_to(rim.curl_max, 0, 0.1);
+
     for (int b = 0; b < RIM_BANDS; b++) {
         near_to(ratio(&rim, b), 1, 1e-5);
         near_to(rim_percentile(rim.band[b].slope, 0.9), 0, 0.5);

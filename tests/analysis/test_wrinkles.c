@@ -41,11 +41,13 @@ static SingeSurface draw(int cells, Height *height, double number) {
     const uint32_t n = (uint32_t)cells, row = n + 1, corners = row * row;
     SingeSurface s;
     assert_true(surface_new(&s, corners + n * n, 4 * n * n));
+
     const double step = side / cells;
     for (uint32_t v = 0; v < corners; v++) {
         double x = v % row * step, y = v / row * step;
         set_vertex(&s, v, x, y, height(x, y, number));
     }
+
     for (uint32_t c = 0; c < n * n; c++) {
         const uint32_t a = c / n * row + c % n, corner[4] = {a, a + 1, a + row + 1, a + row};
         double z = 0;
@@ -145,6 +147,7 @@ TEST(even_folds_have_no_direction) {
         look_too(60, sharp_fold, degrees, &w);
         look_too(240, sharp_fold, degrees, &fine);
     }
+
     const double all = wrinkles_bias(&w) / wrinkles_bias(&fine);
     const double sharp = wrinkles_bias_sharp(&w) / wrinkles_bias_sharp(&fine);
     print_message("folds of 100 degrees: axis over diagonal %.3f of that on a fine mesh, sharp bends %.3f\n", all,

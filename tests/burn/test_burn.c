@@ -39,6 +39,7 @@ TEST(no_exponent_is_a_straight_line) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(2, 2, 0.01f, &material);
     heat_all(b, 600); // mu (T - T_ign) = 0.1 1/s
+
     for (int n = 1; n <= 20; n++) {
         assert_int_equal(step(b, NULL, 0.25f, 2, 2.5f), SINGE_OK); // 0.1 * 0.25 * 2 / 2.5 = 0.02 a step
         for (uint32_t i = 0; i < b->shell.particle_count; i++) {
@@ -70,6 +71,7 @@ TEST(ceilings_may_vary) {
     BurningSheet *b = burning_sheet(8, 2, 0.01f, &material);
     heat_all(b, 5000);
     assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);
+
     for (uint32_t i = 0; i < b->shell.particle_count; i++) {
         float u = b->shell.uv[i][0], f = fminf(fmaxf(2 * u - 0.5f, 0), 1);
         assert_float_equal(b->state.burn.mass[i], 1 - 1e-3f * (50 + 150 * f), 1e-6);
@@ -96,6 +98,7 @@ TEST(a_large_area_burns_what_it_has_air_for) {
         {40, 5e-3f, 0, true, 24}, {40, 5e-3f, 0.7f, true, 24}, {12, 20e-3f, 0.1f, true, 24}, {40, 5e-3f, 0, false, 40}};
     SingeMaterialDef material = plain_material();
     material.air_supply = singe_param(0.012f);
+
     Memory memory = memory_make((SingeAllocator){0});
     Pool *pool;
     assert_int_equal(pool_create(&memory, (SingeTasks){0}, 2, &pool), SINGE_OK);
@@ -132,6 +135,7 @@ TEST(exponents_follow_their_solutions) {
         material.ash_exponent = singe_param(exponents[e]);
         BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
         heat_all(b, 670); // k = 0.17/0.85 = 0.2 1/s
+
         for (int n = 1; n <= 80; n++) {
             assert_int_equal(step(b, NULL, 0.1f, 1, 1), SINGE_OK);
             double expected = 0.15 + 0.85 * exact(0.2, 0.1 * n, (double)exponents[e]);
@@ -171,6 +175,7 @@ TEST(kinetics_follow_arrhenius) {
         const double ignition = (double)material.ignition_temperature.value;
         for (uint32_t i = 0; i < b->shell.particle_count; i++)
             b->state.heat.temperature[i] = (float)ignition - 10 + 15 * (float)i;
+
         for (int n = 1; n <= 40; n++) {
             assert_int_equal(step(b, NULL, 0.1f, 2, 2.5f), SINGE_OK); // 0.08 s over F
             for (uint32_t i = 0; i < b->shell.particle_count; i++) {
@@ -210,6 +215,7 @@ TEST(particles_ignite_once_and_in_order) {
     BurningSheet *b = burning_sheet(60, 40, 0.01f, &material);
     const BurnState *burn = &b->state.burn;
     const uint32_t lit[] = {3, 1023, 1024, 2500, 4000, 4100};
+
     b->state.time = 1.5;
     b->state.heat.temperature[4000] = 499.99f;
     for (int k = 0; k < 6; k++)
@@ -217,6 +223,7 @@ TEST(particles_ignite_once_and_in_order) {
     b->state.ablate.particle_flags[4100] = 0;
     assert_int_equal(step(b, NULL, 0.1f, 1, 1), SINGE_OK);
     assert_int_equal(b->events.count, 4);
+
     for (size_t k = 0; k < 4; k++) {
         assert_int_equal(b->events.items[k].kind, SINGE_EVENT_IGNITED);
         assert_int_equal(b->events.items[k].element, lit[k]);
@@ -232,6 +239,7 @@ TEST(particles_ignite_once_and_in_order) {
     assert_int_equal(step(b, NULL, 0.1f, 1, 1), SINGE_OK);
     assert_int_equal(b->events.count, 5);
     assert_int_equal(b->events.items[4].element, 4000);
+
     assert_float_equal(burn->time_ignited[3], 1.5f, 0);
     assert_float_equal(burn->time_ignited[4000], 1.6f, 0);
     burning_sheet_free(b);
@@ -241,6 +249,7 @@ TEST(particles_are_burnt_below_the_loss) {
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
     heat_all(b, 600); // 0.1 of the mass a second
+
     b->state.ablate.particle_flags[0] = 0;
     for (int n = 0; n < 8; n++) {
         b->state.time = n;
@@ -253,6 +262,7 @@ TEST(particles_are_burnt_below_the_loss) {
     assert_float_equal(b->state.burn.mass[1], 0.2, 1e-6);
     b->state.time = 8;
     assert_int_equal(step(b, NULL, 0.1f, 1, 1), SINGE_OK);
+
     assert_float_equal(b->state.burn.mass[1], 0.19, 1e-6);
     assert_float_equal(b->state.burn.time_burnt[1], 7, 0); // stamped once
     assert_float_equal(b->state.burn.time_burnt[2], -1, 0);
@@ -282,6 +292,7 @@ static double shrunk_ratio(float mass_a, float mass_b, float shrink_a, float shr
     b->state.heat.temperature[1] = 500 + 1000 * (1 - mass_b);
     assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);
     assert_float_equal(b->state.burn.mass[0], mass_a, 1e-6);
+
     double ratio = (double)(b->state.burn.spring_length[SINGE_BLUE][s] / b->shell.springs[SINGE_BLUE].rest[s]);
     burning_sheet_free(b);
     return ratio;
@@ -310,6 +321,7 @@ TEST(all_colours_shrink_and_do_not_compound) {
     for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = 400 + 10 * (float)i;
     b->state.ablate.spring_flags[SINGE_RED][7] = 0;
     for (int n = 0; n < 5; n++) assert_int_equal(step(b, NULL, 0.2f, 1, 1), SINGE_OK);
+
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         for (uint32_t s = 0; s < b->shell.springs[colour].count; s++) {
             double volumes = 0, shrink = 0;
@@ -343,8 +355,10 @@ TEST(fibres_turn_shrinkage) {
         BurningSheet *b = burning_sheet(5, 4, 0.01f, &material);
         for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = 800;
         assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);
+
         const double even = (double)b->state.burn.mass[0], stretch = (1 - even) * (q - 1) / (q + 1);
         assert_float_equal(even, 0.7, 1e-6);
+
         for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
             for (uint32_t s = 0; s < b->shell.springs[colour].count; s++) {
                 const uint32_t *ends = b->shell.springs[colour].ends[s];
@@ -386,6 +400,7 @@ static BurningSheet *crossed_by_stripe(Pool *pool) {
     material.mass_rate =
         singe_param_field(material.mass_rate.value, 2e-3f,
                           &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {.scale = 0.02f, .octaves = 3, .seed = 7}});
+
     BurningSheet *b = burning_sheet(80, 50, 0.001f, &material);
     for (int n = 0; n < 40; n++) {
         b->state.time = 0.1 * n;
@@ -416,6 +431,7 @@ TEST(threads_change_nothing) {
         Memory memory = memory_make((SingeAllocator){0});
         Pool *pool;
         assert_int_equal(pool_create(&memory, (SingeTasks){0}, threads, &pool), SINGE_OK);
+
         BurningSheet *many = crossed_by_stripe(pool);
         assert_int_equal(many->state.arena_size, one->state.arena_size);
         assert_memory_equal(many->state.arena, one->state.arena, one->state.arena_size);

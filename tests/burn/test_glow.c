@@ -65,6 +65,7 @@ TEST(leaves_glow_slower_than_edges) {
     b->state.burn.fuel[fuelled] = 0.5f, b->state.burn.mass[fuelled] = 0.5f + 0.5f * (float)YIELD;
     b->state.heat.temperature[fuelled] = b->state.heat.temperature[cold] = 400;
     assert_int_equal(step(b, 0.1f * (float)SLOWING, 1, 1), SINGE_OK);
+
     assert_float_equal(1 - sqrt(left_of_char(b, 0)), 0.5 * 0.1 * RATE, 2e-4);
     assert_float_equal(1 - sqrt(left_of_char(b, inner)), 0.5 * 0.1 * RATE * AIR, 2e-4);
     assert_float_equal(b->state.burn.mass[fuelled], 0.5f + 0.5f * (float)YIELD, 0);
@@ -103,6 +104,7 @@ TEST(ledgers_close_from_fuel_to_ash) {
         material.char_heat = singe_param(28e6f), material.specific_heat = singe_param(1400);
         material.heat_of_combustion = singe_param(16e6f), material.heat_share = singe_param(0.25f);
         material.loss_mass_floor = singe_param(1); // heat over the initial mass
+
         BurningSheet *b = burning_sheet(2, 2, 0.01f, &material);
         double warmed = 0, first = 0, last = 1;
         for (uint32_t i = 0; i < b->shell.particle_count; i++) {
@@ -149,9 +151,11 @@ TEST(char_and_ash_have_densities_of_their_own) {
     material.shrink_back = singe_param(1), material.mass_rate = singe_param(1);
     BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
     for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = 600;
+
     float *air = burning_sheet_vary(b, &b->shell.matter.char_rate);
     for (uint32_t i = 0; i < b->shell.particle_count; i++) air[i] = 0;
     assert_int_equal(step(b, 100, 1, 1), SINGE_OK);
+
     double ratio[2];
     for (int k = 0; k < 2; k++) {
         ratio[k] = (double)(b->state.burn.spring_length[SINGE_BLUE][0] / b->shell.springs[SINGE_BLUE].rest[0]);

@@ -59,6 +59,7 @@ TEST(unquotes_what_it_quotes) {
         fclose(file);
         for (size_t at = 0; at < size; at += (size_t)utf8_length(json + at))
             assert_int_not_equal(utf8_length(json + at), 0);
+
         char *back = text_json_unquote(json, size);
         assert_non_null(back);
         assert_string_equal(back, texts[i]);
@@ -70,6 +71,7 @@ TEST(unquotes_what_it_quotes) {
     char *other = text_json_unquote("\"\\u00e4\\/\\uD83D\\uDD25\\n\"", 24);
     assert_string_equal(other, "\xc3\xa4/\xf0\x9f\x94\xa5\n");
     free(other);
+
     static const char *const bad[] = {"\"\\u12\"", "\"\\q\"", "\"\\\"", "\"\\u0000\"", "\"\\u12g4\""};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) assert_null(text_json_unquote(bad[i], strlen(bad[i])));
     assert_null(text_json_unquote("12", 2));
@@ -90,11 +92,13 @@ TEST(reads_arguments) {
         SetList out;
         bool quiet, all;
     } Read;
+
     static const ArgOption options[] = {
         {"out", 'o', "DIR", "", .read = args_set, offsetof(Read, out)},
         {"quiet", 'q', NULL, "", .read = args_switch, offsetof(Read, quiet)},
         {"all", 'a', NULL, "", .read = args_switch, offsetof(Read, all)},
     };
+
     const ArgCommand command = {
         .name = "test", .operand = "SCENE", .summary = "", .options = options, .option_count = 3};
     char *argv[] = {"-qa", "-oX", "--out=Y", "--out", "Z", "-qo", "W", "--", "--quiet"};
@@ -104,6 +108,7 @@ TEST(reads_arguments) {
     assert_int_equal(code, EXIT_GOOD);
     assert_true(read.quiet && read.all);
     assert_string_equal(read.scene, "--quiet");
+
     const char *const given[] = {"X", "Y", "Z", "W"};
     assert_int_equal(read.out.count, 4);
     for (int i = 0; i < 4; i++) assert_string_equal(read.out.items[i], given[i]);
@@ -125,6 +130,7 @@ TEST(averages_tiles) {
     assert_int_equal(sheet.width, 1500);
     assert_int_equal(sheet.height, 4);
     contact_sheet_put(&sheet, 4, rgb);
+
     const uint8_t *pixel = sheet.rgb + 3 * (2 * 1500 + 500);
     assert_int_equal(pixel[0], 150), assert_int_equal(pixel[1], 10), assert_int_equal(pixel[2], 7);
     assert_int_equal(pixel[3 * 1500 + 1], 30);

@@ -24,6 +24,7 @@ typedef struct Scratch {
 static void scratch_open(Scratch *s) {
     const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     const int32_t triangle[3] = {0, 1, 2};
+
     *s = (Scratch){.folder = "/tmp/singe-test-XXXXXX"};
     assert_non_null(mkdtemp(s->folder));
     snprintf(s->pattern, sizeof s->pattern, "%s/a.####.ply", s->folder);
@@ -72,6 +73,7 @@ TEST(what_is_no_file_does_not_halt) {
     assert_int_equal(mkfifo(s.path, 0600), 0);
     alarm(5);
     assert_false(cache_read(s.pattern, 7, &s.frame, s.why, sizeof s.why));
+
     alarm(0);
     unlink(s.path);
     assert_false(cache_read(s.pattern, 7, &s.frame, s.why, sizeof s.why));

@@ -454,6 +454,7 @@ static void check_outside(float far) {
             met++;
             assert_true(listed[a * n + b] || listed[b * n + a]);
         }
+
     assert_true(count > n / 8 && met > 10 * count && plan->pair_count > plan->listed_count + count / 8);
     free(listed), free(x);
     searched_free(s);
@@ -472,6 +473,7 @@ TEST(the_grid_has_bounds) {
     plan->position[500][0] += 200;
     assert_int_equal(broad_search(&s->memory, plan, &s->shell, NULL), SINGE_OK);
     assert_true(plan->listed_count >= listed / 2);
+
     uint8_t *seen = calloc((size_t)n * n, 1);
     for (uint32_t k = 0; k < plan->listed_count; k++) {
         uint8_t *at = &seen[plan->pairs[k].a * n + plan->pairs[k].b];

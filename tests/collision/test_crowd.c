@@ -41,6 +41,7 @@ static void check_list(uint32_t capacity, uint32_t grown, Pool *pool) {
     BlockList list;
     uint64_t all = 0;
     for (int b = 0; b < BLOCKS; b++) all += block_items(b);
+
     assert_true(block_list_create(&memory, &list, &items, sizeof(uint32_t), capacity, BLOCKS));
     for (int turn = 0; turn < 2; turn++) { // the second turn finds what the first has left
         uint64_t count = block_list_write(&list, pool, BLOCKS, UINT32_MAX / 2, write_items, NULL);
@@ -56,6 +57,7 @@ static void check_list(uint32_t capacity, uint32_t grown, Pool *pool) {
                 assert_int_equal(read[number], number < kept ? b << 16 | k : UINT32_MAX);
         free(read);
     }
+
     block_list_free(&memory, &list);
     block_items_free(&memory, &items);
     assert_int_equal(memory.held, 0);
@@ -66,6 +68,7 @@ TEST(full_lists_keep_the_first_entries) {
     for (int threads = 1; threads <= 4; threads++) {
         Pool *pool;
         assert_int_equal(pool_create(&memory, (SingeTasks){0}, threads, &pool), SINGE_OK);
+
         const uint32_t capacities[] = {0, 1, 63, 64, 65, 127, 128, 1000, 5000, 100000};
         for (size_t k = 0; k < sizeof capacities / sizeof *capacities; k++) {
             check_list(capacities[k], 0, pool);
@@ -103,6 +106,7 @@ static void add_soup(SingeSim *sim, uint32_t count) {
     TestMesh mesh = {.vertex_count = 4 * count, .cell_count = count};
     mesh.positions = malloc(12 * count * sizeof *mesh.positions);
     mesh.cells = malloc(4 * count * sizeof *mesh.cells);
+
     uint32_t next = 7;
     for (uint32_t v = 0; v < 4 * count; v++) {
         mesh.cells[v] = v;
@@ -113,6 +117,7 @@ static void add_soup(SingeSim *sim, uint32_t count) {
                                         0.01f * (float)(next >> 8) / 16777216 + (k == 2 ? 0.05f : 0);
         }
     }
+
     SingeSheetDef def = test_sheet(&mesh);
     test_add_sheet(sim, &def);
     test_mesh_free(&mesh);
@@ -123,6 +128,7 @@ static SingeSim *crowd(const Crowd *crowd, int threads, const SingeAllocator *al
     def.thread_count = threads, def.contact.enabled = true;
     def.time_step = 1.0f / 96, def.solver.substeps = 3; // coarse: sheets press on each other
     if (allocator) def.allocator = *allocator;
+
     SingeSim *sim = test_create(&def);
     for (int s = 0; s < crowd->sheets && !crowd->soup; s++) {
         TestMesh mesh = test_grid((uint32_t)crowd->cells, (uint32_t)crowd->cells, 5e-3f, 5e-3f);
@@ -131,8 +137,10 @@ static SingeSim *crowd(const Crowd *crowd, int threads, const SingeAllocator *al
         test_add_sheet(sim, &sheet);
         test_mesh_free(&mesh);
     }
+
     if (crowd->soup) add_soup(sim, (uint32_t)(crowd->cells * crowd->cells));
     test_ok(sim, singe_sim_commit(sim));
+
     SingeColliderDef ground = singe_default_collider();
     SingePoseKey key = test_key(0, 0, 0, 0);
     ground.path_count = 1, ground.path = &key;
@@ -164,12 +172,14 @@ static CollisionSizes tiny(const SingeSim *sim) {
 static void check_growth(const Crowd *scene, bool pairs) {
     SingeSim *one = crowd(scene, 1, NULL), *three = crowd(scene, 3, NULL), *resumed;
     test_steps(one, 6), test_steps(three, 6);
+
     // a run that goes on begins with small lists again
     test_ok(one, singe_sim_clone(one, &resumed));
     for (int k = 0; k < 3; k++) {
         test_steps(one, 3), test_steps(three, 3), test_steps(resumed, 3);
         assert_true(scene->soup || crossings(one) == 0);
     }
+
     const CollisionSizes *sizes = &collision(one)->sizes;
     print_message("%u pairs where %u are usual, %u repulsions where %u are\n", collision(one)->pair_capacity,
                   sizes->pairs, collision(one)->repulsion_capacity, sizes->repulsions);
@@ -201,8 +211,10 @@ TEST(stripes_share_no_vertex) {
     print_message("%u repulsions in %u stripes\n", plan->repulsion_count, plan->stripe_count);
     assert_true(plan->stripe_count > 4);
     assert_int_equal(plan->stripe_first[plan->stripe_count], plan->repulsion_count);
+
     uint32_t *lowest = malloc(shell->vertex_count * sizeof *lowest);
     memset(lowest, 0xff, shell->vertex_count * sizeof *lowest);
+
     for (uint32_t s = 0; s < plan->stripe_count; s++)
         for (uint32_t k = plan->stripe_first[s]; k < plan->stripe_first[s + 1]; k++) {
             const Repulsion *repulsion = &plan->repulsions[k];
@@ -224,6 +236,7 @@ TEST(list_sizes_do_not_affect_results) {
         CollisionSizes sizes = tiny(small), same = collision_sizes(&usual->shell);
         same.entry_max = sizes.entry_max; // the order of pairs follows the grid
         resize(small, &sizes), resize(threads, &sizes), resize(usual, &same);
+
         test_steps(usual, 8), test_steps(small, 8), test_steps(threads, 8);
         assert_true(collision(small)->pair_capacity > sizes.pairs);
         assert_int_equal(singe_sim_timers(small).contact_dropped, 0);
@@ -239,6 +252,7 @@ TEST(dropped_pairs_are_counted) {
         const Crowd *scene;
         bool pairs, repulsions;
     } cases[] = {{&stack, true, false}, {&stack, false, true}, {&stack, true, true}, {&soup, true, false}};
+
     for (int full = 0; full < 4; full++) {
         SingeSim *sims[3];
         for (int k = 0; k < 3; k++) {
@@ -250,9 +264,11 @@ TEST(dropped_pairs_are_counted) {
             resize(sims[k], &sizes);
             test_steps(sims[k], 10);
         }
+
         SingeTimers timers = singe_sim_timers(sims[0]);
         print_message("%llu dropped\n", (unsigned long long)timers.contact_dropped);
         assert_true(timers.contact_dropped > 10);
+
         for (int k = 1; k < 3; k++) {
             assert_int_equal(singe_sim_timers(sims[k]).contact_dropped, timers.contact_dropped);
             test_assert_same(sims[0], sims[k]);
@@ -268,6 +284,7 @@ static SingeSim *flag(uint32_t n, float wind, int threads) {
     def.contact.enabled = true;
     def.time_step = 1.0f / 240;
     def.wind.velocity[0] = def.wind.gust = wind;
+
     SingeSim *sim = test_sim(&def, test_grid(n, n, 1.7e-3f, 1.7e-3f), NULL);
     const uint32_t corners[] = {0, n};
     SingePinDef pin = singe_default_pin();
@@ -285,6 +302,7 @@ TEST(steps_that_would_take_minutes_halt) {
     for (int k = 0; k < 2; k++) {
         sims[k] = flag(36, 1000, 1 + 2 * k);
         test_steps(sims[k], 3);
+
         const CollisionPlan *plan = collision(sims[k]);
         const SingeTimers timers = singe_sim_timers(sims[k]);
         print_message("%d of 3 steps halted, the last with %.0f units of work a cell\n", (int)timers.contact_halts,
@@ -305,6 +323,7 @@ TEST(flags_in_the_wind_keep_their_shape) {
     test_steps(sims[0], 8), test_steps(sims[1], 8);
     sims[2] = test_reload(NULL, sims[0]);
     test_steps(sims[2], 12);
+
     double searches = 0;
     for (int k = 0; k < 2; k++) {
         const double before = (double)singe_sim_timers(sims[k]).contact_searches;
@@ -326,6 +345,7 @@ TEST(flags_in_the_wind_keep_their_shape) {
 TEST(a_few_cells_do_not_split_the_step) {
     SingeSim *sim = flag(28, 0, 1);
     test_steps(sim, 1);
+
     float(*velocity)[4] = sim->state.dynamics.velocity;
     int parts[2];
     for (uint32_t all = 0; all < 2; all++) {
@@ -345,20 +365,24 @@ TEST(a_few_cells_do_not_split_the_step) {
 static double compared(uint32_t nx, uint32_t ny, float dx, float dy, int position) {
     SingeSimDef def = singe_default_sim();
     def.contact.enabled = true;
+
     TestMesh mesh = test_grid(nx, ny, dx, dy);
     if (position == 1) test_mesh_raise(&mesh);
     for (uint32_t v = 0; position == 2 && v < mesh.vertex_count; v++) { // y becomes x, x becomes z
         float *p = mesh.positions + 3 * (size_t)v, x = p[0];
         p[0] = p[1], p[1] = p[2], p[2] = x;
     }
+
     SingeSim *sim = test_sim(&def, mesh, NULL);
     test_steps(sim, 1);
+
     const CollisionPlan *plan = collision(sim);
     double sum = 0;
     for (uint32_t b = 0; b < plan->bucket_count; b++) {
         double count = plan->bucket_first[b + 1] - plan->bucket_first[b];
         sum += count * (count - 1) / 2;
     }
+
     sum /= plan->cell_count;
     singe_sim_destroy(sim);
     return sum;
@@ -384,6 +408,7 @@ TEST(a_step_without_memory_to_grow_is_repeated) {
         CollisionSizes sizes = tiny(sim);
         resize(sim, &sizes);
         hook.fail_at = hook.calls + fail, hook.once = true;
+
         SingeResult result = SINGE_OK;
         for (int step = 0; step < 8; step++) {
             float before[3];
@@ -391,11 +416,13 @@ TEST(a_step_without_memory_to_grow_is_repeated) {
             memcpy(before, singe_sim_view(sim).position[last], sizeof before);
             result = singe_sim_step(sim);
             if (!result) continue;
+
             test_refused(sim, SINGE_ERROR_MEMORY, result);
             assert_string_equal(singe_sim_error(sim)->stage, "contact");
             assert_memory_equal(before, singe_sim_view(sim).position[last], sizeof before);
             failures++;
         }
+
         assert_int_equal(crossings(sim), 0);
         assert_int_equal(singe_sim_timers(sim).contact_dropped, 0);
         bool over = hook.calls < hook.fail_at;
@@ -403,6 +430,7 @@ TEST(a_step_without_memory_to_grow_is_repeated) {
         test_allocator_check(&hook);
         if (over) break;
     }
+
     print_message("%d steps failed\n", failures);
     assert_true(failures > 8);
 }

@@ -28,11 +28,13 @@ static void add_hinge(SingeSim *sim, uint32_t *seed, int number) {
     position[4][0] = random_from(seed, 0, edge), position[4][1] = -far;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 3; i++) axes[k][i] = random_from(seed, -1, 1) + 2 * (float)(i == (k + number) % 3);
+
     for (int v = 0; v < 5; v++)
         for (int i = 0; i < 3; i++) {
             x[v][i] = i == 2 ? 0.02f : 0.05f * (float)(i == 0 ? number % 8 : number / 8);
             for (int k = 0; k < 3; k++) x[v][i] += position[v][k] * axes[k][i] / 2;
         }
+
     SingeSheetDef def = singe_default_sheet();
     SingeSheetId id;
     def.vertex_count = 5, def.positions = x[0], def.cell_count = 2, def.cells = cells;
@@ -44,12 +46,14 @@ static void add_hinge(SingeSim *sim, uint32_t *seed, int number) {
 static SingeSim *hinges(uint32_t seed, int threads, bool contact) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
+
     def.thread_count = threads;
     def.contact.enabled = contact;
     def.solver.substeps = 3; // coarse: more of them would cross
     assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
     for (int i = 0; i < HINGES; i++) add_hinge(sim, &seed, i);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+
     SingeColliderDef ground = singe_default_collider();
     SingePoseKey key = {.rotation = {0, 0, 0, 1}};
     ground.path_count = 1, ground.path = &key, ground.friction = 0.3f;
@@ -66,6 +70,7 @@ static void step_all(SingeSim *const sims[3], long *with, long *without) {
         assert_int_equal(singe_sim_step(sims[i]), SINGE_OK);
         assert_int_equal(singe_sim_surface(sims[i], &surface[i]), SINGE_OK);
     }
+
     *with += surface_crossings(&surface[0]);
     *without += surface_crossings(&surface[2]);
     assert_int_equal(surface[0].vertex_count, surface[1].vertex_count);
@@ -105,6 +110,7 @@ static SingeSim *pages(int count) {
         const float position[4][3] = {{in * x, in * y, 0.3f}, {x, y, 0.32f}, {x, y, 0.38f}, {in * x, in * y, 0.4f}};
         SingeSheetDef sheet = singe_default_sheet();
         SingeSheetId id;
+
         sheet.vertex_count = 4, sheet.positions = position[0], sheet.cell_count = 1, sheet.cells = cell;
         sheet.material.thickness = singe_param(1e-4f);
         sheet.velocity[0] = random_from(&seed, -1, 1), sheet.velocity[1] = random_from(&seed, -1, 1);

@@ -20,8 +20,10 @@ TEST(triangles_are_as_far_as_samples_show) {
     for (int trial = 0; trial < 2000; trial++) {
         Float4 p = point(1), a = point(1), b = point(1), c = point(1);
         if (trial % 7 == 0) c = a + 1e-4f * point(1); // a sliver
+
         float weight[3], min = INFINITY, got = length(feature_from_triangle(p, a, b, c, weight));
         assert_true(weight[0] > -1e-3f && weight[1] > -1e-3f && weight[2] > -1e-3f);
+
         for (int i = 0; i <= SPLITS; i++)
             for (int j = 0; i + j <= SPLITS; j++) {
                 float u = (float)i / SPLITS, v = (float)j / SPLITS;
@@ -57,6 +59,7 @@ TEST(slivers_have_a_distance) {
         Float4 p = a + u * (0.5f * (b - a) + 0.5f * (c - a)) + far * normal;
         float weight[3], s, t;
         triangles = fmaxf(triangles, fabsf(length(feature_from_triangle(p, a, b, c, weight)) - far));
+
         Float4 direction = along + powf(10, -2 + 2 * uniform()) * side, cross = 0.5f * (a + b) + far * normal;
         float got = length(feature_from_segment(a, b, cross - u * direction, cross + 0.4f * direction, &s, &t));
         edges = fmaxf(edges, fabsf(got - far));
@@ -119,6 +122,7 @@ TEST(fast_displacements_are_free) {
     fall.displacement[0] = (Float4){0, 0, -0.305f, 0}; // and through
     float hit = feature_sweep(&fall, gap, 0);
     assert_true(hit <= 1 && hit * 0.305f < 0.299f && hit * 0.305f > 0.29f);
+
     FeatureSweep slide = {.position = {{-1, -5, 5e-3f, 0}, {1, -5, 5e-3f, 0}, {0, -1, 0, 0}, {0, 1, 0, 0}},
                           .edges = true};
     slide.displacement[0] = slide.displacement[1] = (Float4){0.1f, 10, 0, 0};
@@ -145,6 +149,7 @@ static bool cells_pierce(const Float4 a[5], const Float4 b[5], const unsigned sh
             if (!joined && cross_pierces(a[edge[e][0]], a[edge[e][1]], b[corner[0]], b[corner[1]], b[corner[2]]))
                 return true;
         }
+
     return false;
 }
 
@@ -157,6 +162,7 @@ TEST(cells_proven_apart_do_not_cross) {
         const float bend = 0.2f + 0.4f * (float)(trial % 4);
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++) grid[i][j] = (Float4){(float)i, (float)j, 0, 0} + point(bend);
+
         for (int c = 0; c < 3; c++) { // at the corner 1, 1: below to the left, to the right of that, above that
             const int x = c > 0, y = c > 1;
             cell[c][0] = grid[x][y], cell[c][1] = grid[x + 1][y], cell[c][2] = grid[x + 1][y + 1];
@@ -166,6 +172,7 @@ TEST(cells_proven_apart_do_not_cross) {
 
         Float4 normals[3], normal;
         for (int c = 0; c < 3; c++) normals[c] = feature_normals(cell[c]);
+
         const unsigned side[2] = {2 | 4, 1 | 8}, corner[2] = {4, 1};
         for (int kind = 0; kind < 2; kind++) {
             const Float4 *a = cell[0], *b = cell[kind ? 2 : 1];

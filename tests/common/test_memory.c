@@ -16,6 +16,7 @@ TEST(memory_in_use_is_counted) {
     assert_true(memory_grow(&memory, &array, 10, 100, sizeof *array));
     assert_true(array[9] == 5);
     assert_int_equal(memory.held, 800);
+
     assert_true(memory_grow(&memory, &array, 100, 3, sizeof *array));
     assert_int_equal(memory.held, 24);
     FREE(&memory, array, 3);
@@ -36,6 +37,7 @@ TEST(empty_arrays_can_be_freed) {
     assert_true(memory_grow(&memory, &array, 0, 4, sizeof *array));
     assert_true(memory_grow(&memory, &array, 4, 0, sizeof *array));
     FREE(&memory, array, 0);
+
     void *block = memory_new(&memory, 7, 0);
     assert_non_null(block);
     memory_free(&memory, &block, 7, 0);
@@ -51,10 +53,12 @@ TEST(overflow_is_refused) {
     assert_null(memory_new(&memory, SIZE_MAX / 8 + 2, 8)); // wraps to 8
     assert_null(memory_new(&memory, SIZE_MAX, SIZE_MAX));
     assert_int_equal(hook.calls, 0);
+
     uint64_t *array;
     assert_non_null(NEW(&memory, array, 2));
     array[1] = 77;
     uint64_t *before = array;
+
     assert_false(memory_grow(&memory, &array, 2, SIZE_MAX / 8 + 2, sizeof *array));
     assert_ptr_equal(array, before);
     assert_int_equal(array[1], 77);

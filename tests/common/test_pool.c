@@ -67,8 +67,10 @@ TEST(jobs_follow_each_other) {
     for (int threads = 2; threads <= 5; threads++) {
         Pool *pool = make_pool(&memory, threads);
         memset(values, 0, sizeof values);
+
         unsigned expected = 0;
         for (int job = 0; job < 15; job++) expected = expected * 3 + 1;
+
         for (int round = 0; round < 100; round++) {
             memset(values, 0, sizeof values);
             for (int job = 0; job < 15; job++) pool_for(pool, 97, 1 + job % 5, bump, values);
@@ -128,16 +130,19 @@ TEST(sums_are_bitwise_equal) {
     Memory memory = memory_make((SingeAllocator){0});
     double *values = malloc(COUNT * sizeof *values), *partial = malloc((size_t)pool_blocks(COUNT) * sizeof *partial);
     assert_true(values && partial);
+
     uint32_t random = 1;
     for (int i = 0; i < COUNT; i++) {
         random = random * 1664525u + 1013904223u;
         values[i] = ((double)random / 4294967296.0 - 0.5) * (i % 7 ? 1 : 1e10); // cancels badly: order matters
     }
+
     static const int counts[] = {0, 1, 1023, 1024, 1025, 50000, COUNT};
     for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
         double expected = 0;
         for (int first = 0; first < counts[c]; first += POOL_BLOCK)
             expected += sum_range(values, first, first + POOL_BLOCK < counts[c] ? first + POOL_BLOCK : counts[c]);
+
         for (int threads = 1; threads <= 8; threads++) {
             Pool *pool = make_pool(&memory, threads);
             double sum = pool_sum(pool, counts[c], sum_range, values, partial);
@@ -189,6 +194,7 @@ static void *host_enqueue(void *context, SingeTaskFn *run, void *task, int count
 static void host_finish(void *context, void *token) {
     Host *host = context;
     assert_ptr_equal(token, host);
+
     for (int end = host->count; end > 0;) {
         int begin = end > host->grain ? end - host->grain : 0;
         if (begin < host->grain) begin = 0;

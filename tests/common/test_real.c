@@ -40,6 +40,7 @@ TEST(floats_are_rounded_as_if_exact) {
                 {portable_cosf, cos, -7, 7},           {portable_acosf, acos, -1, 1},
                 {power, double_power, 1e-4f, 50},      {root, double_root, 1e-4f, 50},
                 {angle, double_angle, -5, 5}};
+
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++)
         assert_true(worst(rows[k].ours, rows[k].wanted, rows[k].low, rows[k].high) < 0.50001);
     assert_true(worst(off, exp, -80, 80) > 0.50001); // a digit off is seen
@@ -78,6 +79,7 @@ TEST(the_larger_and_the_smaller_are_the_c_library_s) {
             assert_true(isnan(larger) && isnan(smaller) && isnan(double_max(a, b)) && isnan(double_min(a, b)));
             continue;
         }
+
         assert_true(larger == fmaxf(fa, fb) && smaller == fminf(fa, fb)); // not of a NaN
         assert_true(double_max(a, b) == fmax(a, b) && double_min(a, b) == fmin(a, b));
         if (a == 0 && b == 0) assert_true(signbit(larger) == signbit(fb) && signbit(smaller) == signbit(fb));

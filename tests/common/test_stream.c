@@ -25,11 +25,13 @@ TEST(streams_read_what_they_wrote) {
     Stream measure = {.mode = STREAM_MEASURE};
     walk(&measure, &out);
     assert_int_equal(measure.offset, 4 + 8 + 5);
+
     uint8_t bytes[17];
     Stream write = {.mode = STREAM_WRITE, .bytes = bytes, .size = sizeof bytes};
     walk(&write, &out);
     assert_false(write.failed);
     assert_int_equal(write.offset, 17);
+
     Stream read = {.mode = STREAM_READ, .bytes = bytes, .size = sizeof bytes};
     memset(&in, 0xFF, sizeof in);
     walk(&read, &in);
@@ -48,11 +50,13 @@ TEST(truncated_bytes_read_as_zero) {
         uint8_t *exact = realloc(bytes, size ? size : 1);
         Things in;
         memset(&in, 0xFF, sizeof in);
+
         Stream read = {.mode = STREAM_READ, .bytes = exact, .size = size};
         walk(&read, &in);
         assert_true(read.failed);
         assert_int_equal(in.number, size < 4 ? 0 : 0xEEEEEEEEu);
         for (int i = 0; i < 5; i++) assert_int_equal(in.list[i], 0);
+
         Stream write = {.mode = STREAM_WRITE, .bytes = exact, .size = size};
         walk(&write, &in);
         assert_true(write.failed);
@@ -64,6 +68,7 @@ TEST(truncated_bytes_read_as_zero) {
 TEST(checksum_sees_every_bit) {
     uint8_t bytes[43];
     for (size_t i = 0; i < sizeof bytes; i++) bytes[i] = (uint8_t)(i * 37);
+
     uint64_t good = stream_checksum(bytes, sizeof bytes);
     for (size_t bit = 0; bit < 8 * sizeof bytes; bit++) {
         bytes[bit / 8] ^= (uint8_t)(1 << bit % 8);
@@ -82,6 +87,7 @@ TEST(errors_are_cut_and_ended) {
     char word[600];
     memset(word, 'x', sizeof word - 1);
     word[sizeof word - 1] = 0;
+
     SingeError error;
     memset(&error, 0xFF, sizeof error);
     assert_int_equal(error_set(&error, SINGE_ERROR_MESH, "a stage with a name far too long", 42, "%s", word),

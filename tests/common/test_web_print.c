@@ -60,6 +60,7 @@ TEST(floats) {
                              5e-324,
                              (double)INFINITY};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) same("%g %.3g %.4g", values[i], values[i], -values[i]);
+
     same("%g", (double)NAN);
     for (int i = 1; i < 20000; i++) same_float((double)(float)(1.2345e-7 * i * i)); // not half-way between two
 }

@@ -14,6 +14,7 @@ TEST(singular_values_match_known_ones) {
     const double matrix[] = {3 * c, -2 * s, 0, 3 * s, 2 * c, 0, 0, 0, 1e-9}, twice[] = {1, 2, 3, 4, 2, 4, 6, 8};
     double values[3];
     assert_int_equal(singular_values(matrix, 3, 3, values), 0);
+
     assert_true(fabs(values[0] - 3) < 1e-14 && fabs(values[1] - 2) < 1e-14 && fabs(values[2] / 1e-9 - 1) < 1e-12);
     assert_int_equal(singular_values(twice, 2, 4, values), 0);
     assert_true(fabs(values[0] - sqrt(150)) < 1e-13 && values[1] < 1e-14);
@@ -97,6 +98,7 @@ TEST(every_colour_has_full_rank) {
 
     assert_int_equal(paper_network(sim, PAPER_SWING, true, 0, 0, &all, NULL), SINGE_OK);
     assert_int_equal(paper_network(sim, PAPER_SWING, false, 1e-4, 0, &colours, NULL), SINGE_OK);
+
     size_t columns = 3 * (size_t)singe_sim_view(sim).particle_count;
     assert_int_equal(singe_network_set_size(all, 0), 10 * 5 * 5);
     assert_true(rank(all, 0, columns) <= columns - 6); // two of the particles are held
@@ -137,6 +139,7 @@ TEST(all_at_once_diverges_without_a_floor) {
             print_message("floor %g, %s: %.3g of the error is left\n", floors[f], one ? "all at once" : "in turn",
                           left[f][one]);
         }
+
     assert_true(left[0][1] > 2);
     assert_true(left[0][0] < 0.95);
     assert_true(left[1][0] < 0.95);

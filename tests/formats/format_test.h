@@ -53,6 +53,7 @@ static inline void assert_mesh_refused(const char *name, const void *data, size_
     if (result != code || error.code != code)
         fail_msg("result %d, not %d, for %.*s (%s)", result, code, (int)size, (const char *)data, error.message);
     assert_string_equal(error.stage, strrchr(name, '.') + 1);
+
     if (element >= 0 && error.element != element)
         fail_msg("%d, not %d: %s", (int)error.element, (int)element, error.message);
     assert_message(&error, part);

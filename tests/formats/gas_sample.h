@@ -20,6 +20,7 @@ static inline bool gas_sample_make(GasSample *s, uint32_t nx, uint32_t ny, uint3
                      .flame = malloc(count * sizeof(float)),
                      .velocity = malloc(count * sizeof(float[3]))};
     if (!s->temperature || !s->smoke || !s->flame || !s->velocity) return false;
+
     s->gas = (SingeGas){.size = {nx, ny, nz},
                         .origin = {-0.1f, -0.07f, 0.013f},
                         .cell = 0.008f,
@@ -35,6 +36,7 @@ static inline bool gas_sample_make(GasSample *s, uint32_t nx, uint32_t ny, uint3
         s->flame[i] = 2e6f * across * expf(-0.01f * z * z);
         s->velocity[i][0] = 0.2f * across, s->velocity[i][1] = -0.01f * y, s->velocity[i][2] = 1.5f * across;
     }
+
     return true;
 }
 

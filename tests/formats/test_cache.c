@@ -51,11 +51,13 @@ static SingeSurface make_sample(void) {
     assert_true(surface_new(&s, VERTICES, TRIANGLES));
     list_fields(&s, fields);
     for (uint32_t i = 0; i < FLOATS; i++) fill(fields[i], VERTICES * widths[i], i + 1);
+
     for (int i = 0; i < VERTICES; i++) {
         s.piece[i] = i * 1000003;
         s.source_vertex[i] = i % 2 ? -1 : INT32_MAX - i;
         s.sheet[i] = i;
     }
+
     memcpy(s.triangles, triangles, sizeof triangles);
     return s;
 }
@@ -75,6 +77,7 @@ TEST(round_trip_is_bitwise) {
     assert_true(time == 1 / 24.0 + 7);
     assert_int_equal(read.vertex_count, VERTICES);
     assert_int_equal(read.triangle_count, TRIANGLES);
+
     void *fields[FIELDS], *wanted[FIELDS];
     list_fields(&read, fields);
     list_fields(&sample, wanted);
@@ -113,6 +116,7 @@ TEST(header_is_as_documented) {
     memcpy(&bits, &sample.position[0][0], 4);
     const uint8_t *p = bytes.data + sizeof header - 1;
     assert_int_equal(p[0] | p[1] << 8 | p[2] << 16 | (uint32_t)p[3] << 24, bits);
+
     static const uint8_t face[] = {3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0};
     assert_memory_equal(p + VERTICES * 25 * 4, face, sizeof face);
     bytes_free(&bytes);
@@ -125,14 +129,17 @@ TEST(the_old_name_of_burnt_is_read) {
     const char name[] = "float burnt\n", old[] = "float char\n", none[] = "float coal\n";
     char *at = strstr((char *)bytes.data, name);
     assert_non_null(at);
+
     const size_t before = (size_t)((uint8_t *)at - bytes.data), after = bytes.size - before - strlen(name);
     memcpy(at, old, strlen(old));
     memmove(at + strlen(old), at + strlen(name), after);
+
     SingeSurface read;
     assert_int_equal(ply_read_surface("a.ply", bytes.data, bytes.size - 1, (SingeAllocator){0}, &read, NULL, &error),
                      SINGE_OK);
     assert_memory_equal(read.burn, sample.burn, VERTICES * sizeof *read.burn);
     singe_surface_free(&read);
+
     memcpy(at, none, strlen(none));
     assert_int_equal(ply_read_surface("a.ply", bytes.data, bytes.size - 1, (SingeAllocator){0}, &read, NULL, &error),
                      SINGE_ERROR_FORMAT);
@@ -169,24 +176,29 @@ TEST(damage_is_noticed) {
     for (size_t size = 0; size < bytes.size; size++)
         if (read_copy(bytes.data, size, &error) == SINGE_OK) fail_msg("cut to %d bytes", (int)size);
     assert_int_equal(read_copy(bytes.data, bytes.size, &error), SINGE_OK);
+
     size_t faces = bytes.size - TRIANGLES * 13;
     bytes.data[faces] = 4;
     assert_int_equal(read_copy(bytes.data, bytes.size, &error), SINGE_ERROR_MESH);
     bytes.data[faces] = 3;
     bytes.data[faces + 1] = VERTICES;
     assert_int_equal(read_copy(bytes.data, bytes.size, &error), SINGE_ERROR_MESH);
+
     bytes.data[faces + 4] = 0xff;
     assert_int_equal(read_copy(bytes.data, bytes.size, &error), SINGE_ERROR_MESH);
     assert_message(&error, "out of range");
     bytes.data[faces + 1] = bytes.data[faces + 4] = 0;
+
     uint8_t *x = bytes.data + faces - VERTICES * 25 * 4;
     x[2] = 0xc0, x[3] = 0x7f;
     assert_int_equal(read_copy(bytes.data, bytes.size, &error), SINGE_ERROR_FORMAT);
     assert_message(&error, "x of vertex 0");
     bytes_free(&bytes);
+
     static const char mesh[] = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n";
     assert_int_equal(read_copy((const uint8_t *)mesh, sizeof mesh - 1, &error), SINGE_ERROR_FORMAT);
     assert_message(&error, "not a cache of Singe");
+
     static const char other[] = "ply\nformat binary_little_endian 1.0\ncomment singe 9 time 1\nelement vertex 0\n"
                                 "property float x\nend_header\n";
     assert_int_equal(read_copy((const uint8_t *)other, sizeof other - 1, &error), SINGE_ERROR_FORMAT);
@@ -209,6 +221,7 @@ TEST(allocation_failure_is_clean) {
     test_allocations_fail(14, ply_read_surface("a.ply", bytes.data, bytes.size, allocator, &read, NULL, &error),
                           singe_surface_free(&read));
     bytes_free(&bytes);
+
     TestAllocator counter = {.fail_at = 1, .once = true};
     sample.allocator = test_allocator(&counter);
     assert_int_equal(ply_write_surface(path, &sample, 3, &error), SINGE_ERROR_MEMORY);

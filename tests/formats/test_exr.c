@@ -19,12 +19,14 @@ static void read_channel(const char *name, exr_pixel_type_t kept, void *values) 
     exr_context_initializer_t hooks = EXR_DEFAULT_CONTEXT_INITIALIZER;
     hooks.error_handler_fn = swallow;
     assert_int_equal(exr_start_read(&file, path, &hooks), EXR_ERR_SUCCESS);
+
     exr_attr_box2i_t window;
     assert_int_equal(exr_get_data_window(file, 0, &window), EXR_ERR_SUCCESS);
     assert_int_equal(window.max.x - window.min.x + 1, WIDTH);
     assert_int_equal(window.max.y - window.min.y + 1, HEIGHT);
     int32_t lines;
     assert_int_equal(exr_get_scanlines_per_chunk(file, 0, &lines), EXR_ERR_SUCCESS);
+
     exr_decode_pipeline_t decoder = EXR_DECODE_PIPELINE_INITIALIZER;
     bool found = false;
     for (int y = 0; y < HEIGHT; y += lines) {
@@ -32,6 +34,7 @@ static void read_channel(const char *name, exr_pixel_type_t kept, void *values) 
         assert_int_equal(exr_read_scanline_chunk_info(file, 0, y, &chunk), EXR_ERR_SUCCESS);
         if (y == 0) assert_int_equal(exr_decoding_initialize(file, 0, &chunk, &decoder), EXR_ERR_SUCCESS);
         else assert_int_equal(exr_decoding_update(file, 0, &chunk, &decoder), EXR_ERR_SUCCESS);
+
         for (int i = 0; i < decoder.channel_count; i++) {
             exr_coding_channel_info_t *channel = &decoder.channels[i];
             channel->decode_to_ptr = NULL;
@@ -67,6 +70,7 @@ TEST(layers_read_back) {
                                    {"Z", EXR_KIND_FLOAT, depth, 1},
                                    {"id.piece", EXR_KIND_ID, id, 1}};
     assert_int_equal(exr_write(path, WIDTH, HEIGHT, channels, 5, NULL, NULL), SINGE_OK);
+
     const char *const names[3] = {"R", "G", "B"};
     for (int c = 0; c < 3; c++) {
         read_channel(names[c], EXR_PIXEL_HALF, got);
@@ -91,6 +95,7 @@ TEST(bad_layers_are_refused) {
     assert_int_equal(exr_write(path, 5, 5, twice, 0, NULL, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(exr_write(path, WIDTH, HEIGHT, twice, 2, NULL, &error), SINGE_ERROR_FORMAT);
     assert_non_null(strstr(error.message, "cannot encode"));
+
     char nowhere[600];
     snprintf(nowhere, sizeof nowhere, "%s/none/a.exr", folder);
     assert_int_equal(exr_write(nowhere, WIDTH, HEIGHT, twice, 1, NULL, &error), SINGE_ERROR_FILE);

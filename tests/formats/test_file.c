@@ -45,6 +45,7 @@ TEST(writes_and_reads) {
     assert_int_equal(file_write(target, "again", 5, NULL), SINGE_OK);
     assert_contents(target, "again");
     assert_int_equal(files_in_folder(), 1);
+
     // a name without a folder is in the working one
     char before[512];
     assert_non_null(getcwd(before, sizeof before));
@@ -71,6 +72,7 @@ TEST(taken_names_are_no_obstacle) {
         snprintf(name, sizeof name, "c.txt.%ld-%d.tmp", (long)getpid(), i);
         assert_int_equal(unlink(inside(name)), 0);
     }
+
     assert_int_equal(unlink(target), 0);
     assert_int_equal(files_in_folder(), 0);
     free(target);
@@ -81,6 +83,7 @@ TEST(reading_says_why) {
     assert_int_equal(file_read(inside("missing"), libc_allocator, &bytes, &error), SINGE_ERROR_FILE);
     assert_message(&error, "missing: cannot read: No such file");
     assert_null(bytes.data);
+
     assert_int_equal(file_read(folder, libc_allocator, &bytes, &error), SINGE_ERROR_FILE);
     assert_message(&error, "directory");
     assert_int_equal(file_read("/dev/null", libc_allocator, &bytes, &error), SINGE_ERROR_FILE);
@@ -88,6 +91,7 @@ TEST(reading_says_why) {
     assert_int_equal(mkfifo(inside("pipe"), 0600), 0);
     assert_int_equal(file_read(inside("pipe"), libc_allocator, &bytes, &error), SINGE_ERROR_FILE);
     unlink(inside("pipe"));
+
     // a sparse file of 2 GiB and a byte takes no room
     assert_int_equal(file_write(inside("large"), "", 0, &error), SINGE_OK);
     if (truncate(inside("large"), (off_t)2147483649LL) == 0) {
@@ -105,15 +109,18 @@ TEST(writing_says_why) {
     assert_int_equal(file_write("", "x", 1, &error), SINGE_ERROR_FILE);
     assert_int_equal(file_write("/dev/full", "x", 1, &error), SINGE_ERROR_FILE);
     assert_message(&error, "not a regular file");
+
     struct stat about;
     assert_int_equal(stat("/dev/full", &about), 0);
     assert_true(S_ISCHR(about.st_mode));
+
     char longest[6000];
     memset(longest, 'a', sizeof longest);
     longest[sizeof longest - 1] = 0;
     assert_int_equal(file_write(longest, "x", 1, &error), SINGE_ERROR_FILE);
     assert_message(&error, "too long");
     assert_int_equal(file_write("/proc/singe", "x", 1, &error), SINGE_ERROR_FILE);
+
     // root may write anywhere
     if (geteuid() != 0) {
         assert_int_equal(mkdir(inside("locked"), 0500), 0);
@@ -128,6 +135,7 @@ TEST(writing_says_why) {
 TEST(links_are_replaced) {
     struct stat about;
     assert_int_equal(file_write(inside("theirs"), "theirs", 6, NULL), SINGE_OK);
+
     const char *const targets[] = {"theirs", "nothing", "/dev/null", "."};
     for (int i = 0; i < 4; i++) {
         assert_int_equal(symlink(targets[i], inside("link")), 0);
@@ -138,6 +146,7 @@ TEST(links_are_replaced) {
         assert_contents(inside("theirs"), "theirs");
         assert_int_equal(unlink(inside("link")), 0);
     }
+
     assert_int_equal(unlink(inside("theirs")), 0);
     assert_int_equal(files_in_folder(), 0);
 }
@@ -145,22 +154,26 @@ TEST(links_are_replaced) {
 TEST(drafts_take_the_place_later) {
     const char *target = inside("film");
     char *first, *second;
+
     assert_int_equal(file_write(target, "old", 3, &error), SINGE_OK);
     assert_int_equal(file_draft(target, &first, &error), SINGE_OK);
     assert_int_equal(file_draft(target, &second, &error), SINGE_OK);
     assert_string_not_equal(first, second);
     assert_int_equal(file_write(first, "new", 3, &error), SINGE_OK);
+
     assert_contents(target, "old");
     assert_int_equal(file_publish(first, target, &error), SINGE_OK);
     assert_contents(target, "new");
     file_discard(second);
     file_discard(NULL);
+
     assert_int_equal(files_in_folder(), 1);
     // one whose file has gone leaves what was there
     assert_int_equal(file_draft(target, &first, &error), SINGE_OK);
     assert_int_equal(unlink(first), 0);
     assert_int_equal(file_publish(first, target, &error), SINGE_ERROR_FILE);
     assert_message(&error, "film: cannot write: No such file");
+
     assert_contents(target, "new");
     assert_int_equal(unlink(target), 0);
     assert_int_equal(file_draft(inside("no/where"), &first, &error), SINGE_ERROR_FILE);
@@ -174,12 +187,14 @@ TEST(failed_write_keeps_the_old_file) {
     enum { LARGE = 1 << 20 };
     char *data = calloc(1, LARGE);
     assert_int_equal(file_write(target, "old", 3, &error), SINGE_OK);
+
     struct rlimit before, small;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     small = before;
     small.rlim_cur = 65536;
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+
     SingeResult result = file_write(target, data, LARGE, &error);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
     assert_int_equal(result, SINGE_ERROR_FILE);

@@ -95,6 +95,7 @@ TEST(kinds_of_numbers_are_read) {
     mesh = expect(SCENE NODE MESH("{\"attributes\":{\"POSITION\":4},\"indices\":2}"), two, 6);
     expect_positions(&mesh, moved, 4);
     mesh = expect(SCENE NODE MESH("{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":5},\"mode\":6}"), two, 6);
+
     static const float uv[] = {0, 1, 1, 1, 1, 0, 0, 1, 1, 0, 0, 0}; // v runs up
     assert_memory_equal(mesh.uv, uv, sizeof uv);
     expect_positions(&mesh, square, 4);
@@ -102,6 +103,7 @@ TEST(kinds_of_numbers_are_read) {
                                   "{\"attributes\":{\"POSITION\":0},\"indices\":3,\"mode\":6},{\"attributes\":{}}"),
                   (const uint32_t[]){4, 5, 6, 4, 6, 7}, 6);
     assert_int_equal(mesh.vertex_count, 8);
+
     polygons_free(&mesh);
     mesh = expect(SCENE NODE MESH("{\"attributes\":{\"POSITION\":0},\"indices\":3,\"mode\":5}"),
                   (const uint32_t[]){0, 1, 2, 2, 1, 3}, 6);
@@ -156,6 +158,7 @@ TEST(bad_files_are_refused) {
         {SCENE ",\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{}}}]" MESH(PRIMITIVE),
          SINGE_ERROR_FORMAT, "nodes[0]: EXT_mesh_gpu_instancing is not supported"},
     };
+
     Data d = data();
     Polygons mesh;
     SingeError error;
@@ -213,6 +216,7 @@ TEST(bad_buffers_are_refused) {
         {TEXT(ZEROS, ",\"byteStride\":12", SPARSE("1", "\"bufferView\":0,\"componentType\":5121", "\"bufferView\":0")),
          "sparse indices must be contiguous"},
     };
+
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Polygons mesh;
         SingeError error = {0};
@@ -235,11 +239,13 @@ TEST(numbers_of_every_width_are_read) {
         {",\"componentType\":5122,\"count\":3,\"type\":\"VEC3\"", 0},
         {",\"componentType\":5125,\"count\":3,\"type\":\"VEC3\"", 1065353216},
     };
+
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char json[2000];
         snprintf(json, sizeof json, "%s%s}]}", TEXT(ZEROS, "", "") "", "");
         char *end = strstr(json, "\"accessors\":[{\"bufferView\":0");
         sprintf(end, "\"accessors\":[{\"bufferView\":0%s}]}", cases[i].accessor);
+
         Polygons mesh;
         SingeError error = {0};
         if (polygons_read("a.gltf", (const uint8_t *)json, strlen(json), (SingeAllocator){0}, &mesh, &error))
@@ -258,6 +264,7 @@ TEST(copies_are_limited) {
     for (int i = 1; i < COPIES; i++) length += (size_t)sprintf(text + length, ",%d", i);
     length += (size_t)sprintf(text + length, "]}],\"nodes\":[{\"mesh\":0}");
     for (int i = 1; i < COPIES; i++) length += (size_t)sprintf(text + length, ",{\"mesh\":0}");
+
     length +=
         (size_t)sprintf(text + length,
                         "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{"
@@ -266,6 +273,7 @@ TEST(copies_are_limited) {
                         VERTICES, 12 * VERTICES);
     memset(text + length, 'A', 16 * VERTICES), length += 16 * VERTICES;
     length += (size_t)sprintf(text + length, "\"}]}");
+
     TestAllocator counts = {0};
     Polygons mesh;
     SingeError error;

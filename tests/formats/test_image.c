@@ -47,13 +47,16 @@ static void encode_png(Encoded *encoded, PngKind kind, const uint8_t *rows, size
     png_set_write_fn(png, encoded, encoded_push, encoded_flush);
     png_set_IHDR(png, info, (png_uint_32)kind.width, (png_uint_32)kind.height, kind.depth, kind.colour, kind.interlace,
                  0, 0);
+
     static const png_color palette[] = {{10, 20, 30}, {40, 50, 60}, {200, 100, 0}};
     static const png_byte alpha[] = {255, 0, 51};
+
     if (kind.colour == PNG_COLOR_TYPE_PALETTE) png_set_PLTE(png, info, palette, 3);
     if (kind.transparent && kind.colour == PNG_COLOR_TYPE_PALETTE) png_set_tRNS(png, info, alpha, 3, NULL);
     if (kind.transparent && kind.colour == PNG_COLOR_TYPE_GRAY)
         png_set_tRNS(png, info, NULL, 0, &(png_color_16){.gray = 7});
     png_write_info(png, info);
+
     png_bytep pointers[64];
     for (int y = 0; y < kind.height; y++) pointers[y] = (png_bytep)(rows + row_bytes * (size_t)y);
     png_write_image(png, pointers);
@@ -107,6 +110,7 @@ TEST(reads_every_kind_of_png) {
     static const uint8_t indices[] = {0, 1, 2};
     static const uint8_t colours[] = {10, 20, 30, 40, 50, 60, 200, 100, 0},
                          over_white[] = {10, 20, 30, 255, 255, 255, 244, 224, 204};
+
     encode_png(&encoded, (PngKind){3, 1, 8, PNG_COLOR_TYPE_PALETTE, 0, 0}, indices, 3);
     expect_pixels(&encoded, 3, 1, colours);
     encode_png(&encoded, (PngKind){3, 1, 8, PNG_COLOR_TYPE_PALETTE, 0, 1}, indices, 3);
@@ -123,17 +127,20 @@ TEST(png_write_reads_back) {
     uint8_t rgb[WIDTH * HEIGHT * 3];
     for (size_t i = 0; i < sizeof rgb; i++) rgb[i] = (uint8_t)(i * i >> 3);
     if (png_write(path, WIDTH, HEIGHT, rgb, &error)) fail_msg("%s", error.message);
+
     Bytes bytes = take_file(path);
     assert_int_equal(read_copy(bytes.data, bytes.size, &image, &error), SINGE_OK);
     assert_int_equal(image.width, WIDTH);
     assert_int_equal(image.height, HEIGHT);
     assert_memory_equal(image.rgb, rgb, sizeof rgb);
+
     image_free(&image);
     for (size_t size = 0; size < bytes.size; size++) {
         if (read_copy(bytes.data, size, &image, &error) == SINGE_OK) fail_msg("cut to %d bytes", (int)size);
         assert_null(image.rgb);
         assert_true(error.message[0] != 0);
     }
+
     bytes_free(&bytes);
     assert_int_equal(png_write(path, 0, 4, rgb, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(png_write(path, 4, 20000, rgb, &error), SINGE_ERROR_ARGUMENT);
@@ -148,6 +155,7 @@ static void encode_jpeg(Encoded *encoded, int width, int height, int components,
     struct jpeg_error_mgr errors;
     unsigned char *out = NULL;
     unsigned long size = 0;
+
     jpeg.err = jpeg_std_error(&errors);
     jpeg_create_compress(&jpeg);
     jpeg_mem_dest(&jpeg, &out, &size);
@@ -156,11 +164,13 @@ static void encode_jpeg(Encoded *encoded, int width, int height, int components,
     jpeg_set_defaults(&jpeg);
     jpeg_set_quality(&jpeg, 100, TRUE);
     if (progressive) jpeg_simple_progression(&jpeg);
+
     jpeg_start_compress(&jpeg, TRUE);
     while (jpeg.next_scanline < jpeg.image_height) {
         JSAMPROW row = (JSAMPROW)(rows + (size_t)jpeg.next_scanline * (size_t)(width * components));
         jpeg_write_scanlines(&jpeg, &row, 1);
     }
+
     jpeg_finish_compress(&jpeg);
     jpeg_destroy_compress(&jpeg);
     assert_true(size <= sizeof encoded->bytes);
@@ -174,6 +184,7 @@ TEST(reads_jpeg) {
     enum { WIDTH = 24, HEIGHT = 16 };
     uint8_t rgb[WIDTH * HEIGHT * 3];
     for (int i = 0; i < WIDTH * HEIGHT; i++) rgb[3 * i] = 200, rgb[3 * i + 1] = 100, rgb[3 * i + 2] = 50;
+
     for (int progressive = 0; progressive < 2; progressive++) {
         encode_jpeg(&encoded, WIDTH, HEIGHT, 3, JCS_RGB, rgb, progressive);
         if (read_copy(encoded.bytes, encoded.size, &image, &error)) fail_msg("%s", error.message);
@@ -194,6 +205,7 @@ TEST(reads_grey_and_ink) {
     assert_int_equal(read_copy(encoded.bytes, encoded.size, &image, NULL), SINGE_OK);
     for (int i = 0; i < 8 * 8 * 3; i++) assert_in_range(image.rgb[i], 75, 79);
     image_free(&image);
+
     // libjpeg writes an Adobe marker, under which 255 is no ink: light = C K / 255
     for (int i = 0; i < 64; i++) ink[4 * i] = 255, ink[4 * i + 1] = 128, ink[4 * i + 2] = 0, ink[4 * i + 3] = 200;
     encode_jpeg(&encoded, 8, 8, 4, JCS_CMYK, ink, false);
@@ -238,6 +250,7 @@ TEST(files_that_are_not_pictures_are_refused) {
     assert_message(&error, "neither a PNG nor a JPEG");
     assert_int_equal(read_copy((const uint8_t *)"\xff\xd8\xff", 3, &image, &error), SINGE_ERROR_FORMAT);
     assert_int_equal(read_copy((const uint8_t *)"\x89PNG\r\n\x1a\n", 8, &image, &error), SINGE_ERROR_FORMAT);
+
     TestAllocator counter = {0};
     static const uint32_t claims[][2] = {{16384, 16384}, {16385, 1}, {1, 0x7fffffff}, {0, 2}, {100000, 100000}};
     for (size_t i = 0; i < sizeof claims / sizeof *claims; i++) {
@@ -246,6 +259,7 @@ TEST(files_that_are_not_pictures_are_refused) {
                          SINGE_ERROR_FORMAT);
         assert_true(counter.largest < 100000);
     }
+
     static const uint8_t grey[64] = {0};
     encode_jpeg(&encoded, 8, 8, 1, JCS_GRAYSCALE, grey, false);
     for (size_t i = 0; i + 8 < encoded.size; i++)
@@ -255,6 +269,7 @@ TEST(files_that_are_not_pictures_are_refused) {
     assert_message(&error, "too short for its width");
     assert_true(counter.largest < 100000);
     test_allocator_check(&counter);
+
     // damage in the data is found by its checksum
     static const uint8_t rgb[12] = {0};
     encode_png(&encoded, (PngKind){2, 2, 8, PNG_COLOR_TYPE_RGB, 0, 0}, rgb, 6);
@@ -277,14 +292,17 @@ TEST(a_size_is_known_beforehand) {
     static const uint8_t rgb[3 * 48] = {0};
     static Encoded encoded;
     int w, h;
+
     snprintf(file, sizeof file, "%s/image", folder);
     assert_false(image_size(file, &w, &h));
     assert_false(image_size("/", &w, &h));
+
     for (int progressive = 0; progressive < 2; progressive++) {
         encode_jpeg(&encoded, 8, 6, 3, JCS_RGB, rgb, progressive);
         expect_size(file, encoded.bytes, encoded.size, true, 8, 6);
         for (size_t cut = 0; cut < 20; cut++) expect_size(file, encoded.bytes, cut, false, 0, 0);
     }
+
     claim_png(&encoded, 16000, 12000);
     expect_size(file, encoded.bytes, encoded.size, true, 16000, 12000);
     expect_size(file, encoded.bytes, 23, false, 0, 0);
@@ -301,11 +319,13 @@ TEST(luminance_is_exact_at_the_ends) {
     assert_int_equal(image_luminance(&ends, test_allocator(&counter), &picture, &error), SINGE_OK);
     assert_int_equal(picture.width, 3);
     assert_int_equal(picture.height, 2);
+
     static const float expected[] = {0, 1, 0.2126f, 0.7152f, 0.0722f, 0.2f};
     for (int i = 0; i < 6; i++) assert_float_equal(picture.values[i], expected[i], 1e-7f);
     assert_true(picture.values[0] == 0 && picture.values[1] == 1);
     test_allocator(&counter).resize(&counter, (void *)picture.values, 6 * sizeof(float), 0);
     test_allocator_check(&counter);
+
     TestAllocator failing = {.fail_at = 1, .once = true};
     assert_int_equal(image_luminance(&ends, test_allocator(&failing), &picture, &error), SINGE_ERROR_MEMORY);
 }

@@ -21,6 +21,7 @@ static SingeResult run(IsolateWork *work, void *context, Bytes *answer, SingeErr
     SingeResult result = isolate_run("a.mesh", work, context, few, (SingeAllocator){0}, answer, error);
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1); // none is left behind
     assert_int_equal(errno, ECHILD);
+
     if (result) {
         assert_null(answer->data);
         assert_int_equal(error->code, result);
@@ -248,6 +249,7 @@ TEST(signals_do_not_cut_the_wait) {
     uint8_t *bytes = many();
     sigaction(SIGALRM, &own, &before);
     setitimer(ITIMER_REAL, &often, NULL);
+
     SingeResult result = run(put_many, bytes, &got, &why);
     setitimer(ITIMER_REAL, &never, NULL);
     sigaction(SIGALRM, &before, NULL);
@@ -282,6 +284,7 @@ TEST(the_child_ends_with_its_parent) {
     int ends[2];
     char byte;
     assert_int_equal(pipe(ends), 0);
+
     pid_t parent = fork();
     if (parent == 0) {
         IsolateLimits limits = {64 << 20, 1000};

@@ -21,12 +21,14 @@ static Answer good(void) {
 static SingeResult take(const Answer *answer, size_t size, Polygons *polygons, SingeError *error) {
     uint8_t *bytes = malloc(size ? size : 1); // a sanitizer sees a read behind the end
     memcpy(bytes, answer, size);
+
     SingeResult result = mesh_answer_take("a.glb", bytes, size, (SingeAllocator){0}, polygons, error);
     free(bytes);
     if (result) {
         assert_null(polygons->positions);
         assert_message(error, "a.glb");
     }
+
     return result;
 }
 
@@ -38,11 +40,13 @@ TEST(good_answers_are_taken) {
     if (take(&answer, WHOLE, &polygons, &error)) fail_msg("%s", error.message);
     assert_int_equal(polygons.vertex_count, 4);
     assert_int_equal(polygons.face_count, 2);
+
     static const uint32_t first[] = {0, 4, 7};
     assert_memory_equal(polygons.first, first, sizeof first);
     assert_memory_equal(polygons.corners, answer.corners, sizeof answer.corners);
     assert_memory_equal(polygons.positions, answer.positions, sizeof answer.positions);
     assert_true(polygons.uv[0] == .5f && polygons.uv[3] == 0);
+
     polygons_free(&polygons);
     answer.counts.uv = 0;
     assert_int_equal(take(&answer, WITHOUT_UV, &polygons, &error), SINGE_OK);
@@ -57,6 +61,7 @@ TEST(damaged_answers_are_refused) {
 
     for (size_t size = 0; size < WHOLE; size++)
         assert_int_equal(take(&answer, size, &polygons, &error), SINGE_ERROR_FORMAT);
+
     static const uint64_t wrong[] = {0, 1, 3, 5, 8, 0x7fffffff, 0x80000000, 0x5555555555555559, UINT64_MAX};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         for (int field = 0; field < 4; field++) {
@@ -66,8 +71,10 @@ TEST(damaged_answers_are_refused) {
             answer.counts = (MeshCounts){counts[0], counts[1], counts[2], counts[3]};
             assert_int_equal(take(&answer, WHOLE, &polygons, &error), SINGE_ERROR_FORMAT);
         }
+
     answer = good(), answer.corners[3] = 4;
     assert_int_equal(take(&answer, WHOLE, &polygons, &error), SINGE_ERROR_FORMAT);
+
     static const uint32_t sizes[][2] = {{5, 2}, {2, 5}, {4, 4}, {3, 3}, {7, 0}, {0xfffffffc, 11}, {4, 0xffffffff}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         answer = good(), answer.sizes[0] = sizes[i][0], answer.sizes[1] = sizes[i][1];
@@ -77,6 +84,7 @@ TEST(damaged_answers_are_refused) {
     answer = good(), answer.positions[7] = INFINITY;
     assert_int_equal(take(&answer, WHOLE, &polygons, &error), SINGE_ERROR_MESH);
     assert_message(&error, "vertex 2");
+
     MeshCounts none = {0};
     assert_int_equal(
         mesh_answer_take("a.glb", (const uint8_t *)&none, sizeof none, (SingeAllocator){0}, &polygons, &error),

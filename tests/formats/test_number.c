@@ -65,6 +65,7 @@ TEST(agrees_with_libc) {
         float expected, value;
         memcpy(&expected, &bits, sizeof expected);
         if (!isfinite(expected)) continue;
+
         snprintf(text, sizeof text, i % 2 ? "%.9g" : "%.17g", (double)expected);
         size_t used;
         assert_int_equal(read_float(text, &value, &used), NUMBER_OK);
@@ -88,6 +89,7 @@ TEST(text_that_is_not_a_number_is_refused) {
         if (read_float(junk[i], &value, &used) != NUMBER_JUNK) fail_msg("\"%s\" was read", junk[i]);
         assert_int_equal(used, 0);
     }
+
     static const char *const endless[] = {"nan", "NaN", "-nan(ind)", "inf", "-Inf", "Infinity"};
     for (size_t i = 0; i < sizeof endless / sizeof *endless; i++)
         assert_int_equal(read_float(endless[i], &value, &used), NUMBER_NOT_FINITE);
@@ -113,6 +115,7 @@ TEST(reads_integers) {
         {"0", NUMBER_OK, 0},  {"-12", NUMBER_OK, -12}, {"+7", NUMBER_OK, 7},  {"4294967296", NUMBER_OK, 4294967296},
         {"", NUMBER_JUNK, 0}, {"-", NUMBER_JUNK, 0},   {"x", NUMBER_JUNK, 0}, {"99999999999999999999", NUMBER_RANGE, 0},
     };
+
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const uint8_t *at = (const uint8_t *)cases[i].text;
         int64_t value = 0;
@@ -141,6 +144,7 @@ TEST(ignores_the_locale) {
     bool found = false;
     for (size_t i = 0; !found && i < sizeof names / sizeof *names; i++) found = setlocale(LC_ALL, names[i]) != NULL;
     expect_float("1.5", 1.5f);
+
     char text[40];
     number_print(0.25, text);
     assert_string_equal(text, "0.25");

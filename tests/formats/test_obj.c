@@ -38,6 +38,7 @@ TEST(keeps_order_and_positions) {
     static const float positions[] = {0.1f, -0.2f, 0.3f, 125, 0, 0.5f, 1, 1, 0, -0.0f, 1, 0.3f, 9, 9, 9};
     static const float uv[] = {0, 0.5f, 1, 0.5f, 0.25f, 0, 0, 0.5f};
     static const uint32_t cells[] = {0, 1, 2, 3};
+
     assert_int_equal(mesh.vertex_count, 5);
     assert_int_equal(mesh.face_count, 1);
     assert_int_equal(mesh.attribute_count, 0);
@@ -111,6 +112,7 @@ TEST(faces_have_any_number_of_corners) {
     assert_int_equal(parse(SQUARE "v 2 0 0\nf 1 2 3\nf 1 3 4\nf 2 5 3\nf 1 2 5 3 4\nf 1 1 2\n", &mesh, NULL), SINGE_OK);
     static const uint32_t first[] = {0, 3, 6, 9, 14, 17}, lines[] = {6, 7, 8, 9, 10};
     static const uint32_t corners[] = {0, 1, 2, 0, 2, 3, 1, 4, 2, 0, 1, 4, 2, 3, 0, 0, 1};
+
     assert_int_equal(mesh.face_count, 5);
     assert_int_equal(mesh.corner_count, 17);
     assert_memory_equal(mesh.first, first, sizeof first);
@@ -150,6 +152,7 @@ static const char sample[] = SQUARE "v 2 0 0\nv 2 1 0\nvt 0 0\nvt .5 0\nvt .5 1\
 TEST(every_cut_is_an_error) {
     Polygons whole, cut;
     assert_int_equal(parse(sample, &whole, &error), SINGE_OK);
+
     int read = 0;
     for (size_t size = 0; size < sizeof sample - 1; size++) {
         char *text = strdup(sample);
@@ -190,6 +193,7 @@ TEST(the_letter_is_a4) {
     assert_int_equal(mesh.vertex_count, 47 * 66);
     assert_int_equal(mesh.face_count, 46 * 65);
     assert_true(10 * mesh.face_count <= 30000);
+
     double area = 0;
     for (uint32_t c = 0; c < mesh.face_count; c++) {
         const float *p[4];

@@ -37,12 +37,14 @@ TEST(reads_ascii) {
     static const float uv[] = {0, 0, 1, 1, 1, 0, 0.75f, 0.25f}; // of the face's corners
     static const float red[] = {1, 0, 51 * (1 / 255.0f), 102 * (1 / 255.0f)}, wet[] = {-5, 32767, -32768, 0};
     static const uint32_t cells[] = {3, 2, 1, 0};
+
     assert_int_equal(mesh.vertex_count, 4);
     assert_int_equal(mesh.face_count, 1);
     assert_int_equal(mesh.attribute_count, 2);
     assert_memory_equal(mesh.positions, positions, sizeof positions);
     assert_memory_equal(mesh.uv, uv, sizeof uv);
     assert_memory_equal(mesh.corners, cells, sizeof cells);
+
     assert_string_equal(mesh.attributes[0].name, "red");
     assert_memory_equal(mesh.attributes[0].values, red, sizeof red);
     assert_string_equal(mesh.attributes[1].name, "wet");
@@ -115,15 +117,18 @@ TEST(reads_binary_of_both_orders) {
         if (read_mesh("a.ply", maker.bytes, maker.size, &mesh, &error)) fail_msg("%s", error.message);
         assert_int_equal(mesh.vertex_count, 4);
         assert_memory_equal(mesh.positions, corners, sizeof corners);
+
         static const uint32_t cells[] = {0, 1, 2, 3, 3, 2, 1, 0};
         assert_int_equal(mesh.face_count, 2);
         assert_memory_equal(mesh.corners, cells, sizeof cells);
         assert_int_equal(mesh.attribute_count, 6);
+
         static const float expected[6] = {-128, 128, -32767, 32769, -1, 4294967040.0f};
         for (int i = 0; i < 6; i++) {
             assert_int_equal(mesh.attributes[i].name[0], 'a' + i);
             assert_true(mesh.attributes[i].values[3] == expected[i]);
         }
+
         assert_true(mesh.uv[6] == 0.75f && mesh.uv[7] == 1 && mesh.uv[8] == 0.75f);
         polygons_free(&mesh);
 
@@ -205,6 +210,7 @@ TEST(refuses_bad_binary_values) {
                          "property float z\n"
                          "element face 1\n" FACES "end_header\n");
         size_t body = maker.size;
+
         put_double(&maker, bad[i]);
         for (int k = 0; k < 40; k++) put(&maker, 0, 1);
         assert_int_equal(read_mesh("a.ply", maker.bytes, maker.size, &mesh, &error), SINGE_ERROR_FORMAT);
@@ -226,6 +232,7 @@ TEST(large_claims_take_no_memory) {
         "element face 1\n" FACES
         "end_header\n\xff\xff\xff\xff\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01",
     };
+
     for (size_t i = 0; i < sizeof claims / sizeof *claims; i++) {
         TestAllocator counter = {0};
         assert_int_equal(
@@ -246,6 +253,7 @@ TEST(faces_have_uv_of_their_own) {
     static const float uv[] = {0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1, 0.5f, 0.5f};
     static const uint32_t face_corners[] = {0, 1, 2, 0, 2, 3, 1}, first[] = {0, 3, 7};
     assert_int_equal(mesh.face_count, 2);
+
     assert_memory_equal(mesh.uv, uv, sizeof uv);
     assert_memory_equal(mesh.corners, face_corners, sizeof face_corners);
     assert_memory_equal(mesh.first, first, sizeof first);

@@ -45,6 +45,7 @@ TEST(every_character_is_printable) {
         else
             text[0] = (char)(0xf0 | code >> 18), text[1] = (char)(0x80 | (code >> 12 & 63)),
             text[2] = (char)(0x80 | (code >> 6 & 63)), text[3] = (char)(0x80 | (code & 63));
+
         const char *at = text;
         char piece[PRINTABLE_PIECE];
         size_t length = printable_character(&at, text + strlen(text), piece);

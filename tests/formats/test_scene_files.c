@@ -104,6 +104,7 @@ TEST(shapes_stand_where_they_are) {
     expect_in(text, "def Mesh \"shape3\"", "points = [(0, 0, 0), (1, 0, 0), (0, 2, 0), (0, 0, -3)]");
     expect_in(text, "def Mesh \"shape3\"", "float3[] extent = [(0, 0, -3), (1, 2, 0)]");
     expect_in(text, "def Mesh \"shape3\"", "int[] faceVertexIndices = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]");
+
     text = strstr(text, "def Mesh \"shape4\"");
     assert_non_null(strstr(text, "point3f[] points.timeSamples = {\n"
                                  "                1: [(0, 0, 0), (1, 0, 0), (0, 2, 0), (0, 0, -3)],\n"
@@ -111,6 +112,7 @@ TEST(shapes_stand_where_they_are) {
     assert_non_null(strstr(text, "float3[] extent.timeSamples = {\n"
                                  "                1: [(0, 0, -3), (1, 2, 0)],\n"
                                  "                2: [(0, 0, -6), (2, 4, 0)],\n"));
+
     text = (const char *)sink.bytes;
     expect_in(text, "def Mesh \"ground\"", "-0.5)");
     assert_non_null(strstr(text, "def Material \"shape0\""));
@@ -123,6 +125,7 @@ TEST(without_a_ground_there_is_none) {
     OutputScene scene = scene_of(&plain);
     scene.ground_height = -INFINITY, scene.shape_count = 0;
     memcpy(scene.eye, (float[]){0, 0, 3}, sizeof scene.eye); // looks along `up`
+
     const char *text = root_text(&sink, &scene);
     assert_null(strstr(text, "ground"));
     assert_null(strstr(text, "shape0"));
@@ -151,6 +154,7 @@ static void make_leaf(Leaf *l) {
     *l = (Leaf){.triangle = {{0, 1, 2}}, .two = {{0, 0}, {1, 0}, {0, 1}}};
     memcpy(l->three[0], (float[3][3]){{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, sizeof l->three[0]);
     memcpy(l->three[3], l->three[0], sizeof l->three[0]);
+
     l->surface = (SingeSurface){.position = l->three[0],
                                 .normal = l->three[1],
                                 .velocity = l->three[2],
@@ -168,6 +172,7 @@ static void make_leaf(Leaf *l) {
                                 .source_vertex = l->numbers[1],
                                 .sheet = l->numbers[2],
                                 .triangles = l->triangle};
+
     static float never[3] = {-1, -1, -1};
     l->surface.time_ignited = never;
 }
@@ -187,9 +192,11 @@ TEST(one_file_has_all_frames) {
     make_leaf(&leaf);
     OutputScene scene = scene_of(&plain);
     scene.frames = 3, scene.shape_count = 0;
+
     const OutputCache cache = {.frames = 3, .read = read_frame, .context = &leaf.surface};
     SingeError error = {0};
     if (usd_write_single(path, &scene, &cache, &error)) fail_msg("%s", error.message);
+
     Bytes bytes = take_file(path);
     CrateFile file;
     crate_open(&file, bytes.data, bytes.size);
@@ -200,6 +207,7 @@ TEST(one_file_has_all_frames) {
         memcpy(&z, bytes.data + at + 8 + 8, 4);
         assert_true(z == (float)(i + 1));
     }
+
     assert_int_equal(series_value(&file, "/shapes/sheets/leaf.points", 3, 2), 0); // nothing is left
     crate_close(&file), bytes_free(&bytes);
 }
@@ -215,6 +223,7 @@ TEST(a_bad_frame_leaves_no_file) {
     make_leaf(&leaf);
     OutputScene scene = scene_of(&plain);
     scene.frames = 3, scene.shape_count = 0;
+
     const OutputCache cache = {.frames = 3, .read = fail_frame, .context = &leaf.surface};
     OutputWriteSingle *const writers[] = {usd_write_single, usdz_write, glb_write_single};
     for (size_t i = 0; i < sizeof writers / sizeof *writers; i++) {

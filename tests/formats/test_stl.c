@@ -32,6 +32,7 @@ TEST(stl_text_is_read) {
         "\nSOLID x\r\nFACET NORMAL nan -nan(ind) 0\r\nOUTER LOOP\r\nVERTEX 0 0 0\r\nVERTEX 1 0 0\r\nVERTEX 1 1 0\r\n"
         "ENDLOOP\r\nENDFACET\r\n" FACET("0 0 0", "1 1 0", "0 1 .5") "EndSolid\r\n",
     };
+
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         expect_mesh("a.stl", texts[i], triangles, 6, in_order, 6, 2);
 }
@@ -64,11 +65,13 @@ TEST(stl_bytes_are_read) {
 TEST(stl_bytes_are_refused) {
     char bytes[185] = "";
     size_t size = binary((uint8_t *)bytes, "a", 2);
+
     assert_mesh_refused("a.stl", bytes, 0, SINGE_ERROR_FORMAT, 1, "empty");
     assert_mesh_refused("a.stl", bytes, 83, SINGE_ERROR_FORMAT, 0, "83 bytes are too few");
     assert_mesh_refused("a.stl", bytes, size - 1, SINGE_ERROR_FORMAT, 80,
                         "byte 80: the file's length does not match its number of triangles");
     assert_mesh_refused("a.stl", bytes, size + 1, SINGE_ERROR_FORMAT, 80, "the file's length does not match");
+
     bytes[83] = (char)0xff;
     assert_mesh_refused("a.stl", bytes, size, SINGE_ERROR_FORMAT, 80, "the file's length does not match");
     binary((uint8_t *)bytes, "a", 0);
@@ -95,6 +98,7 @@ TEST(stl_text_is_refused) {
         {"solid a\n" FACET("0 0 0", "1 0 0", "1 1 0"), 9, "\"endsolid\" is missing"},
         {"solid a\n" FACET("0 0 0", "1 0 0", "1 1 0") "endsolid\nmore", 10, "\"solid\" is missing"},
     };
+
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         assert_mesh_refused("a.stl", cases[i].text, strlen(cases[i].text), SINGE_ERROR_FORMAT, cases[i].line,
                             cases[i].part);
@@ -114,11 +118,13 @@ TEST(every_cut_is_refused) {
 TEST(failing_memory_is_reported) {
     uint8_t bytes[184];
     binary(bytes, "a", 2);
+
     const struct {
         const char *name;
         const void *data;
         size_t size;
     } files[] = {{"a.stl", good_stl, sizeof good_stl - 1}, {"b.stl", bytes, sizeof bytes}};
+
     for (int i = 0; i < 2; i++)
         test_allocations_fail(0, polygons_read(files[i].name, files[i].data, files[i].size, allocator, &mesh, &error),
                               polygons_free(&mesh));

@@ -21,6 +21,7 @@ static void make_sheet(SingeSurface *s, uint32_t side, int32_t sheets) {
     s->burn = malloc(4 * count), s->time_ignited = malloc(4 * count), s->piece = malloc(4 * count);
     s->source_vertex = malloc(4 * count), s->sheet = malloc(4 * count), s->water = malloc(4 * count);
     s->triangles = malloc(12 * s->triangle_count);
+
     uint32_t seed = 1;
     for (uint32_t v = 0; v < count; v++) {
         const float x = (float)(v % side), y = (float)(v / side), hot = y > 0.5f * (float)side ? y / (float)side : 0;
@@ -31,6 +32,7 @@ static void make_sheet(SingeSurface *s, uint32_t side, int32_t sheets) {
             s->velocity[v][c] = noise - 0.5f, s->normal[v][c] = (float)(c == 2) + 0.01f * noise;
             s->rest_position[v][c] = (c == 0 ? x : c == 1 ? y : 0) * 1e-3f;
         }
+
         const float noise = (float)(seed >> 8) * 0x1p-24f;
         s->uv[v][0] = x / (float)side, s->uv[v][1] = y / (float)side;
         s->temperature[v] = hot > 0 ? 400 + 800 * noise * hot : 293.15f;
@@ -40,6 +42,7 @@ static void make_sheet(SingeSurface *s, uint32_t side, int32_t sheets) {
         s->piece[v] = hot > 0.9f ? 1 + (int32_t)(v % 7) : 0, s->source_vertex[v] = v % 5 ? (int32_t)v : -1;
         s->sheet[v] = (int32_t)(v % (uint32_t)sheets), s->water[v] = hot > 0 ? 0 : noise;
     }
+
     uint32_t t = 0;
     for (uint32_t y = 0; y + 1 < side; y++)
         for (uint32_t x = 0; x + 1 < side; x++) {
@@ -58,6 +61,7 @@ static SingeResult write_as(int format, const SingeSurface *s, uint32_t sheets, 
     list[0].picture = picture;
     for (int i = 0; i < 2; i++)
         list[i].mesh = (OutputMesh){.vertex_count = 4, .cell_count = 1, .positions = corners, .uv = uv, .cells = cell};
+
     const OutputScene scene = {
         .name = "7 up", .fps = 24, .texture_size = 32, .wet = s->wet, .sheet_count = sheets, .sheets = list};
     const OutputFrame frame = {.surface = s, .time = 1.5, .number = 37};
@@ -81,14 +85,17 @@ static void check_attribute(const CrateFile *file, const SingeSurface *s, const 
     double time;
     size_t count, at = 0;
     snprintf(full, sizeof full, "%s.%s", mesh, name);
+
     uint32_t *read = crate_samples(file, full, type, width, &time, &count);
     assert_true(time == 37);
+
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         if (s->sheet[v] != sheet) continue;
         assert_true(at < count);
         assert_memory_equal(read + (size_t)width * at++, (const uint32_t *)values + (size_t)width * v,
                             4 * (size_t)width);
     }
+
     assert_int_equal(at, count);
     free(read);
 }
@@ -100,6 +107,7 @@ static void check_mesh(const CrateFile *file, const SingeSurface *s, const char 
     check_attribute(file, s, mesh, sheet, "normals", s->normal, 24, 3);
     check_attribute(file, s, mesh, sheet, "primvars:st", s->uv, 20, 2);
     check_attribute(file, s, mesh, sheet, "primvars:rest", s->rest_position, 24, 3);
+
     for (int i = 0; i < surface_field_count(s->wet); i++) {
         char name[80];
         snprintf(name, sizeof name, "primvars:%s", surface_fields[i].name);
@@ -113,6 +121,7 @@ static void check_triangles(const CrateFile *file, const SingeSurface *s, const 
     double time;
     size_t count;
     snprintf(full, sizeof full, "%s.faceVertexIndices", mesh);
+
     uint32_t *read = crate_samples(file, full, 3, 1, &time, &count);
     assert_int_equal(count, 3 * s->triangle_count);
     assert_memory_equal(read, s->triangles, 4 * count);
@@ -127,6 +136,7 @@ static void check_triangles(const CrateFile *file, const SingeSurface *s, const 
 TEST(every_value_comes_back) {
     SingeSurface s;
     CrateFile file;
+
     make_sheet(&s, 40, 1);
     Bytes bytes = written(&s, 1, NULL);
     crate_open(&file, bytes.data, bytes.size);
@@ -144,14 +154,17 @@ TEST(sheets_are_meshes_of_their_own) {
     SingeSurface s;
     CrateFile file;
     SingeError error;
+
     make_sheet(&s, 12, 2);
     s.triangle_count = 0, s.wet = true;
+
     Bytes bytes = written(&s, 2, NULL);
     crate_open(&file, bytes.data, bytes.size);
     check_mesh(&file, &s, "/_7_up/sheets/a_b", 0);
     check_mesh(&file, &s, "/_7_up/sheets/a_b_2", 1);
     crate_close(&file);
     bytes_free(&bytes);
+
     s.triangle_count = 1; // of vertices 0, 1 and 13
     assert_int_equal(write_sheet(&s, 2, NULL, &error), SINGE_ERROR_FORMAT);
     assert_non_null(strstr(error.message, "triangle 0 belongs to two sheets"));
@@ -167,11 +180,13 @@ TEST(pictured_sheets_have_subsets) {
     CrateFile file;
     double time;
     size_t fresh, burnt;
+
     make_sheet(&s, 30, 1);
     Bytes bytes = written(&s, 1, "./a.png");
     crate_open(&file, bytes.data, bytes.size);
     uint32_t *a = crate_samples(&file, "/_7_up/sheets/a_b/fresh.indices", 3, 1, &time, &fresh);
     uint32_t *b = crate_samples(&file, "/_7_up/sheets/a_b/burnt.indices", 3, 1, &time, &burnt);
+
     assert_int_equal(fresh + burnt, s.triangle_count);
     assert_true(fresh > s.triangle_count / 3 && burnt > s.triangle_count / 3);
     for (size_t i = 0; i < fresh; i++) assert_true(s.temperature_peak[s.triangles[a[i]][0]] < 300);
@@ -233,19 +248,23 @@ static void *stingy(void *context, void *block, size_t old_size, size_t new_size
 static void check_memory(int format) {
     SingeSurface s;
     size_t failures = 0;
+
     make_sheet(&s, 20, 1);
     for (size_t n = 0; n < 1000; n++) {
         SingeError error = {0};
         s.allocator.resize = stingy;
         out_of_memory_countdown = n;
+
         const SingeResult result = write_as(format, &s, 1, "a.png", &error);
         const bool all = out_of_memory_countdown < 1000000;
+
         s.allocator.resize = NULL;
         assert_int_equal(access(path, F_OK) == 0, result == SINGE_OK);
         unlink(path);
         if (result) assert_int_equal(error.code, SINGE_ERROR_MEMORY), failures++;
         else if (all) break;
     }
+
     assert_true(failures > 0 && failures < 900);
     singe_surface_free(&s);
 }

@@ -39,12 +39,14 @@ TEST(round_trip_is_bitwise) {
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         Gas gas, read;
         double time = 0;
+
         make(sizes[i][0], sizes[i][1], sizes[i][2], &gas);
         Bytes bytes = written(&gas, 1 / 24.0 + 7);
         if (vdb_read_gas("a.vdb", bytes.data, bytes.size, (SingeAllocator){0}, &read, &time, &error))
             fail_msg("%s", error.message);
         assert_true(time == 1 / 24.0 + 7);
         assert_same(&gas.view, &read.view);
+
         Bytes again = written(&read, time);
         assert_int_equal(again.size, bytes.size);
         assert_memory_equal(again.data, bytes.data, bytes.size);
@@ -58,12 +60,14 @@ TEST(empty_is_small) {
     enum { SIDE = 64 };
     GasSample sample;
     Gas gas, read;
+
     assert_true(gas_sample_make(&sample, SIDE, SIDE, SIDE));
     for (size_t i = 0; i < SIDE * SIDE * SIDE; i++)
         sample.temperature[i] = 300 + (float)(i % 3) * 0.5f, sample.smoke[i] = 1e-9f, sample.flame[i] = 1;
     assert_int_equal(gas_copy(&sample.gas, (SingeAllocator){0}, &gas, NULL), SINGE_OK);
     for (size_t i = 0; i < SIDE * SIDE * SIDE; i++)
         assert_true(gas.temperature[i] == 300 && gas.smoke[i] == 0 && gas.flame[i] == 0 && gas.velocity[i][2] == 0);
+
     Bytes bytes = written(&gas, 0);
     assert_in_range(bytes.size, 100, 4000);
     assert_int_equal(vdb_read_gas("a.vdb", bytes.data, bytes.size, (SingeAllocator){0}, &read, NULL, NULL), SINGE_OK);
@@ -94,6 +98,7 @@ TEST(bad_gas_is_refused) {
     assert_int_equal(gas_copy(&sample.gas, (SingeAllocator){0}, &gas, &error), SINGE_OK); // there is none
     assert_int_equal(gas.view.size[0], 0);
     assert_int_equal(vdb_write_gas(path, &none, 0, &error), SINGE_ERROR_ARGUMENT);
+
     assert_int_not_equal(access(path, F_OK), 0);
     gas_free(&gas);
     gas_sample_free(&sample);
@@ -103,6 +108,7 @@ TEST(bad_gas_is_refused) {
 TEST(bad_bytes_are_refused) {
     Gas gas, read;
     make(12, 9, 20, &gas);
+
     Bytes bytes = written(&gas, 0.25);
     TestAllocator counter = {0};
     size_t step = 1;
@@ -125,6 +131,7 @@ TEST(bad_bytes_are_refused) {
                      SINGE_ERROR_FORMAT);
     assert_message(&error, "metadata");
     memset(bytes.data + 0x39, 0, 4), bytes.data[0x39] = few;
+
     for (size_t at = 0; at < bytes.size; at += at < 1500 ? 1 : 499) {
         uint8_t before = bytes.data[at];
         bytes.data[at] ^= 0x9d;
@@ -152,8 +159,10 @@ TEST(no_memory_is_reported) {
             result = vdb_read_gas("a.vdb", bytes.data, bytes.size, test_allocator(&counter), &read, NULL, &error);
         if (!result) gas_free(&read);
         gas_free(&gas);
+
         test_allocator_check(&counter);
         if (!result) break;
+
         assert_int_equal(result, SINGE_ERROR_MEMORY);
         assert_in_range(fail_at, 1, 40);
     }

@@ -14,9 +14,11 @@ int main(int argc, char **argv) {
     uint32_t n[3];
     for (int c = 0; c < 3; c++) n[c] = (uint32_t)atoi(argv[2 + c]);
     if (!gas_sample_make(&sample, n[0], n[1], n[2])) return 1;
+
     SingeResult result = gas_copy(&sample.gas, (SingeAllocator){0}, &gas, &error);
     if (!result) result = (argc == 6 ? vdb_write_fine : vdb_write_gas)(argv[1], &gas, 0.125, &error);
     if (result) fprintf(stderr, "%s\n", error.message);
+
     const float *o = gas.view.origin;
     printf("%u %u %u %.9g %.9g %.9g %.9g\n", n[0], n[1], n[2], o[0], o[1], o[2], gas.view.cell);
     for (size_t i = 0; !result && i < (size_t)n[0] * n[1] * n[2]; i++)

@@ -72,10 +72,12 @@ static SingeResult add_grid(SingeSim *sim, const uint32_t cells[2], float height
     SingeSheetDef sheet = singe_default_sheet();
     singe_mesh_fill_sheet(mesh, &sheet);
     sheet.material.temperature = singe_param(temperature);
+
     float raised[VERTICES][3];
     memcpy(raised, sheet.positions, sheet.vertex_count * sizeof *raised);
     for (uint32_t v = 0; v < sheet.vertex_count; v++) raised[v][2] += height;
     sheet.positions = raised[0];
+
     SingeSheetId id;
     const SingeResult result = singe_sim_add_sheet(sim, &sheet, &id);
     singe_mesh_destroy(mesh);
@@ -146,10 +148,12 @@ static SingeResult call_add_source(Input *input, SingeSim *sim) {
     def.path = path, def.path_count = input_path(input, path);
     def.kind = kinds[input_pick(input, sizeof kinds / sizeof *kinds)];
     if (def.kind == SINGE_SOURCE_SPOT && def.path_count == 2) def.path_count = 1;
+
     def.texture = (SingeTexture){2, 2, picture};
     def.radius = input_rarely(input, 4) ? input_value(input) : 0.02f;
     def.temperature = input_rarely(input, 4) ? input_value(input) : 1200;
     if (def.kind == SINGE_SOURCE_CALLBACK) def.callback = warm;
+
     SingeSourceId id;
     return singe_sim_add_source(sim, &def, &id);
 }
@@ -186,6 +190,7 @@ static SingeResult call_add_collider(Input *input, SingeSim *sim) {
     if (input_pick(input, 2)) def.kind = SINGE_COLLIDER_DEFORMING;
     SingePoseKey path[2];
     def.path = path, def.path_count = input_path(input, path);
+
     float vertices[6][3];
     input_octahedron(input, vertices);
     def.vertex_count = 6, def.vertices = vertices[0], def.triangle_count = 8, def.triangles = triangles;
@@ -218,11 +223,13 @@ static SingeResult call_add_pin(Input *input, SingeSim *sim) {
     float point[3];
     input_point(input, point);
     point[2] = 0;
+
     const uint32_t vertices[2] = {input_pick(input, VERTICES + 1), input_pick(input, VERTICES)};
     def.sheet = input_sheet(input, sim);
     if (input_pick(input, 2)) def.points = point, def.point_count = 1, def.radius = 0.01f;
     else def.vertices = vertices, def.vertex_count = 2;
     if (input_pick(input, 2)) def.end = (float)input_time(input, sim);
+
     SingePoseKey path[2];
     def.path = path, def.path_count = input_path(input, path);
     SingePinId id;
@@ -241,6 +248,7 @@ static SingeResult call_set_pin_positions(Input *input, SingeSim *sim) {
     input_point(input, shift);
     for (uint32_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) positions[i][k] = view.position[particles[i]][k] + 0.2f * shift[k];
+
     const SingeResult result = singe_sim_set_pin_positions(sim, pin, positions[0], time);
     free(positions);
     return result;
@@ -333,6 +341,7 @@ static bool record_write(void *file, const void *bytes, size_t size) { return fw
 static SingeRecord record(int which) {
     const char *name = getenv("SINGE_RECORD");
     if (!name) return (SingeRecord){NULL, NULL};
+
     char path[4096];
     snprintf(path, sizeof path, "%s.%d", name, which + 1);
     if (recordings[which]) fclose(recordings[which]);
@@ -341,6 +350,7 @@ static SingeRecord record(int which) {
         perror(path);
         exit(1);
     }
+
     setvbuf(recordings[which], NULL, _IONBF, 0); // a crash loses nothing
     return (SingeRecord){record_write, recordings[which]};
 }
@@ -364,14 +374,17 @@ static SingeSim *make(Input input, int which) {
     SingeSimDef def = singe_default_sim();
     const unsigned choices = input_byte(&input);
     const bool crowded = choices & 64;
+
     def.record = record(which);
     def.cancel = (SingeCancel){is_out_of_patience, &patience[which]};
     def.thread_count = 1 + which, def.contact.enabled = choices & 1;
     def.solver.creases = choices & 2, def.solver.tearing = choices & 4, def.pace = 4;
     def.solver.substeps = choices & 128 ? 0 : 2;
     def.gas.enabled = choices & 8, def.gas.cell_size = 0.02f, def.gas.height = 0.05f;
+
     SingeSim *sim;
     if (singe_sim_create(&def, &sim, NULL)) abort();
+
     const uint32_t cells[2] = {input_side(&input), input_side(&input)};
     for (int s = 0; s < (crowded ? 3 : 2); s++)
         if (add_grid(sim, cells, crowded ? 0 : 0.001f * (float)s, choices & 16 ? 700 : 300)) abort();
@@ -399,6 +412,7 @@ static void copy_over(bool load, SingeSim *sims[2]) {
     size_t size;
     if (singe_sim_save(sims[0], &bytes, &size)) return; // not committed
     singe_sim_destroy(sims[1]);
+
     SingeSimDef hooks = singe_default_sim();
     hooks.thread_count = 2;
     hooks.cancel = (SingeCancel){is_out_of_patience, &patience[1]};
@@ -427,6 +441,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t length) {
     enum { HEADER = 3 };
     Input input = {data, data + length};
     SingeSim *sims[2] = {make(input, 0), make(input, 1)};
+
     for (int i = 0; i < HEADER; i++) (void)input_byte(&input);
     for (int i = 0; i < CALLS_MAX && input.at < input.end && singe_sim_view(sims[0]).step < STEPS_MAX; i++) {
         Input record = {input.at, input.end - input.at > RECORD ? input.at + RECORD : input.end};
@@ -442,5 +457,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t length) {
         if (singe_sim_view(sims[k]).particle_count > 0) demand_surface(sims[k]);
         singe_sim_destroy(sims[k]);
     }
+
     return 0;
 }

@@ -25,6 +25,7 @@ static void read_record(const char *json, size_t size) {
 
     if (!text_json_member(json, size, "scene", &value, &length)) return;
     demand_inside((const uint8_t *)json, size, value, length);
+
     Scene *scene = NULL;
     SceneMessages messages = {0};
     if (scene_parse("run.json", value, length, NULL, NULL, 0, &scene, &messages)) demand(!scene && messages.count > 0);
@@ -36,6 +37,7 @@ static void read_table(const uint8_t *data, size_t size) {
     char path[] = "/tmp/singe-fuzz-XXXXXX";
     int file = mkstemp(path);
     demand(file >= 0 && write(file, data, size) == (ssize_t)size && close(file) == 0);
+
     Console console = console_make(true);
     StatsTable table = {0};
     ExitCode code = stats_table_read(&table, path, &console);

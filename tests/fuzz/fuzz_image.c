@@ -13,6 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             free((void *)picture.values);
         }
     } else demand(error.code && error.message[0] && !image.rgb);
+
     image_free(&image);
     return 0;
 }

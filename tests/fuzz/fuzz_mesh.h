@@ -14,6 +14,7 @@ static inline void demand_mesh(const Polygons *mesh) {
     demand(mesh->first[0] == 0 && mesh->first[mesh->face_count] == mesh->corner_count);
     for (uint32_t f = 0; f < mesh->face_count; f++) demand(mesh->first[f + 1] >= mesh->first[f] + 3);
     for (uint32_t i = 0; i < mesh->corner_count; i++) demand(mesh->corners[i] < mesh->vertex_count);
+
     for (uint32_t a = 0; a < mesh->attribute_count; a++) {
         demand(mesh->attributes[a].name[0] != 0);
         for (uint32_t v = 0; v < mesh->vertex_count; v++) demand(isfinite(mesh->attributes[a].values[v]));
@@ -30,6 +31,7 @@ static inline void demand_quads(const Polygons *polygons) {
         demand(error.message[0] && !mesh.positions);
         return;
     }
+
     demand(mesh.vertex_count > 0 && mesh.cell_count > 0);
     for (size_t i = 0; i < mesh.cell_count; i++) {
         const uint32_t *c = mesh.cells + 4 * i;

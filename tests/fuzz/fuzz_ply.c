@@ -15,6 +15,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         for (size_t i = 0; i < surface.triangle_count; i++)
             for (int k = 0; k < 3; k++) demand(surface.triangles[i][k] < surface.vertex_count);
     } else demand(error.code && error.message[0] && !surface.position);
+
     singe_surface_free(&surface);
     return 0;
 }

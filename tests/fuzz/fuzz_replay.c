@@ -28,10 +28,12 @@ static Tape make_recording(int which) {
     def.gas.enabled = which == 1, def.gas.cell_size = 0.05f, def.gas.height = 0.1f;
     def.solver.substeps = 2;
     def.contact.enabled = def.solver.tearing = def.solver.creases = which == 2;
+
     Scene scene;
     if (scene_build(&def, 3, &scene)) abort();
     scene_every_call(&scene);
     singe_sim_destroy(scene.sim);
+
     const size_t mesh = tape_find(&tape, ADD_COLLIDER, MESH), next = tape_find(&tape, ADD_COLLIDER, MESH + 1);
     demand(next < tape.size);
     if (which != MESHED) take_out(&tape, (Range){mesh, next});
@@ -52,12 +54,15 @@ static SingeReplay try_recording(const uint8_t *bytes, size_t size) {
     int asks = 0;
     hooks.allocator = (SingeAllocator){limited_resize, &memory};
     hooks.cancel = (SingeCancel){is_too_much, &asks};
+
     uint8_t *copy = malloc(size + !size);
     demand(copy);
     memcpy(copy, bytes, size);
+
     SingeReplay replay;
     SingeError error = {0};
     const SingeResult result = singe_replay(&hooks, copy, size, &replay, &error);
+
     demand(memory.held == 0);
     if (result) demand(error.code == result && error.message[0]);
     else demand(replay.same == !replay.what[0]);
@@ -90,6 +95,7 @@ static void change(Input *input, Tape *tape) {
     const unsigned how = input_pick(input, 16);
     Range range = pick_record(input, tape);
     if (!range.end) return;
+
     const size_t size = range.end - range.begin - HEAD;
     const size_t offset = (size_t)input_byte(input) << 8 | input_byte(input);
     uint8_t *head = tape->bytes + range.begin, *body = head + HEAD;
@@ -138,6 +144,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         good[which] = make_recording((int)which);
         demand(try_recording(good[which].bytes, good[which].size).complete);
     }
+
     Tape copy = {.size = good[which].size, .room = 2 * good[which].size};
     copy.bytes = malloc(copy.room);
     demand(copy.bytes);

@@ -27,6 +27,7 @@ static inline void expect_back(const Scene *scene, SceneSyntax syntax) {
     if (!file) abort();
     scene_dump(scene, syntax, 0, file);
     fclose(file);
+
     // a dump says more than its scene did, and so may exceed the limit that scenes have
     if (length <= 1 << 20 && scene_parse("dump", text, length, NULL, NULL, 0, &again, &messages)) {
         scene_messages_print(&messages, stderr);

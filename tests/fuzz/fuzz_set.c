@@ -25,6 +25,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     for (size_t i = 1; i < size; i++) text[i] = data[i] == '\n' ? 0 : (char)data[i];
     text[size] = 0;
     for (size_t i = 1; i < size && count < SETS_MAX; i += strlen(text + i) + 1) sets[count++] = text + i;
+
     const char *base = scenes[size ? data[0] % (sizeof scenes / sizeof *scenes) : 0];
     Scene *scene = NULL;
     SceneMessages messages = {0};
@@ -34,5 +35,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     scene_free(scene);
     scene_messages_free(&messages);
     free(text);
+
     return 0;
 }

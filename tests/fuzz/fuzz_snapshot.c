@@ -23,11 +23,13 @@ static Saved make_snapshot(int which) {
     SingeSimDef def = scene_def();
     def.gas.enabled = which == 1, def.gas.cell_size = 0.05f, def.gas.height = 0.1f;
     def.contact.enabled = def.solver.tearing = def.solver.creases = which == 2;
+
     Scene scene;
     if (scene_build(&def, 3, &scene)) abort();
     if (which != MESHED && singe_sim_remove_collider(scene.sim, scene.mesh)) abort();
     for (int i = 0; i < 6; i++)
         if (singe_sim_step(scene.sim)) abort();
+
     uint8_t *bytes;
     Saved copy;
     if (singe_sim_save(scene.sim, &bytes, &copy.size)) abort();
@@ -57,14 +59,17 @@ static void try_snapshot(const uint8_t *bytes, size_t size) {
     Limited memory = {.max = (size_t)1 << 29};
     SingeSimDef hooks = singe_default_sim();
     hooks.allocator = (SingeAllocator){limited_resize, &memory};
+
     SingeSim *sim = NULL;
     SingeError error = {0};
     if (singe_sim_load(&hooks, bytes, size, &sim, &error)) {
         demand(!sim && error.code && error.message[0] && memory.held == 0);
         return;
     }
+
     bool failed = false;
     for (int step = 0; step < STEPS && !failed; step++) failed = singe_sim_step(sim) != SINGE_OK;
+
     SingeSurface surface = {0};
     if (singe_sim_surface(sim, &surface) == SINGE_OK)
         for (uint32_t i = 0; i < 3 * surface.triangle_count; i++)
@@ -82,8 +87,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     Saved copy = {malloc(saved[which].size), saved[which].size};
     demand(copy.bytes);
     memcpy(copy.bytes, saved[which].bytes, copy.size);
+
     size_t body = copy.size - HEADER;
     for (int k = 0; k < CHANGES && input.at < input.end && body > 64; k++) change(&input, copy.bytes + HEADER, &body);
+
     uint64_t checksum = stream_checksum(copy.bytes + HEADER, body), length = body;
     memcpy(copy.bytes + SIZE_AT, &length, sizeof length);
     memcpy(copy.bytes + CHECKSUM_AT, &checksum, sizeof checksum);

@@ -44,6 +44,7 @@ static void sketch_grid(Input *input, Sketch *sketch) {
             p[1] = size * ((float)j + jitter * (jitter > 0 ? input_share(input) : 0)) / (float)ny;
             p[2] = jitter > 0 ? 0.1f * size * input_share(input) * jitter : 0;
         }
+
     sketch->polygons.vertex_count = v;
     for (uint32_t j = 0; j < ny; j++)
         for (uint32_t i = 0; i < nx; i++) {
@@ -70,6 +71,7 @@ static bool sketch_mesh(Input *input, Mesh *mesh) {
     else sketch_grid(input, &sketch);
     sketch.polygons.positions = sketch.positions;
     sketch.polygons.first = sketch.first, sketch.polygons.corners = sketch.corners;
+
     MeshOptions options = mesh_default_options();
     if (input_rarely(input, 4)) options.quads = MESH_QUADS_SPLIT;
     MeshReport report;
@@ -157,6 +159,7 @@ static unsigned add_sheets(Input *input, SingeSim *sim, bool near) {
         def.material = material;
         if (input_rarely(input, 8)) def.velocity[input_pick(input, 3)] = input_share(input) * input_extreme(input);
         if (input_rarely(input, 8)) def.drop_pieces_below = input_extreme(input);
+
         SingeSheetId id;
         added += singe_sim_add_sheet(sim, &def, &id) == SINGE_OK;
     }
@@ -177,11 +180,13 @@ static void add_sources(Input *input, SingeSim *sim) {
     for (unsigned k = input_pick(input, 3); k > 0; k--) {
         SingeSourceDef def = singe_default_source();
         SingePoseKey path[2] = {input_pose(input, 0), input_pose(input, 0.01f)};
+
         def.kind = input_pick(input, 2) ? SINGE_SOURCE_BALL : SINGE_SOURCE_SPOT;
         def.path = path, def.path_count = def.kind == SINGE_SOURCE_BALL ? 2 : 1;
         if (input_rarely(input, 2)) def.radius = size;
         if (input_rarely(input, 4)) def.temperature = input_extreme(input);
         if (input_rarely(input, 4)) def.conductance = input_extreme(input);
+
         SingeSourceId id;
         if (singe_sim_add_source(sim, &def, &id)) continue;
     }
@@ -195,6 +200,7 @@ static void add_colliders(Input *input, SingeSim *sim) {
     for (unsigned k = input_pick(input, 3); k > 0; k--) {
         SingeColliderDef def = singe_default_collider();
         SingePoseKey path[2] = {input_pose(input, 0), input_pose(input, 0.02f)};
+
         for (int i = 0; i < 9; i++) heights[i] = 0.02f * input_share(input);
         def.kind = (SingeColliderKind)input_pick(input, SINGE_COLLIDER_MESH);
         if (input_rarely(input, 16)) def.kind = SINGE_COLLIDER_MESH; // takes long to build
@@ -204,6 +210,7 @@ static void add_colliders(Input *input, SingeSim *sim) {
         if (input_rarely(input, 4)) def.conductance = input_extreme(input), def.temperature = input_extreme(input);
         if (input_rarely(input, 4)) def.friction = input_extreme(input);
         if (input_rarely(input, 8)) def.radius = def.half_size[1] = input_extreme(input);
+
         SingeColliderId id;
         if (singe_sim_add_collider(sim, &def, &id)) continue;
     }
@@ -214,10 +221,12 @@ static void add_pins(Input *input, SingeSim *sim) {
         SingePinDef def = singe_default_pin();
         const float points[3] = {size * input_share(input), size * input_share(input), 0};
         SingePoseKey path[2] = {input_pose(input, 0), input_pose(input, 0.02f)};
+
         def.sheet = (SingeSheetId){k - 1, 1};
         def.points = points, def.point_count = 1;
         def.path = path, def.path_count = 2 * input_pick(input, 2);
         if (input_rarely(input, 4)) def.radius = size;
+
         SingePinId id;
         if (singe_sim_add_pin(sim, &def, &id)) continue;
     }
@@ -276,6 +285,7 @@ static SingeSim *make(Input input, int threads) {
         singe_sim_destroy(sim);
         return NULL;
     }
+
     add_colliders(&input, sim);
     add_sources(&input, sim);
     add_pins(&input, sim);
@@ -304,6 +314,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t length) {
     if (!sim) return 0;
     bool good = run(sim, thorough & 1);
     demand_surface(sim);
+
     if ((thorough & 14) == 14) {
         SingeSim *other = make(input, 2);
         demand(other && run(other, false) == good);

@@ -13,6 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         for (size_t i = 0; i < count; i += count / 4096 + 1)
             demand(isfinite(gas.temperature[i]) && isfinite(gas.smoke[i]) && isfinite(gas.velocity[i][2]));
     } else demand(error.code && error.message[0] && !gas.smoke);
+
     gas_free(&gas);
     return 0;
 }

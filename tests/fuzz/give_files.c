@@ -9,18 +9,22 @@
 static int give(const char *folder, const char *name) {
     char path[4096];
     snprintf(path, sizeof path, "%s/%s", folder, name);
+
     FILE *file = fopen(path, "rb");
     if (!file || fseek(file, 0, SEEK_END)) {
         perror(path);
         return 1;
     }
+
     long size = ftell(file);
     uint8_t *data = malloc(size > 0 ? (size_t)size : 1); // of its very size, so that a byte too many is seen
     rewind(file);
+
     if (size < 0 || !data || fread(data, 1, (size_t)size, file) != (size_t)size) {
         perror(path);
         return 1;
     }
+
     fclose(file);
     fprintf(stderr, "%s\n", path); // the last one is the culprit
     LLVMFuzzerTestOneInput(data, (size_t)size);
@@ -36,6 +40,7 @@ static int give_all(const char *name, int *given) {
         perror(name);
         return 1;
     }
+
     for (struct dirent *entry; (entry = readdir(folder));) {
         if (entry->d_name[0] == '.') continue;
         failed += give(name, entry->d_name);

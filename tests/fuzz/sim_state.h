@@ -42,11 +42,13 @@ static inline uint64_t digest_view(const SingeSim *sim) {
     SingeStats stats = singe_sim_stats(sim);
     uint64_t digest = 14695981039346656037u;
     size_t n = view.particle_count;
+
     digest_add(&digest, &view.step, sizeof view.step);
     digest_add(&digest, &view.topology_version, sizeof view.topology_version);
     digest_add(&digest, &stats.heat_in, sizeof stats.heat_in), digest_add(&digest, &stats.mass, sizeof stats.mass);
     for (size_t i = 0; i < n; i++) digest_add(&digest, view.position[i], 3 * sizeof(float));
     for (size_t i = 0; i < n; i++) digest_add(&digest, view.velocity[i], 3 * sizeof(float));
+
     digest_add(&digest, view.temperature, n * sizeof(float)), digest_add(&digest, view.mass, n * sizeof(float));
     digest_add(&digest, view.time_ignited, n * sizeof(float)), digest_add(&digest, view.piece, n * sizeof(int32_t));
     digest_add(&digest, view.particle_flags, n), digest_add(&digest, view.cell_flags, view.cell_count);
@@ -54,5 +56,6 @@ static inline uint64_t digest_view(const SingeSim *sim) {
         digest_add(&digest, view.spring_flags[c], view.spring_count[c]);
         digest_add(&digest, view.spring_length[c], view.spring_count[c] * sizeof(float));
     }
+
     return digest;
 }

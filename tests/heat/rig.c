@@ -22,15 +22,18 @@ void rig_open(Rig *rig, const RigDef *def) {
                  .ny = def->ny,
                  .settings = def->settings,
                  .h = 0.002f};
+
     TestMesh mesh = test_grid((uint32_t)def->nx, (uint32_t)def->ny, def->dx, def->dy);
     for (int j = 0; def->shape && j <= def->ny; j++)
         for (int i = 0; i <= def->nx; i++) def->shape(mesh.positions + 3 * (j * (def->nx + 1) + i), i, j);
     SingeSheetDef sheet = test_sheet(&mesh);
     sheet.material = def->material;
+
     SheetSource source;
     if (sheet_source_create(&rig->memory, &sheet, &source, &rig->error) ||
         shell_create(&rig->memory, &source, 1, &rig->shell, &rig->error))
         fail_msg("%s", rig->error.message);
+
     sheet_source_free(&rig->memory, &source);
     test_mesh_free(&mesh);
     assert_int_equal(state_create(&rig->memory, &rig->shell, &rig->state), SINGE_OK);
@@ -82,6 +85,7 @@ void rig_remove(Rig *rig, uint32_t particle) {
     AblateState *ablate = &rig->state.ablate;
     if (!(ablate->particle_flags[particle] & SINGE_ALIVE)) return;
     ablate->particle_flags[particle] = 0;
+
     double capacity = (double)rig->shell.matter.capacity[particle];
     rig->removed += capacity * ((double)rig->state.heat.temperature[particle] - 293);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)

@@ -30,6 +30,7 @@ static double mode_error(int n, float aspect, bool centres, float exchange) {
     RigDef def = rig_default(n, 3, dx, dx * aspect);
     def.material.layer_exchange = singe_param(exchange);
     rig_open(&rig, &def);
+
     int steps = 2 * n * n;
     rig.h = (float)(seconds / steps);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
@@ -74,6 +75,7 @@ static Moments moments(const Rig *r, int layer) {
         for (uint32_t k = 0; k < r->shell.springs[c].count; k++)
             for (int end = 0; end < 2; end++)
                 weight[r->shell.springs[c].ends[k][end]] += (double)r->shell.springs[c].rest[k] / 2;
+
     for (int pass = 0; pass < 2; pass++)
         for (uint32_t i = 0; i < r->shell.particle_count; i++) {
             if (layer < 2 && shell_is_corner(&r->shell, i) == (layer == 1)) continue;
@@ -84,6 +86,7 @@ static Moments moments(const Rig *r, int layer) {
                 m.x += w * (x - mx / m.sum) * (x - mx / m.sum), m.y += w * (y - my / m.sum) * (y - my / m.sum),
                     m.xy += w * (x - mx / m.sum) * (y - my / m.sum);
         }
+
     test_free(weight);
     m.x /= m.sum, m.y /= m.sum, m.xy /= m.sum;
     return m;
@@ -106,6 +109,7 @@ static Moments gaussian(const RigDef *def, int layer, double deviation) {
     Moments before = moments(&rig, layer);
     rig.h = 0.004f;
     for (int k = 0; k < 100; k++) rig_step(&rig);
+
     Moments after = moments(&rig, layer);
     double twice = 2 * 100 * (double)rig.h;
     rig_close(&rig);
@@ -165,6 +169,7 @@ TEST(umbrella_has_its_derived_diffusivity) {
     const struct {
         float dx, dy, t;
     } cases[] = {{0.002f, 0.002f, 1e-4f}, {0.002f, 0.002f, 0.002f}, {0.004f, 0.002f, 1e-3f}};
+
     for (int k = 0; k < 3; k++) {
         RigDef def = rig_default((int)(0.16f / cases[k].dx), (int)(0.16f / cases[k].dy), cases[k].dx, cases[k].dy);
         def.material.heat_operator = SINGE_HEAT_UMBRELLA;
@@ -182,10 +187,12 @@ static void spread(Rig *r, SingeHeatOperator operator, float size, bool burns) {
     RigDef def = rig_default(12, 12, 0.002f, 0.002f);
     def.material.heat_operator = operator;
     rig_open(r, &def);
+
     for (uint32_t i = 0; i < r->shell.particle_count; i++) {
         for (int k = 0; k < 3; k++) r->state.dynamics.position[i][k] = size * rig_position(r, i)[k];
         r->state.heat.temperature[i] = i % 7 == 0 ? 900.0f : 300.0f;
     }
+
     for (int k = 0; k < 20; k++) {
         if (burns && k == 10) rig_remove(r, rig_vertex(r, 5, 5)), rig_remove(r, rig_vertex(r, 6, 5));
         rig_step(r);
@@ -219,6 +226,7 @@ TEST(umbrella_as_printed_leaves_out_burnt_springs) {
     Rig initial, printed;
     spread(&initial, SINGE_HEAT_UMBRELLA, 1, true);
     spread(&printed, SINGE_HEAT_UMBRELLA_LIVE, 1, true);
+
     double near = 0, far = 0;
     for (uint32_t i = 0; i < initial.shell.vertex_count; i++) {
         if (!(initial.state.ablate.particle_flags[i] & SINGE_ALIVE)) continue;
@@ -228,6 +236,7 @@ TEST(umbrella_as_printed_leaves_out_burnt_springs) {
         if (edge) near = fmax(near, off);
         if (x[0] < 0.003f && x[1] > 0.020f) far = fmax(far, off);
     }
+
     print_message("a hole: differs by %.2f K at its edge, by %.4f K far off\n", near, far);
     assert_true(near > 1 && far < 0.1 * near);
     rig_close(&initial), rig_close(&printed);
@@ -247,6 +256,7 @@ TEST(umbrella_slab_mode_decays) {
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
             rig.state.heat.temperature[i] = (float)(600 + 300 * cos(PI * (double)rig_position(&rig, i)[0] / length));
         for (int step = 0; step < 300; step++) rig_step(&rig);
+
         double lambda = 1e-4 * umbrella_factor(1, 1, 0.5) * PI * PI / (length * length);
         error[k] = fabs(mode_amplitude(&rig, length, false) / (300 * pow(1 + lambda * (double)rig.h, -300)) - 1);
         rig_close(&rig);
@@ -273,6 +283,7 @@ TEST(insulated_sheet_keeps_its_heat) {
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = 300 + 900 * rig_random(i, 5);
     for (uint32_t i = 0; i < 30; i++) rig_remove(&rig, 200 + i);
+
     double before = rig_content(&rig, 0), spread = 0;
     for (int k = 0; k < 400; k++) rig_step(&rig);
     CHECK_NEAR(rig_content(&rig, 0) / before, 1, 1e-6);
@@ -305,6 +316,7 @@ TEST(linear_temperature_is_steady_on_skewed_quads) {
     for (uint32_t i = 0; i < rig.shell.vertex_count; i++)
         rig.state.heat.temperature[i] = 400 + 9000 * rig_position(&rig, i)[0] - 4000 * rig_position(&rig, i)[1];
     rig_step(&rig);
+
     double border = 0;
     for (int row = 0; row <= 16; row++)
         for (int column = 0; column <= 16; column++) {
@@ -314,6 +326,7 @@ TEST(linear_temperature_is_steady_on_skewed_quads) {
             if (column >= 4 && column <= 12 && row >= 4 && row <= 12) CHECK_NEAR(change, 0, 2e-4);
             border = fmax(border, change);
         }
+
     assert_true(border > 0.05); // where insulation bends it
     rig_close(&rig);
 }
@@ -325,10 +338,12 @@ TEST(iterations_have_an_end) {
     rig_open(&rig, &def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = rig_position(&rig, i)[0] < 0.3f ? 900 : 400;
+
     double before = rig_content(&rig, 0);
     rig_step(&rig);
     assert_int_equal(rig.counters.unconverged, 0);
     assert_true(rig.counters.iterations > 0 && rig.counters.iterations < 200);
+
     rig.counters = (HeatCounters){0};
     rig.h = 20;
     rig_step(&rig);
@@ -346,6 +361,7 @@ TEST(layers_even_out_at_their_rate) {
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = shell_is_corner(&rig.shell, i) ? 900 : 300;
     for (int k = 0; k < 50; k++) rig_step(&rig);
+
     double difference = 600 * pow(1 + 36.0 / 2 * (double)rig.h, -50);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
         double sign = shell_is_corner(&rig.shell, i) ? 0.5 : -0.5;
@@ -366,8 +382,10 @@ TEST(removed_particles_conduct_nothing) {
     for (int row = 0; row < 3; row++) rig_remove(&rig, rig_vertex(&rig, 4, row));
     for (int row = 0; row < 2; row++)
         for (int column = 3; column < 5; column++) rig_remove(&rig, rig_centre(&rig, column, row));
+
     float *T = rig.state.heat.temperature, kept = T[rig_vertex(&rig, 4, 1)];
     double left = 0, right = 0, area = 0;
+
     for (int k = 0; k < 3000; k++) rig_step(&rig);
     assert_true(T[rig_vertex(&rig, 4, 1)] == kept);
     for (int row = 0; row < 3; row++)
@@ -397,6 +415,7 @@ TEST(heat_is_kept_where_capacity_varies) {
         singe_param_field(900, 1800, &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.01f, 2, 5}});
     def.material.reference_grammage = 0;
     rig_open(&rig, &def);
+
     double sum = 0, capacity = 0;
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
         rig.state.heat.temperature[i] = rig_position(&rig, i)[0] < 0.012f ? 900 : 300;
@@ -409,6 +428,7 @@ TEST(heat_is_kept_where_capacity_varies) {
         rig_step(&rig);
         if (k % 100 == 0) CHECK_NEAR(rig_content(&rig, 1), before, 1e-5 * before);
     }
+
     assert_true(sum / capacity < 450); // the light half's heat goes into the heavy one
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         CHECK_NEAR(rig.state.heat.temperature[i], sum / capacity, 0.05);
@@ -425,11 +445,14 @@ TEST(layers_even_out_at_their_own_rates) {
     rig_open(&rig, &def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = i < rig.shell.vertex_count ? 500 : 300;
+
     double before = rig_content(&rig, 1);
     for (int k = 0; k < 25; k++) rig_step(&rig); // 0.05 s
+
     const float *T = rig.state.heat.temperature;
     double left = (double)(T[rig_vertex(&rig, 0, 1)] - T[rig_centre(&rig, 0, 0)]);
     double right = (double)(T[rig_vertex(&rig, 40, 1)] - T[rig_centre(&rig, 39, 0)]);
+
     CHECK_NEAR(left / 200, pow(1 + 10 * 0.002, -25), 1e-3); // exp(-X t) by implicit steps
     CHECK_NEAR(right / 200, pow(1 + 40 * 0.002, -25), 1e-3);
     CHECK_NEAR(rig_content(&rig, 1), before, 1e-6 * before);

@@ -48,6 +48,7 @@ static double cool(float h, float mass, float thickening) {
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = mass;
     rig.h = h;
     for (int k = 0; k < (int)lround(2 / (double)h); k++) rig_step(&rig);
+
     double T = (double)rig.state.heat.temperature[3];
     rig_close(&rig);
     return T;
@@ -58,6 +59,7 @@ TEST(cooling_follows_radiation_and_convection) {
         float mass, thickening;
         double effective;
     } cases[] = {{1, 1, 1}, {0.4f, 1, 0.4f}, {1, 3, 1}, {0.01f, 1, 0.15f}};
+
     for (int k = 0; k < 4; k++) {
         double exact = cooled(2, cases[k].effective, (double)cases[k].thickening);
         double coarse = cool(0.02f, cases[k].mass, cases[k].thickening) - exact,
@@ -72,6 +74,7 @@ TEST(one_step_of_losses_matches_the_formula) {
     rig_open(&rig, &def);
     fill(&rig, 900);
     rig_step(&rig);
+
     double capacity = 0.04 * 1400, rate = (14 + 0.9 * SIGMA * (900.0 + 293) * (900.0 * 900 + 293.0 * 293)) / capacity;
     double after = (900 + 0.002 * rate * 293) / (1 + 0.002 * rate);
     CHECK_NEAR(rig.state.heat.temperature[0], after, 1e-4);
@@ -91,6 +94,7 @@ TEST(combustion_is_eta_times_burnt_mass) {
     fill(&rig, 600);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.burn.burn_rate[i] = 2, rig.state.burn.release[i] = 2 * 2400;
+
     rig_step(&rig);
     CHECK_NEAR(rig.state.heat.temperature[1], 600 + 2400 * 2 * 0.002, 1e-3);
     CHECK_NEAR(rig.state.heat.heat_of_combustion, 2 * 6 * 4e-6 * 0.04 * 1400 * 9.6, 1e-6);
@@ -122,6 +126,7 @@ TEST(the_peak_is_the_hottest_so_far) {
     uint32_t n = rig.shell.particle_count;
     float *hottest = calloc(n, sizeof *hottest);
     assert_non_null(hottest);
+
     for (uint32_t i = 0; i < n; i++) {
         rig.state.heat.temperature_peak[i] = hottest[i] = i % 2 ? 1500 : 600;
         rig.state.burn.burn_rate[i] = 8, rig.state.burn.release[i] = 8 * 2400;
@@ -168,17 +173,20 @@ TEST(heavier_halves_heat_slower) {
         else def.material.grammage = from_left(0.05f, 0.15f);
         rig_open(&rig, &def);
         fill(&rig, 300);
+
         float flux = 2e4f;
         SingeSourceDef source = singe_default_source();
         source.kind = SINGE_SOURCE_CALLBACK, source.callback = even_flux, source.callback_context = &flux;
         rig_source(&rig, &source);
         for (int k = 0; k < 10; k++) rig_step(&rig);
+
         double left = which ? 0.04 * 1000 : 0.025 * 1400, right = 3 * left; // J/(m2 K)
         const float *T = rig.state.heat.temperature;
         CHECK_NEAR(T[rig_vertex(&rig, 0, 1)], 300 + 2e4 * 0.02 / left, 1e-3);
         CHECK_NEAR(T[rig_centre(&rig, 1, 0)], 300 + 2e4 * 0.02 / left, 1e-3);
         CHECK_NEAR(T[rig_vertex(&rig, 8, 1)], 300 + 2e4 * 0.02 / right, 1e-3);
         CHECK_NEAR(T[rig_centre(&rig, 7, 0)], 300 + 2e4 * 0.02 / right, 1e-3);
+
         double stored = 0; // above 300 K
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
             stored += (double)rig.shell.matter.capacity[i] * ((double)T[i] - 300);
@@ -193,10 +201,12 @@ TEST(losses_are_each_particles_own) {
     for (int run = 0; run < 3; run++) {
         RigDef def = rig_default(8, 2, 0.002f, 0.002f);
         def.material.diffusivity = def.material.layer_exchange = singe_param(0);
+
         SingeParam *params[] = {&def.material.convection, &def.material.emissivity, &def.material.loss_mass_floor};
         const float ends[3][2] = {{5, 50}, {0.9f, 0.1f}, {0.3f, 0.9f}};
         for (int k = 0; k < 3; k++)
             *params[k] = run ? singe_param(ends[k][run - 1]) : from_left(ends[k][0], ends[k][1]);
+
         rig_open(&rig, &def);
         fill(&rig, 900);
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = 0.2f;
@@ -225,6 +235,7 @@ TEST(a_bad_temperature_is_named_and_kept_out) {
         def.material.layer_exchange = singe_param(0);
         rig_open(&rig, &def);
         fill(&rig, 300);
+
         SingeSourceDef source = singe_default_source();
         source.kind = SINGE_SOURCE_CALLBACK, source.callback = poison, source.callback_context = &values[k];
         rig_source(&rig, &source);
@@ -267,6 +278,7 @@ TEST(conductances_beyond_floats_are_refused) {
     for (int k = 0; k < 4; k++) {
         RigDef def = rig_default(3, 2, 0.002f, 0.002f);
         rig_open(&rig, &def); // a shell to try other materials on
+
         HeatPlan *plan = NULL;
         if (k < 2) rig.shell.matter.diffusivity.values[0] = k == 0 ? 1e30f : 1e15f;
         if (k == 2) rig.shell.matter.layer_exchange.values[0] = 3e38f;
@@ -282,6 +294,7 @@ TEST(conductances_beyond_floats_are_refused) {
 TEST(running_out_of_memory_is_clean) {
     RigDef def = rig_default(3, 2, 0.002f, 0.002f);
     rig_open(&rig, &def);
+
     float pixels[] = {0, 1};
     SingeValueKey keys[] = {{0, 0}, {1, 1}};
     SingePoseKey path = {.rotation = {0, 0, 0, 1}};
@@ -289,9 +302,11 @@ TEST(running_out_of_memory_is_clean) {
     picture.kind = SINGE_SOURCE_TEXTURE, picture.texture = (SingeTexture){2, 1, pixels};
     picture.strength = keys, picture.strength_count = 2;
     ball.kind = SINGE_SOURCE_BALL, ball.path = &path, ball.path_count = 1;
+
     Memory memory;
     HeatPlan *plan;
     Source source = {0};
+
     test_allocations_fail(
         12, (memory = memory_make(allocator), heat_plan_create(&memory, &rig.shell, &rig.settings, &plan, &rig.error)),
         heat_plan_free(&memory, plan));

@@ -70,16 +70,19 @@ TEST(speed_is_in_proportion_to_one_over_grammage) {
         float grammage;
         double slowest, fastest;
     } sheets[] = {{0.080f, 4.4e-3, 7.0e-3}, {0.045f, 7.8e-3, 12.4e-3}, {0.020f, 17.5e-3, 28e-3}};
+
     StripResult office = {0};
     for (int k = 0; k < 3; k++) {
         float grammage = sheets[k].grammage, ratio = grammage / 0.080f;
         SingeMaterialDef material = singe_default_material();
         material.grammage = singe_param(grammage);
+
         StripResult same = burn_strip(0.001f, 0.002f, &material);
         StripResult shorter = burn_strip(0.001f, 0.002f * ratio, &material);
         print_message("%.0f g/m2: F %.2f, front %.3f mm/s, hottest %.0f C; steps of %.1f ms: %.3f mm/s, %.0f C\n",
                       (double)grammage * 1e3, same.thickening, same.speed * 1e3, same.hottest - 273.15,
                       2 * (double)ratio, shorter.speed * 1e3, shorter.hottest - 273.15);
+
         if (k == 0) office = same;
         CHECK_NEAR(same.speed * (double)ratio / office.speed, 1, 0.05);
         CHECK_NEAR(shorter.speed * (double)ratio / office.speed, 1, 1e-3);
@@ -132,11 +135,14 @@ TEST(bad_cells_do_not_hold_a_front_up) {
                  {"narrow", narrow, 0.1}};
     SingeMaterialDef material = singe_default_material();
     material.thickening = 2.4f; // enough for the longest sides
+
     StripSetup setup = strip_setup(&material);
     SingeError error = {0};
     StripResult good = {0};
+
     setup.length = 0.06f;
     if (strip_burn(&setup, &good, &error)) fail_msg("%s", error.message);
+
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         StripResult bad = {0};
         setup.shape = cases[k].shape;
@@ -160,6 +166,7 @@ TEST(a_strip_takes_so_much_work) {
     setup.work_max = 5000; // too little for paper
     assert_int_equal(strip_burn(&setup, &result, NULL), SINGE_OK);
     assert_true(result.end == STRIP_CUT && result.speed == 0 && result.work < 5000 + 100); // a step more, at most
+
     setup.work_max = 20000, setup.material.heat_share = singe_param(0);
     assert_int_equal(strip_burn(&setup, &result, NULL), SINGE_OK);
     assert_true(result.end == STRIP_OUT && result.speed == 0 && result.work < 10000);
@@ -177,11 +184,13 @@ TEST(thickening_has_limits) {
     assert_true(heat_thickening_for(0, &front, 293, 1e-5f) == 1);
     front.rate_ceiling = 4 * 260;
     CHECK_NEAR(heat_thickening_for(0, &front, 293, 0.01f), 2 * (double)a, 1e-3);
+
     FrontMatter still = front, unburnt = front, cold = front;
     still.diffusivity = 0, unburnt.mass_rate = 0, cold.heating = 100;
     assert_true(heat_thickening_for(0, &still, 293, 0.01f) == 1);
     assert_true(heat_thickening_for(0, &unburnt, 293, 0.01f) == 1);
     assert_true(heat_thickening_for(0, &cold, 293, 0.01f) == 1);
+
     FrontMatter thin = front;
     thin.diffusivity = 1e-20f, thin.mass_rate = 1e10f;
     assert_true(heat_thickening_for(0, &thin, 293, 0.01f) > 1e6f); // the plan refuses it
@@ -196,8 +205,10 @@ TEST(thickening_follows_the_means) {
 
     for (int k = 0; k < 2; k++) *params[k] = singe_param_field(k ? 5e-3f : 100, k ? 15e-3f : 300, &field);
     def.material.thickening = 0;
+
     Rig rig;
     rig_open(&rig, &def);
+
     FrontMatter front = {.diffusivity = 1e-4f,
                          .mass_rate = 10e-3f,
                          .heating = 2250,

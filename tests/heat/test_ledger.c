@@ -40,20 +40,24 @@ TEST(ledger_closes) {
         RigDef def = paper(k % 2 ? SINGE_HEAT_UMBRELLA : SINGE_HEAT_SURFACE);
         def.settings.pace = k < 2 ? 1 : 3;
         def.material.thickening = k < 2 ? 0 : 1;
+
         Rig rig;
         rig_open(&rig, &def);
         light(&rig);
         double start = rig_content(&rig, 1);
+
         for (int step = 0; step < 500; step++) {
             burn(&rig, step % 20 == 0);
             rig_step(&rig);
         }
+
         const HeatState *heat = &rig.state.heat;
         double stored = rig_content(&rig, 1) + rig.removed - start;
         double largest = fmax(fmax(fabs(stored), heat->heat_in), fmax(heat->heat_lost, heat->heat_of_combustion));
         double error = (heat->heat_in + heat->heat_of_combustion - heat->heat_lost - stored) / largest;
         print_message("ledger %d: in %.3f J, combustion %.3f J, lost %.3f J, error %.2e\n", k, heat->heat_in,
                       heat->heat_of_combustion, heat->heat_lost, error);
+
         CHECK_NEAR(error, 0, 1e-6);
         assert_true(heat->heat_in > 0.03 * largest && heat->heat_lost > 0.03 * largest &&
                     heat->heat_of_combustion > 0.1 * largest);
@@ -67,10 +71,12 @@ TEST(small_changes_are_not_lost) {
     def.settings.ambient_temperature = 293;
     def.material.thickening = 1;
     def.material.temperature = singe_param(293.02f); // cools by 1e-5 K a step; a float's digit is 3e-5 K
+
     Rig rig;
     rig_open(&rig, &def);
     double start = rig_content(&rig, 1);
     for (int step = 0; step < 500; step++) rig_step(&rig);
+
     double stored = rig_content(&rig, 1) - start;
     assert_true(rig.state.heat.heat_lost > 0.2 * start);
     CHECK_NEAR(-stored, rig.state.heat.heat_lost, 2e-3 * start);
@@ -85,14 +91,17 @@ TEST(threads_do_not_matter) {
         rig_open(&rig, &def);
         light(&rig);
         if (threads) assert_int_equal(pool_create(&rig.memory, (SingeTasks){0}, threads, &rig.pool), SINGE_OK);
+
         for (int step = 0; step < 60; step++) {
             burn(&rig, step % 10 == 0);
             rig_step(&rig);
         }
+
         if (threads == 0) {
             one = rig;
             continue;
         }
+
         const HeatState *a = &one.state.heat, *b = &rig.state.heat;
         assert_memory_equal(a->temperature, b->temperature, rig.shell.particle_count * sizeof *a->temperature);
         assert_true(a->heat_in == b->heat_in && a->heat_lost == b->heat_lost &&

@@ -35,6 +35,7 @@ TEST(twins_go_one_by_one) {
         State state;
         HeatPlan *plan;
         HeatSettings settings = {.ambient_temperature = 293, .tolerance = 1e-7f, .pace = 1};
+
         assert_int_equal(sheet_source_create(&memory, &def, &source, NULL), SINGE_OK);
         assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
         assert_int_equal(state_create(&memory, &shell, &state), SINGE_OK);
@@ -50,6 +51,7 @@ TEST(twins_go_one_by_one) {
         uint32_t first = yellow[0] < yellow[1] ? 0 : 1;
         state.ablate.spring_flags[SINGE_YELLOW][yellow[lost]] = 0;
         heat_matrix_follow(plan, &shell, &state.ablate, 1e-3f);
+
         assert_int_equal(entries(&plan->matrix, A, B, left), 1);
         assert_int_equal(entries(&plan->matrix, B, A, back), 1);
         assert_true(left[0] == whole[lost == first] && back[0] == left[0]);

@@ -125,6 +125,7 @@ static uint64_t check_range(const Bad *mesh, const SingeMaterialDef *material, f
     def.shape = mesh->shape;
     def.material = *material;
     def.settings.tolerance = 1e-5f;
+
     Rig rig;
     rig_open(&rig, &def);
     rig.h = h;
@@ -135,6 +136,7 @@ static uint64_t check_range(const Bad *mesh, const SingeMaterialDef *material, f
         for (int k = 0; step && k < 40; k++) remove_any(&rig, &seed);
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
             if (rig.state.ablate.particle_flags[i] & SINGE_ALIVE) min = fminf(min, T[i]), max = fmaxf(max, T[i]);
+
         double before = rig_content(&rig, 1);
         rig_step(&rig);
         check_matrix(&rig, mesh->name);
@@ -145,6 +147,7 @@ static uint64_t check_range(const Bad *mesh, const SingeMaterialDef *material, f
             if (rig.state.ablate.particle_flags[i] & SINGE_ALIVE && !(T[i] >= min - slack && T[i] <= max + slack))
                 fail_msg("%s, steps of %g s: %.9g K from %.9g to %.9g K", mesh->name, (double)h, (double)T[i],
                          (double)min, (double)max);
+
         double scale = fabs(before) > 0 ? fabs(before) : 1;
         if (material->heat_operator == SINGE_HEAT_SURFACE)
             CHECK_NEAR(rig_content(&rig, 1) / scale, before / scale, 1e-5);
@@ -185,9 +188,11 @@ TEST(no_tolerance_lets_a_particle_reach_0_K) {
         Rig rig;
         rig_open(&rig, &def);
         rig.h = steps[k];
+
         uint32_t seed = 1;
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
             rig.state.heat.temperature[i] = rig_random(i, seed) < 0.5f ? 200 : 1e5f;
+
         for (int step = 0; step < 4; step++) {
             rig_step(&rig);
             for (uint32_t i = 0; i < rig.shell.particle_count; i++)
@@ -203,6 +208,7 @@ TEST(threads_do_not_matter) {
     enum { THREADS = 3 };
     RigDef def = rig_default(120, 90, 0.002f, 0.002f);
     def.shape = slivers;
+
     Rig rig[2];
     for (int k = 0; k < 2; k++) {
         rig_open(&rig[k], &def);
@@ -243,9 +249,11 @@ TEST(cells_conduct_nothing_negative) {
         double w[6], linear[6], t[3], min = 0;
         float squeeze = powf(10, -3 * rig_random(n, 50));
         for (uint32_t k = 0; k < 4; k++) x[k] = float3(rig_random(n, k), squeeze * rig_random(n, k + 4), 0);
+
         double turn = (double)((x[2].x - x[0].x) * (x[3].y - x[1].y) - (x[2].y - x[0].y) * (x[3].x - x[1].x));
         if (turn < 0.02 * (double)squeeze) continue;
         if (!heat_cell_linear(x, linear)) continue;
+
         heat_cell_weights(x, alone, w);
         tensor(x, w, t);
         for (int k = 0; k < 6; k++) {
@@ -276,6 +284,7 @@ TEST(neighbours_make_up_for_a_side) {
     const Float3 x[4] = {float3(0, 0, 0), float3(0.9f, -0.1f, 0), float3(2, 0, 0), float3(1, 0.6f, 0)};
     double linear[6], alone[6], beside[6], none[4] = {0}, across[4] = {0};
     assert_true(heat_cell_linear(x, linear));
+
     int lacking = 0;
     for (int k = 0; k < 4; k++)
         if (linear[k] < linear[lacking]) lacking = k;

@@ -34,6 +34,7 @@ TEST(relaxes_to_the_source_by_the_formula) {
     SingeSourceDef source = ball(&MIDDLE, 1, 150, 1, 0);
     rig_source(&rig, &source);
     for (int k = 0; k < 40; k++) rig_step(&rig);
+
     double expected = 1200 - 900 * pow(1 + 0.002 * 150 / PER_AREA, -40);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) CHECK_NEAR(rig.state.heat.temperature[i], expected, 2e-3);
     CHECK_NEAR(rig.state.heat.heat_in, 2 * 4e-4 * PER_AREA * (expected - 300), 1e-4 * rig.state.heat.heat_in);
@@ -43,6 +44,7 @@ TEST(relaxes_to_the_source_by_the_formula) {
 TEST(never_overshoots) {
     RigDef def = inert(4, 4);
     rig_open(&rig, &def);
+
     SingeSourceDef source = ball(&MIDDLE, 1, 1e9f, 1, 0);
     rig_source(&rig, &source);
     for (int k = 0; k < 10; k++) {
@@ -64,6 +66,7 @@ TEST(falls_off_smoothly_and_moves) {
     rig_source(&rig, &source);
     rig_step(&rig); // time 0: not yet
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) assert_true(rig.state.heat.temperature[i] == 300);
+
     rig.state.time = 0.5; // half way: at (0.01, 0.01)
     rig_step(&rig);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
@@ -85,6 +88,7 @@ TEST(contact_heats_the_near_layer) {
     RigDef def = inert(4, 4);
     def.material.thickness = singe_param(0.002f);
     rig_open(&rig, &def);
+
     SingePoseKey pose = {.position = {0, 0, -0.0008f}, .rotation = {0, 0, 0, 1}};
     Collider *plane = &rig.collider[0];
     plane->def = singe_default_collider();
@@ -93,8 +97,10 @@ TEST(contact_heats_the_near_layer) {
     rig.colliders.count = 1;
     rig_step(&rig); // the slot is still free
     assert_true(rig.state.heat.temperature[0] == 300);
+
     plane->generation = 1;
     rig_step(&rig);
+
     double a = 0.002 * 300 / PER_AREA;
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         CHECK_NEAR(rig.state.heat.temperature[i], shell_is_corner(&rig.shell, i) ? (300 + a * 700) / (1 + a) : 300,
@@ -117,6 +123,7 @@ static void slab(Rig *r, SingeColliderKind kind, bool below, SingeContactSides s
     float top = kind == SINGE_COLLIDER_HEIGHTFIELD ? 0 : 1;
     SingePoseKey pose = {.position = {0.02f, 0.02f, below ? -0.0005f - top : 0.0025f + top}, .rotation = {0, 0, 0, 1}};
     if (!below) pose.rotation[0] = 1, pose.rotation[3] = 0;
+
     def.kind = kind;
     def.half_size[0] = def.half_size[1] = 0.01f, def.half_size[2] = 1;
     def.vertex_count = 8, def.vertices = vertices, def.triangle_count = 12, def.triangles = CUBE_TRIANGLES;
@@ -136,9 +143,11 @@ TEST(contact_heats_the_given_sides) {
         RigDef def = inert(20, 20); // 4 cm, the front 2 mm above the back
         def.material.thickness = singe_param(0.002f);
         rig_open(&rig, &def);
+
         float temperature = cold ? 250 : 700;
         slab(&rig, kinds[k / 8], below, both ? SINGE_SIDES_BOTH : SINGE_SIDES_TOUCHING, temperature);
         rig_step(&rig);
+
         double a = 0.002 * 300 / PER_AREA, heated = (300 + a * (double)temperature) / (1 + a), stored = 0;
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
             const float *x = rig_position(&rig, i);
@@ -167,6 +176,7 @@ TEST(contact_heat_goes_through_the_sheet) {
     def.material.layer_exchange = singe_param(4); // the difference of the two falls as e^-4t
     rig_open(&rig, &def);
     slab(&rig, SINGE_COLLIDER_MESH, true, SINGE_SIDES_TOUCHING, 700);
+
     uint32_t near = rig_vertex(&rig, 10, 10), behind = rig_centre(&rig, 10, 10), aside = rig_centre(&rig, 1, 1);
     float before = 300;
     for (int k = 0; k < 1500; k++) {
@@ -192,12 +202,14 @@ TEST(a_texture_heats_by_its_key_frames) {
     source.kind = SINGE_SOURCE_TEXTURE, source.texture = (SingeTexture){2, 2, pixels}, source.flux = 20e3f;
     source.strength = keys, source.strength_count = 2;
     rig_source(&rig, &source);
+
     const struct { double time, strength; } times[] = {{0, 0}, {1.5, 0.5}, {2, 1}, {9, 2}};
     double total = 0;
     for (int k = 0; k < 4; k++) {
         rig.state.time = times[k].time;
         rig_step(&rig);
         total += times[k].strength;
+
         double per_unit = 0.002 * 20e3 / PER_AREA;
         CHECK_NEAR(rig.state.heat.temperature[rig_vertex(&rig, 0, 0)], 300 + total * per_unit * 0.5, 1e-3);
         CHECK_NEAR(rig.state.heat.temperature[rig_vertex(&rig, 8, 0)], 300 + total * per_unit * 0.25, 1e-3);
@@ -224,11 +236,13 @@ TEST(callback_adds_to_the_rest) {
     SingeSourceDef source = singe_default_source();
     source.kind = SINGE_SOURCE_CALLBACK, source.callback = my_flux, source.callback_context = &calls;
     rig_source(&rig, &source);
+
     SingeSourceDef spot = ball(&MIDDLE, 1, 20, 1, 0);
     rig_source(&rig, &spot);
     rig_remove(&rig, 5);
     rig_step(&rig);
     assert_int_equal(calls, 1);
+
     double a = 0.002 / PER_AREA;
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
         double q = i == 2 ? 5e3 : 0;
@@ -249,11 +263,13 @@ TEST(a_sink_stops_at_1_kelvin) {
     for (int k = 0; k < 3; k++) {
         RigDef def = inert(3, 3);
         rig_open(&rig, &def);
+
         SingeSourceDef source = singe_default_source();
         source.kind = SINGE_SOURCE_TEXTURE, source.texture = (SingeTexture){1, 1, &white}, source.flux = fluxes[k];
         rig_source(&rig, &source);
         double before = rig_content(&rig, 1);
         for (int step = 0; step < 50; step++) rig_step(&rig);
+
         double expected = fmax(300 + 50 * 0.002 * (double)fluxes[k] / PER_AREA, 1);
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
             CHECK_NEAR(rig.state.heat.temperature[i], expected, 2e-3);
@@ -297,6 +313,7 @@ TEST(hot_gas_heats_up_to_itself) {
 TEST(sheets_without_uv_take_no_picture) {
     RigDef def = inert(2, 2);
     rig_open(&rig, &def);
+
     static const float grey = 1;
     SingeSourceDef picture = singe_default_source();
     picture.kind = SINGE_SOURCE_TEXTURE, picture.texture = (SingeTexture){1, 1, &grey};

@@ -35,6 +35,7 @@ static void make(Torn *t) {
 
     SingeSheetDef def = test_sheet(&mesh);
     def.material.thickening = 2;
+
     HeatSettings settings = {.ambient_temperature = 293, .tolerance = 1e-7f, .pace = 1};
     t->memory = memory_make((SingeAllocator){0});
     assert_int_equal(sheet_source_create(&t->memory, &def, &t->source, NULL), SINGE_OK);
@@ -88,15 +89,18 @@ TEST(rows_are_as_if_built_anew) {
     for (uint32_t seed = 1; seed <= 20; seed++) {
         Torn t = {.random = seed};
         uint32_t mixed = 0;
+
         make(&t);
         for (uint32_t c = 0; c < CELLS; c++) mixed += heat_operator_may_change(&t.shell, c);
         assert_true(mixed > 10);
+
         heat_matrix_follow(t.by_rows, &t.shell, &t.state.ablate, 1e-3f);
         heat_matrix_follow(t.anew, &t.shell, &t.state.ablate, 1e-3f);
         for (int step = 0; step < 60; step++) {
             bool tears = any(&t, 3) > 0;
             for (int k = 0; tears && k < 1; k++) tear_somewhere(&t);
             for (int k = 0; k < 5; k++) burn_somewhere(&t);
+
             uint32_t before = t.by_rows->split_count;
             t.anew->matrix.full = true; // which it cannot follow by rows
             heat_plan_follow(t.by_rows, &t.shell, STATE_INPUT(&t.state));

@@ -8,14 +8,17 @@ TEST(grid_is_exact) {
     Mesh mesh;
     SingeError error;
     assert_int_equal(mesh_grid(2, 1, 2, 1, (SingeAllocator){0}, &mesh, &error), SINGE_OK);
+
     static const float positions[] = {-1, -0.5f, 0, 0, -0.5f, 0, 1, -0.5f, 0, -1, 0.5f, 0, 0, 0.5f, 0, 1, 0.5f, 0};
     static const float uv[] = {0, 0, 0.5f, 0, 1, 0, 0, 1, 0.5f, 1, 1, 1};
     static const uint32_t cells[] = {0, 1, 4, 3, 1, 2, 5, 4};
+
     assert_int_equal(mesh.vertex_count, 6);
     assert_int_equal(mesh.cell_count, 2);
     assert_memory_equal(mesh.positions, positions, sizeof positions);
     assert_memory_equal(mesh.uv, uv, sizeof uv);
     assert_memory_equal(mesh.cells, cells, sizeof cells);
+
     mesh_free(&mesh);
     assert_int_equal(mesh_grid(0, 1, 2, 1, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(mesh_grid(1, NAN, 2, 1, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_ARGUMENT);
@@ -39,6 +42,7 @@ TEST(worn_grid_keeps_its_outline) {
     mesh_grid_wear(&mesh, NX, NY, &(GridWear){.seed = 5});
     assert_memory_equal(mesh.positions, plain.positions, 12 * mesh.vertex_count);
     mesh_grid_wear(&mesh, NX, NY, &(GridWear){.jitter = 0.3f, .displacement = 2e-3f, .seed = 5});
+
     double moved = 0, height = 0, mean = 0;
     for (uint32_t v = 0; v < mesh.vertex_count; v++) {
         const float *p = mesh.positions + 3 * v, *q = plain.positions + 3 * v;
@@ -49,6 +53,7 @@ TEST(worn_grid_keeps_its_outline) {
         height += (double)(p[2] * p[2]) / mesh.vertex_count, mean += (double)p[2] / mesh.vertex_count;
         assert_true(fabsf(mesh.uv[2 * v] - (p[0] / 0.2f + 0.5f)) < 1e-5f);
     }
+
     assert_true(moved > 0.15 * 0.005 && moved < 0.301 * 0.005);
     assert_true(sqrt(height) > 1e-3 && sqrt(height) < 3e-3 && fabs(mean) < 1e-3);
     for (uint32_t c = 0; c < mesh.cell_count; c++)
@@ -65,6 +70,7 @@ TEST(slim_cells_stay_slim) {
         Mesh mesh;
         assert_int_equal(mesh_grid(1, 1, nx, ny, (SingeAllocator){0}, &mesh, NULL), SINGE_OK);
         mesh_grid_wear(&mesh, nx, ny, &(GridWear){.jitter = 0.15f, .seed = 1});
+
         double widest = 0, longest = 0;
         for (uint32_t c = 0; c < mesh.cell_count; c++)
             for (int k = 0; k < 4; k++) {
@@ -75,6 +81,7 @@ TEST(slim_cells_stay_slim) {
                 if (across) widest = fmax(widest, edge);
                 else longest = fmax(longest, edge);
             }
+
         print_message("cells of %g by %g: sides up to %g by %g\n", width, length, widest, longest);
         assert_true(widest < 1.7 * width && longest < 1.01 * length);
         mesh_free(&mesh);

@@ -12,6 +12,7 @@ TEST(quads_stay_as_they_are) {
     assert_null(made.mesh.source);
     assert_null(made.mesh.cell_faces);
     assert_null(made.mesh.uv);
+
     static const uint32_t first[4] = {0, 1, 6, 5};
     assert_memory_equal(made.mesh.cells, first, sizeof first);
     assert_int_equal(made.mesh.cell_lines[0], 21);
@@ -23,6 +24,7 @@ TEST(triangulated_grids_give_back_their_quads) {
     for (Diagonals d = REGULAR; d <= RANDOM; d++) {
         text.size = 0;
         text_grid(&text, 17, 12), text_cells(&text, 17, 12, d);
+
         Made made = make(&text);
         assert_int_equal(made.mesh.cell_count, 17 * 12);
         assert_int_equal(made.mesh.vertex_count, 18 * 13);
@@ -39,6 +41,7 @@ static int irregular(const Mesh *mesh) {
     int *cells = calloc(mesh->vertex_count, sizeof *cells), *sides = calloc(mesh->vertex_count, sizeof *sides);
     int count = 0;
     for (uint32_t i = 0; i < 4 * mesh->cell_count; i++) cells[mesh->cells[i]]++;
+
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         const float *p = mesh->positions + 3 * v;
         bool inside = p[0] > 0.016f && p[0] < 0.184f && p[1] > 0.001f && p[1] < 0.17f;
@@ -63,12 +66,14 @@ TEST(quads_continue_rows) {
     for (int j = 0; j <= n; j++)
         for (int i = 0; i <= n; i++)
             text_add(&text, "v %.7g %.7g 0\n", 0.01 * (i + 0.5 * (j % 2)), 0.01 * sqrt(0.75) * j);
+
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++) {
             int a = j * (n + 1) + i + 1, b = a + 1, c = b + n + 1, d = a + n + 1;
             if (j % 2) text_add(&text, "f %d %d %d\nf %d %d %d\n", a, b, c, a, c, d);
             else text_add(&text, "f %d %d %d\nf %d %d %d\n", a, b, d, b, c, d);
         }
+
     Made made = make(&text);
     assert_int_equal(made.mesh.cell_count, n * n);
     assert_true(irregular(&made.mesh) <= n * n / 50);
@@ -83,6 +88,7 @@ TEST(lone_triangles_are_halved) {
     assert_int_equal(made.mesh.vertex_count, 4);
     assert_int_equal(made.mesh.source[3], -1);
     assert_int_equal(made.mesh.source_count, 3);
+
     uint32_t middle = vertex_at(&made.mesh, 1, 0.5f, 0); // of the longest side
     assert_int_equal(middle, 3);
     mesh_free(&made.mesh);
@@ -102,6 +108,7 @@ TEST(polygons_become_quads) {
         for (int i = 0; i < n; i++) text_add(&text, "v %.7g %.7g 0\n", cos(6.2831853 * i / n), sin(6.2831853 * i / n));
         text_add(&text, "f");
         for (int i = 0; i < n; i++) text_add(&text, " %d", i + 1);
+
         Made made = make(&text);
         double area = 0;
         for (uint32_t c = 0; c < made.mesh.cell_count; c++) {
@@ -118,6 +125,7 @@ TEST(polygons_become_quads) {
 TEST(split_makes_n_quads_of_n_corners) {
     text.size = 0;
     text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\nf 2 5 3\n");
+
     MeshOptions options = mesh_default_options();
     options.quads = MESH_QUADS_SPLIT;
     Made made = make_with(&text, options);
@@ -142,8 +150,10 @@ TEST(attributes_and_ids_follow_their_vertices) {
         ply_read("a.ply", (const uint8_t *)ply, sizeof ply - 1, (SingeAllocator){0}, &polygons, &made.error), SINGE_OK);
     assert_int_equal(
         mesh_make("a.ply", &polygons, &options, (SingeAllocator){0}, &made.mesh, &made.report, &made.error), SINGE_OK);
+
     static const int32_t source[] = {1, 2, 3, -1};
     static const float wet[] = {1, 3, 5, 4};
+
     assert_memory_equal(made.mesh.source, source, sizeof source);
     assert_int_equal(made.mesh.attribute_count, 1);
     assert_memory_equal(made.mesh.attributes[0].values, wet, sizeof wet);
@@ -167,6 +177,7 @@ TEST(shuffled_meshes_are_put_in_order) {
     text.size = 0;
     for (int v = 0; v < VERTICES; v++)
         text_add(&text, "v %.6g %.6g 0\n", 0.01 * (from[v] % (N + 1)), 0.01 * (from[v] / (N + 1)));
+
     for (int c = 0; c < N * N; c++) {
         int cell = c * 7 % (N * N), a = cell / N * (N + 1) + cell % N;
         text_add(&text, "f %d %d %d\n", to[a] + 1, to[a + 1] + 1, to[a + N + 2] + 1);
@@ -177,6 +188,7 @@ TEST(shuffled_meshes_are_put_in_order) {
     const Mesh *mesh = &made.mesh;
     assert_int_equal(mesh->cell_count, N * N);
     assert_squares(mesh, 0.01f);
+
     uint32_t beside = 0;
     for (uint32_t i = 0; i < 4 * mesh->cell_count; i++) {
         uint32_t a = mesh->cells[i], b = mesh->cells[i / 4 * 4 + (i + 1) % 4];
@@ -207,6 +219,7 @@ TEST(other_formats_are_made_too) {
 
     if (result) fail_msg("%s", error.message);
     assert_int_equal(polygons.face_count, 2);
+
     Mesh mesh;
     MeshReport report;
     MeshOptions options = mesh_default_options();
@@ -215,11 +228,13 @@ TEST(other_formats_are_made_too) {
     assert_int_equal(mesh.vertex_count, 4);
     mesh_free(&mesh);
     polygons_free(&polygons);
+
     static const char obj[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 .5 0\nf 1 2 3 4\nf 2 5 3\n";
     result = polygons_read("a.obj", (const uint8_t *)obj, sizeof obj - 1, (SingeAllocator){0}, &polygons, &error);
     if (result) fail_msg("%s", error.message);
     assert_int_equal(polygons.face_count, 2);
     assert_int_equal(polygons.corner_count, 7); // quads stay quads
+
     polygons_free(&polygons);
     assert_int_equal(
         polygons_read("a.glb", (const uint8_t *)obj, sizeof obj - 1, (SingeAllocator){0}, &polygons, &error),

@@ -108,6 +108,7 @@ static void assert_covers_but(const Shape *shape, double area, double less, cons
     for (MeshQuads quads = MESH_QUADS_PAIR; quads <= MESH_QUADS_SPLIT; quads++) {
         Made made = make_shape(shape, quads);
         if (made.result) fail_msg("%s: %s", name, made.error.message);
+
         double sum = 0, low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
         for (uint32_t i = 0; i < 4 * made.mesh.cell_count; i++) {
             double at[3][2];
@@ -120,6 +121,7 @@ static void assert_covers_but(const Shape *shape, double area, double less, cons
             for (int k = 0; k < 2; k++) {
                 low[k] = fmin(low[k], shape->at[i][k]), high[k] = fmax(high[k], shape->at[i][k]);
             }
+
         for (int i = 0; i < 15 * 15; i++) {
             const double p[2] = {low[0] + (high[0] - low[0]) * (i % 15 + 0.4137) / 15,
                                  low[1] + (high[1] - low[1]) * (i / 15 + 0.5871) / 15};
@@ -264,6 +266,7 @@ TEST(faces_in_contact_with_themselves_are_split) {
     assert_covers(&shape, 16, "a spike inwards");
     shape = SHAPE(few, 0, 1, 2, 3, 0, 1, 2, 3);
     assert_covers(&shape, 16, "a square wound twice");
+
     static const double tooth[][2] = {{0, 0}, {8, 0}, {8, 8}, {0, 8}, {0, 5}, {4, 0}, {6, 4}, {2, 4}};
     shape = SHAPE(tooth, 0, 1, 2, 3, 4, 7, 6, 5, 7, 4);
     assert_covers_but(&shape, 56, 0.02, "a hole that touches a side");
@@ -279,6 +282,7 @@ TEST(self_crossing_polygons_are_refused) {
     assert_refused(&shape, "a star drawn in one line");
     shape = (Shape){0};
     for (int i = 0; i < 20; i++) corner_at(&shape, 3 + i % 2 + 0.001 * i, 0.6283185307 * i);
+
     assert_refused(&shape, "a ring wound twice");
     shape = (Shape){0};
     for (int i = 0; i < 120; i++) corner_at(&shape, 3 - 0.002 * i, 0.15 * i);
@@ -289,6 +293,7 @@ TEST(self_crossing_polygons_are_refused) {
 TEST(bent_polygons_are_covered) {
     text.size = 0;
     text_add(&text, "v 0 0 0\nv 5 0 .3\nv 5 6 0\nv 4 6 .2\nv 4 1 0\nv 1 1 .4\nv 1 6 0\nv 0 6 .3\nf 1 2 3 4 5 6 7 8\n");
+
     Made made = make(&text);
     double area = 0;
     for (uint32_t i = 0; i < 4 * made.mesh.cell_count; i++) {

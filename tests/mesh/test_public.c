@@ -36,6 +36,7 @@ static void burn(const SingeMesh *mesh, uint32_t held) {
 
     singe_mesh_fill_sheet(mesh, &sheet);
     pin.vertex_count = 1, pin.vertices = &held;
+
     SingeSim *sim = test_create(&def);
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &pin.sheet));
     test_add_pin(sim, &pin);
@@ -54,12 +55,14 @@ TEST(polygons_become_a_sheet) {
         SingeError error;
         def.quads = ways[k];
         if (singe_mesh_create(&def, &mesh, &error)) fail_msg("%s", error.message);
+
         SingeMeshView view = singe_mesh_view(mesh);
         assert_int_equal(view.struct_size, sizeof view);
         assert_true(fabs(area_of(&view) - 0.0225) < 1e-7);
         assert_true(view.cell_count >= 3);
         assert_int_equal(singe_mesh_vertex(mesh, 7), UINT32_MAX); // of no face
         assert_int_equal(singe_mesh_vertex(mesh, 8), UINT32_MAX);
+
         for (uint32_t v = 0; v < 7; v++) {
             uint32_t now = singe_mesh_vertex(mesh, v);
             assert_memory_equal(view.positions + 3 * (size_t)now, positions + 3 * (size_t)v, 3 * sizeof(float));
@@ -76,12 +79,15 @@ TEST(quads_stay) {
     const uint32_t four[] = {4}, quad[] = {0, 1, 2, 3};
     SingeMeshDef def = house();
     SingeMesh *mesh;
+
     def.vertex_count = 4, def.face_count = 1, def.face_sizes = four, def.corners = quad, def.uv = NULL;
     assert_int_equal(singe_mesh_create(&def, &mesh, NULL), SINGE_OK);
+
     SingeMeshView view = singe_mesh_view(mesh);
     assert_int_equal(view.vertex_count, 4);
     assert_memory_equal(view.positions, positions, 12 * sizeof(float));
     assert_memory_equal(view.cells, quad, sizeof quad);
+
     assert_null(view.uv);
     assert_null(view.source_vertex);
     assert_int_equal(singe_mesh_vertex(mesh, 3), 3);
@@ -108,6 +114,7 @@ TEST(bad_meshes_are_refused) {
     def.struct_size = 0;
     refused(&def, SINGE_ERROR_ARGUMENT, -1, "singe_default_mesh()");
     refused(NULL, SINGE_ERROR_ARGUMENT, -1, "singe_default_mesh()");
+
     def = house(), def.positions = NULL;
     refused(&def, SINGE_ERROR_ARGUMENT, -1, "NULL");
     def = house(), def.face_count = 0;
@@ -117,10 +124,12 @@ TEST(bad_meshes_are_refused) {
     def = house(), def.corners = far, def.name = "cape";
     refused(&def, SINGE_ERROR_MESH, 5, "cape: a face uses vertex 30 of 8");
     memcpy(broken, positions, sizeof broken);
+
     broken[4] = NAN;
     def = house(), def.positions = broken;
     refused(&def, SINGE_ERROR_MESH, 1, "not finite");
     memcpy(broken, uv, sizeof uv);
+
     broken[0] = INFINITY;
     def = house(), def.uv = broken;
     refused(&def, SINGE_ERROR_MESH, 0, "uv");
@@ -141,12 +150,14 @@ TEST(grids_are_meshes) {
 
     def.cells[0] = 8, def.cells[1] = 5, def.size[0] = 0.16f, def.size[1] = 0.1f;
     assert_int_equal(singe_mesh_create_grid(&def, &mesh, &error), SINGE_OK);
+
     SingeMeshView view = singe_mesh_view(mesh);
     assert_int_equal(view.vertex_count, 54);
     assert_int_equal(view.cell_count, 40);
     assert_true(fabs(area_of(&view) - 0.016) < 1e-7);
     burn(mesh, 3);
     singe_mesh_destroy(mesh);
+
     def.jitter = 0.5f;
     assert_int_equal(singe_mesh_create_grid(&def, &mesh, &error), SINGE_ERROR_ARGUMENT);
     assert_null(mesh);
@@ -170,9 +181,11 @@ TEST(defs_may_be_of_other_versions) {
         SingeMeshDef def;
         char more[64];
     } newer;
+
     SingeMesh *mesh;
     memset(&newer, 0x55, sizeof newer);
     singe_init_mesh(&newer.def, sizeof newer);
+
     SingeMeshDef def = house();
     memcpy(&newer.def, &def, sizeof def);
     newer.def.struct_size = sizeof newer;
@@ -182,6 +195,7 @@ TEST(defs_may_be_of_other_versions) {
     def.struct_size = offsetof(SingeMeshDef, quads);
     def.quads = (SingeMeshQuads)99; // not known then
     assert_int_equal(singe_mesh_create(&def, &mesh, NULL), SINGE_OK);
+
     SingeMeshView view;
     memset(&view, 0x55, sizeof view);
     singe_mesh_read(mesh, &view, offsetof(SingeMeshView, cells));
@@ -222,6 +236,7 @@ TEST(materials_have_names) {
     assert_true(def.struct_size == sizeof def && def.grammage.value == 0.12f && def.fibre_shrink.value == 1);
     assert_true(def.compliance[SINGE_GREEN].value == 0.5f && def.char_strength.to == 20);
     assert_true(def.char_strength.field->kind == SINGE_FIELD_NOISE && def.char_strength.field->noise.seed == 3);
+
     SingeMaterialDef before = def;
     assert_int_equal(singe_material_preset("silk", &def, &error), SINGE_ERROR_ARGUMENT);
     assert_memory_equal(&before, &def, sizeof def);

@@ -12,11 +12,13 @@ static uint32_t below(uint32_t count) {
 static void random_polygons(Text *text) {
     uint32_t vertices = 3 + below(14), faces = 1 + below(24), grid = 1 + below(4);
     bool uv = below(2);
+
     text->size = 0;
     for (uint32_t v = 0; v < vertices; v++)
         text_add(text, "v %g %g %g\n", below(3 * grid) / (double)grid, below(3 * grid) / (double)grid,
                  below(3) ? 0 : below(100) * 0.01);
     for (uint32_t t = 0; uv && t < 5; t++) text_add(text, "vt %g %g\n", below(10) * 0.1, below(10) * 0.1);
+
     for (uint32_t f = 0; f < faces; f++) {
         uint32_t corners = 3 + below(below(3) ? 2 : 5);
         text_add(text, "f");
@@ -32,14 +34,17 @@ static void random_polygons(Text *text) {
 static void broken_grid(Text *text) {
     int n = 2 + (int)below(7), m = 2 + (int)below(7);
     double shake = below(3) * 0.004;
+
     text->size = 0;
     for (int j = 0; j <= m; j++)
         for (int i = 0; i <= n; i++)
             text_add(text, "v %g %g %g\n", 0.01 * i + shake * (below(200) / 100.0 - 1),
                      0.01 * j + shake * (below(200) / 100.0 - 1), below(8) ? 0 : 0.005);
+
     for (int c = 0; c < n * m; c++) {
         int a = c / n * (n + 1) + c % n + 1, at[4] = {a, a + 1, a + n + 2, a + n + 1}, s = (int)below(2);
         if (below(9) == 0) continue;
+
         for (int times = below(12) ? 1 : 2; times > 0; times--) {
             if (below(5) == 0) text_add(text, "f %d %d %d %d\n", at[0], at[1], at[2], at[3]);
             else if (below(9) == 0)
@@ -82,6 +87,7 @@ TEST(random_meshes_are_refused_or_sound) {
         else random_polygons(&text);
         MeshOptions options = mesh_default_options();
         if (seed % 5 == 4) options.quads = MESH_QUADS_SPLIT;
+
         Made made = make_with(&text, options);
         if (made.result) {
             assert_int_equal(made.result, SINGE_ERROR_MESH);

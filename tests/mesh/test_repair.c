@@ -13,6 +13,7 @@ TEST(soup_is_welded) {
             text_add(&text, "v %.9g %.9g 0\nv %.9g %.9g 0\nv %.9g %.9g 0\n", x, y, x + s, y + s, x, y + s + noise);
             text_add(&text, "f -6 -5 -4\nf -3 -2 -1\n");
         }
+
     Made made = make(&text);
     assert_int_equal(made.mesh.vertex_count, 42);
     assert_int_equal(made.mesh.cell_count, 30);
@@ -30,21 +31,25 @@ TEST(weld_keeps_layers_apart) {
                 bool middle = i == 1 && j == 1;
                 text_add(&text, "v %d %d %g\n", i, j, layer && !middle ? 0.3 : 0);
             }
+
     for (int layer = 0; layer < 2; layer++)
         for (int c = 0; c < 4; c++) {
             int a = 9 * layer + c / 2 * 3 + c % 2 + 1;
             text_add(&text, "f %d %d %d %d\n", a, a + 1, a + 4, a + 3);
         }
+
     Made made = make(&text);
     assert_int_equal(made.mesh.vertex_count, 18);
     assert_int_equal(made.report.components, 2);
     mesh_free(&made.mesh);
+
     text.size = 0;
     text_add(&text,
              "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1.001 0 0\nv 2 0 0\nv 2 1 0\nv 1.001 1 0\nf 1 2 3 4\nf 5 6 7 8\n");
     made = make(&text);
     assert_int_equal(made.report.components, 2);
     mesh_free(&made.mesh);
+
     MeshOptions options = mesh_default_options();
     options.weld = 0.002f;
     made = make_with(&text, options);
@@ -72,6 +77,7 @@ TEST(faults_are_repaired_and_said) {
     text_add(&text, "v 9 9 9\n");
     text_cells(&text, 3, 3, WHOLE);                   // lines 18 to 26
     text_add(&text, "f 1 5 6 2\nf 1 2 3\nf 4 4 8\n"); // there already, the other way round; flat; two corners
+
     Made made = make(&text);
     assert_int_equal(made.mesh.cell_count, 9);
     assert_int_equal(made.mesh.vertex_count, 16);
@@ -80,6 +86,7 @@ TEST(faults_are_repaired_and_said) {
     assert_int_equal(made.report.count[MESH_DUPLICATE], 1);
     assert_int_equal(made.report.first[MESH_DUPLICATE], 27);
     assert_int_equal(made.report.count[MESH_DEGENERATE], 2);
+
     char line[200];
     bool said = false;
     for (int i = 0; mesh_report_line(&made.report, i, line, sizeof line); i++)
@@ -121,6 +128,7 @@ static double volume(const Mesh *mesh) {
                     a[2] * (b[0] * d[1] - b[1] * d[0])) /
                    6;
         }
+
     return sum;
 }
 
@@ -141,6 +149,7 @@ TEST(edges_of_many_faces_are_cut) {
     add_cube(0, false, 0);
     for (int i = 0; i < 8; i++)
         text_add(&text, "v %d %d %d\n", 1 + ((i & 3) == 1 || (i & 3) == 2), 1 + ((i & 3) >= 2), i >= 4);
+
     static const int faces[6][4] = {{1, 4, 3, 2}, {5, 6, 7, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}};
     for (int f = 0; f < 6; f++) { // corners 1 and 5 of the second are 3 and 7 of the first
         text_add(&text, "f");
@@ -157,6 +166,7 @@ TEST(edges_of_many_faces_are_cut) {
     assert_int_equal(made.report.components, 2);
     assert_int_equal(made.mesh.vertex_count, 16);
     mesh_free(&made.mesh);
+
     text.size = 0;
     text_grid(&text, 2, 2);
     text_add(&text, "v .01 0 .01\nv .01 .01 .01\nv .01 .02 .01\n");
@@ -166,6 +176,7 @@ TEST(edges_of_many_faces_are_cut) {
     assert_int_equal(made.report.count[MESH_CUT], 2);
     assert_int_equal(made.report.components, 2);
     assert_int_equal(made.mesh.vertex_count, 12 + 3);
+
     int copies = 0;
     for (uint32_t v = 0; v < made.mesh.vertex_count; v++) copies += made.mesh.source[v] == 4;
     assert_int_equal(copies, 2);      // both are the file's vertex
@@ -205,6 +216,7 @@ static uint32_t assert_manifold(const Mesh *mesh) {
         uint32_t a = mesh->cells[i], b = mesh->cells[i / 4 * 4 + (i + 1) % 4];
         sides[i] = (Side){a < b ? a : b, a < b ? b : a, a < b};
     }
+
     qsort(sides, count, sizeof *sides, by_ends);
     for (uint32_t i = 0, size; i < count; i += size) {
         for (size = 1; i + size < count && by_ends(&sides[i], &sides[i + size]) == 0; size++) {
@@ -227,18 +239,21 @@ TEST(one_sided_surfaces_are_cut) {
             double a = 6.283185307179586 * i / AROUND, r = 1 + 0.2 * k * cos(a / 2);
             text_add(&text, "v %.9g %.9g %.9g\n", r * cos(a), r * sin(a), 0.2 * k * sin(a / 2));
         }
+
     for (int i = 0; i < AROUND; i++)
         for (int k = 0; k < 2; k++) {
             int a = 3 * i + k + 1, b = a + 1, c = a + 4, d = a + 3;
             if (i + 1 == AROUND) c = 2 - k, d = 3 - k; // the other way round
             text_add(&text, "f %d %d %d %d\n", a, b, c, d);
         }
+
     Made made = make(&text);
     const uint32_t cut = made.report.count[MESH_ONE_SIDED];
     assert_in_range(cut, 2, 4);
     assert_int_equal(made.mesh.cell_count, 2 * AROUND);
     assert_int_equal(assert_manifold(&made.mesh), 2 * AROUND + 2 * cut);
     mesh_free(&made.mesh);
+
     text.size = 0; // the one of five triangles
     text_add(&text, "v 1 0 0\nv 0.3 0.9 0.1\nv -0.8 0.6 0.4\nv -0.8 -0.6 0\nv 0.3 -0.9 0.3\n"
                     "f 1 2 3\nf 2 3 4\nf 3 4 5\nf 4 5 1\nf 5 1 2\n");
@@ -256,6 +271,7 @@ TEST(sheets_that_meet_themselves_are_cut) {
     for (int j = 0; j < 4; j++)
         text_add(&text, "f %d %d %d %d\nf %d %d %d %d\n", 5 * j + 2, 5 * j + 7, 27 + j, 26 + j, 26 + j, 27 + j,
                  5 * j + 9, 5 * j + 4);
+
     Made made = make(&text);
     assert_int_equal(made.report.count[MESH_CUT], 8);
     assert_int_equal(made.mesh.cell_count, 24);
@@ -267,6 +283,7 @@ TEST(sheets_that_meet_themselves_are_cut) {
     text.size = 0;
     for (int j = 0; j < 6; j++)
         for (int i = 0; i < 8; i++) text_add(&text, "v %g %d %g\n", x[i], j, z[i]);
+
     for (int j = 0; j < 5; j++)
         for (int i = 0; i < 7; i++) {
             const int at[4] = {j * 8 + i, j * 8 + i + 1, j * 8 + i + 9, j * 8 + i + 8};
@@ -274,6 +291,7 @@ TEST(sheets_that_meet_themselves_are_cut) {
             for (int k = 0; k < 4; k++) text_add(&text, " %d", (at[k] == 21 ? 18 : at[k] == 29 ? 26 : at[k]) + 1);
             text_add(&text, "\n");
         }
+
     made = make(&text);
     assert_true(made.report.count[MESH_CUT] >= 1);
     assert_manifold(&made.mesh);
@@ -287,6 +305,7 @@ TEST(sides_between_the_same_vertices_are_parted) {
     for (int i = 0; i < 6; i++) text_add(&text, "v %.9g %.9g .5\n", cos(1.0471975512 * i), sin(1.0471975512 * i));
     for (int i = 0; i < 6; i++) text_add(&text, i % 2 ? "f 2 1 %d\n" : "f 1 2 %d\n", i + 3);
     for (int i = 0; i < 6; i++) text_add(&text, "f %d %d %d\n", 1 + i % 2, i + 3, (i + 1) % 6 + 3);
+
     Made made = make(&text);
     assert_true(made.report.count[MESH_CUT] >= 1);
     assert_manifold(&made.mesh);
@@ -323,16 +342,19 @@ TEST(short_sides_shrink) {
     assert_int_equal(made.mesh.cell_count, 16);
     mesh_free(&made.mesh);
     text.size = 0;
+
     const double x[] = {0, 0.01, 0.02, 0.02001, 0.03, 0.03999, 0.04};
     for (int j = 0; j < 5; j++)
         for (int i = 0; i < 7; i++)
             text_add(&text, "v %.6g %.6g 0\nvt %.6g %.6g\n", x[i], 0.01 * j, 10 * x[i], 0.1 * j);
+
     for (int j = 0; j < 4; j++)
         for (int i = 0; i < 6; i++) {
             int a = 7 * j + i + 1, c = a + 8;
             text_add(&text, "f %d/%d %d/%d %d/%d\nf %d/%d %d/%d %d/%d\n", a, a, a + 1, a + 1, c, c, a, a, c, c, a + 7,
                      a + 7);
         }
+
     made = make(&text);
     assert_int_equal(made.report.count[MESH_SHRUNK], 10);
     assert_int_equal(made.mesh.cell_count, 16);

@@ -13,10 +13,12 @@ static void tube(void) {
             double a = 6.283185307179586 * i / AROUND;
             text_add(&text, "v %.9g %.9g %.9g\n", 0.03 * cos(a), 0.03 * sin(a), 0.008 * j);
         }
+
     for (int chart = 0; chart < 2; chart++)
         for (int j = 0; j <= ALONG; j++)
             for (int i = 0; i <= AROUND; i++)
                 text_add(&text, "vt %.9g %.9g\n", 0.4 * i / AROUND + 0.5 * chart, 0.9 * j / ALONG);
+
     for (int j = 0; j < ALONG; j++)
         for (int i = 0; i < AROUND; i++) {
             int a = j * AROUND + i + 1, b = j * AROUND + (i + 1) % AROUND + 1, c = b + AROUND, d = a + AROUND;
@@ -33,24 +35,30 @@ static SingeSim *tube_sim(float detail, bool seams) {
     assert_int_equal(made.mesh.cell_count, AROUND * ALONG);
     assert_int_equal(made.report.seam_vertices, ALONG + 1 + AROUND - 1);
     assert_non_null(made.mesh.corner_uv);
+
     SingeSimDef def = singe_default_sim();
     def.surface_detail = detail;
     def.time_step = 0.01f;
     def.pace = 4;
     def.gravity[2] = 0; // it stays at the source
+
     SingeSim *sim;
     assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+
     SingeSheetDef sheet = singe_default_sheet();
     sheet.vertex_count = made.mesh.vertex_count, sheet.positions = made.mesh.positions;
     sheet.cell_count = made.mesh.cell_count, sheet.cells = made.mesh.cells;
     sheet.uv = made.mesh.uv, sheet.corner_uv = seams ? made.mesh.corner_uv : NULL;
     sheet.material.fibre_shrink = singe_param(1); // else the directions of the uv matter
+
     SingeSheetId id;
     if (singe_sim_add_sheet(sim, &sheet, &id) || singe_sim_commit(sim)) fail_msg("%s", singe_sim_error(sim)->message);
     mesh_free(&made.mesh);
+
     SingeSourceDef source = singe_default_source();
     const SingePoseKey at = {0, {0.03f, 0, 0.064f}, {0, 0, 0, 1}};
     SingeSourceId source_id;
+
     source.kind = SINGE_SOURCE_SPOT, source.path_count = 1, source.path = &at;
     source.radius = 0.012f, source.falloff = 0.003f, source.temperature = 2000, source.conductance = 3000;
     if (singe_sim_add_source(sim, &source, &source_id)) fail_msg("%s", singe_sim_error(sim)->message);
@@ -75,6 +83,7 @@ static void check_uv(const SingeSurface *surface) {
         assert_true(high[0] - low[0] < 0.4f / AROUND + 1e-4f);
         assert_true(high[1] - low[1] < 0.9f / ALONG + 1e-4f);
         assert_true(upper ? low[0] > 0.499f : high[0] < 0.401f);
+
         for (int k = 0; k < 3; k++) {
             uint32_t v = surface->triangles[t][k];
             const float *p = surface->rest_position[v];
@@ -144,6 +153,7 @@ TEST(seams_open_no_cracks) {
         assert_int_equal(surface.vertex_count, AROUND * (ALONG + 1) + AROUND * ALONG + (ALONG + 1) + AROUND + 1);
         assert_int_equal(open_edges(&surface), 2 * AROUND);
         check_uv(&surface);
+
         int burnt = 0;
         for (int frame = 0; frame < 60 && burnt < 8; frame++) {
             for (int s = 0; s < 5; s++)
@@ -178,10 +188,12 @@ TEST(seams_keep_their_vertices) {
                     "f 1/1 2/2 3/3 4/4\nf 5/5 6/6 7/7 8/8\n");
     Made made = make(&text);
     assert_int_equal(made.mesh.vertex_count, 6);
+
     SingeSim *sim;
     SingeSimDef def = singe_default_sim();
     SingeSheetId id;
     assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+
     SingeSheetDef sheet = singe_default_sheet();
     sheet.vertex_count = 6, sheet.positions = made.mesh.positions, sheet.cell_count = 2, sheet.cells = made.mesh.cells;
     sheet.uv = made.mesh.uv, sheet.corner_uv = made.mesh.corner_uv, sheet.source_vertex = made.mesh.source;
@@ -190,9 +202,11 @@ TEST(seams_keep_their_vertices) {
         if (singe_sim_add_sheet(sim, &sheet, &id)) fail_msg("%s", singe_sim_error(sim)->message);
     if (singe_sim_commit(sim)) fail_msg("%s", singe_sim_error(sim)->message);
     mesh_free(&made.mesh);
+
     SingeSurface surface = {0};
     assert_int_equal(singe_sim_surface(sim, &surface), SINGE_OK);
     assert_int_equal(surface.vertex_count, 2 * (8 + 2));
+
     static const float u[] = {0, 0.4f, 0.4f, 0, 0.6f, 1, 1, 0.6f};
     uint32_t seen = 0;
     for (uint32_t v = 0; v < surface.vertex_count; v++) {

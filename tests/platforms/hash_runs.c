@@ -31,6 +31,7 @@ static SingeSheetDef sheet_make(float side, float z) {
             const uint32_t cell[4] = {corner, corner + 1, corner + 1 + CORNERS, corner + CORNERS};
             if (x < CELLS && y < CELLS) memcpy(cells[y][x], cell, sizeof cell);
         }
+
     SingeSheetDef sheet = singe_default_sheet();
     sheet.vertex_count = CORNERS * CORNERS, sheet.positions = &positions[0][0][0], sheet.uv = &uv[0][0][0];
     sheet.cell_count = CELLS * CELLS, sheet.cells = &cells[0][0][0];
@@ -62,6 +63,7 @@ static SingeResult add_objects(SingeSim *sim, const Run *run, SingeSheetId sheet
         match.radius = 0.01f, match.falloff = 0.01f, match.temperature = 1123, match.end = 0.5f;
         result = singe_sim_add_source(sim, &match, &id);
     }
+
     if (!result && run->held) {
         const uint32_t corners[2] = {0, CORNERS - 1};
         SingePinDef pin = singe_default_pin();
@@ -69,6 +71,7 @@ static SingeResult add_objects(SingeSim *sim, const Run *run, SingeSheetId sheet
         pin.sheet = sheet, pin.vertex_count = 2, pin.vertices = corners;
         result = singe_sim_add_pin(sim, &pin, &id);
     }
+
     if (!result && run->ball) {
         const SingePoseKey below = {.position = {0.01f, 0.02f, -0.09f}, .rotation = {0, 0, 0, 1}};
         SingeColliderDef ball = singe_default_collider();
@@ -87,8 +90,10 @@ static SingeResult open_run(const Run *run, const SingeSimDef *base, SingeSim **
     if (run->windy) def.wind.velocity[1] = 1, def.wind.gust = 0.5f;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
+
     SingeSheetDef sheet = sheet_make(run->side, 0);
     SingeSheetId id;
+
     if (run->strength > 0) sheet.material.strength = singe_param(run->strength);
     if ((result = singe_sim_add_sheet(*sim, &sheet, &id)) || (result = singe_sim_commit(*sim)) ||
         (result = add_objects(*sim, run, id)))
@@ -134,6 +139,7 @@ static int replay(const char *path, const SingeSimDef *hooks) {
     FILE *file = fopen(path, "rb");
     long size = -1;
     if (file && fseek(file, 0, SEEK_END) == 0) size = ftell(file);
+
     uint8_t *bytes = size > 0 ? malloc((size_t)size) : NULL;
     if (bytes) rewind(file);
     const bool read = bytes && fread(bytes, 1, (size_t)size, file) == (size_t)size;
@@ -156,14 +162,17 @@ static SingeResult hash_run(const Run *run, const SingeSimDef *def, const char *
     SingeSimDef recorded = *def, *base = &recorded;
     FILE *file = record_open(folder, run);
     if (file) recorded.record = (SingeRecord){record_write, file};
+
     SingeResult result = open_run(run, base, &sim, error);
     if (!result && run == runs) fprintf(stderr, "instructions: %s\n", sets[singe_sim_counts(sim).instructions]);
+
     for (int step = 1; step <= run->steps && !result; step++) {
         result = singe_sim_step(sim);
         if (!result && step % (run->steps / PARTS) == 0)
             printf("%s %d %016" PRIx64 "\n", run->name, step, hash_view(sim));
         if (result) *error = *singe_sim_error(sim);
     }
+
     if (!result) { // so that a run in which nothing happens is seen
         SingeStats stats = singe_sim_stats(sim);
         printf("%s counts %u particles, %u tears, %d permille burnt\n", run->name, stats.particles, stats.tears,
@@ -195,6 +204,7 @@ static int find_set(const char *name) {
 int main(int count, char **arguments) {
     SingeSimDef def = singe_default_sim();
     def.thread_count = 1;
+
     const char *folder = NULL, *recording = NULL;
     for (int i = 1; i < count; i++) {
         const char *value = i + 1 < count ? arguments[i + 1] : "";

@@ -35,6 +35,7 @@ static void random_make(Random *random) {
         random->inverse_masses[i] = i % 11 == 0 ? 0 : 0.5 + noise(i, 3);
         random->held[i] = i % 13 == 5;
         if (i == PARTICLES - 1) break;
+
         if (i % SIDE + 1 < SIDE) random->ends[count][0] = i, random->ends[count++][1] = i + 1;
         if (i + SIDE < SIDE * SIDE) random->ends[count][0] = i + SIDE, random->ends[count++][1] = i;
         if (i < SIDE) random->ends[count][0] = i, random->ends[count++][1] = PARTICLES - 1;
@@ -72,12 +73,14 @@ static void dense_row(const Random *random, uint32_t k, double *gradient, double
     memset(gradient, 0, 3 * PARTICLES * sizeof *gradient);
     *right = *soft = 0;
     if (random->weights[k] == 0 || w[e[0]] + w[e[1]] == 0) return;
+
     for (uint32_t c = 0; c < 3; c++) d[c] = x[3 * e[1] + c] - x[3 * e[0] + c], length += d[c] * d[c];
     length = sqrt(length);
     for (uint32_t c = 0; c < 3; c++) {
         gradient[3 * e[0] + c] = -(def->literal ? 2 / l : 1 / length) * d[c];
         gradient[3 * e[1] + c] = -gradient[3 * e[0] + c];
     }
+
     *right = random->weights[k] * (def->literal ? length * length / l - l : (length * length - l * l) / (2 * length));
     if (!def->literal)
         *soft = def->regularisation * 0.5 * (w[e[0]] + w[e[1]]) +
@@ -97,6 +100,7 @@ static void check_dense(Random *random) {
                 a[i * n + j] += g[i * columns + c] * g[j * columns + c] * random->inverse_masses[c / 3];
             if (i == j) a[i * n + j] += soft[i];
         }
+
     SingeNetwork *network = network_make(&random->def);
     singe_network_matrix(network, 0, matrix);
     singe_network_jacobian(network, 0, jacobian);
@@ -104,9 +108,11 @@ static void check_dense(Random *random) {
     for (uint32_t i = 0; i < n * columns; i++)
         assert_true(fabs(jacobian[i] - g[i] * sqrt(random->inverse_masses[i % columns / 3])) < 1e-12);
     dense_solve(a, right, n);
+
     SingeNetworkReport report;
     assert_int_equal(singe_network_project(network, 0, &report), SINGE_OK);
     assert_true(report.iterations > 0 && report.residual <= random->def.tolerance);
+
     const double *x = singe_network_positions(network);
     for (uint32_t c = 0; c < columns; c++) {
         double expected = random->positions[c];
@@ -134,6 +140,7 @@ TEST(conjugate_gradients_end_after_as_many_iterations_as_unknowns) {
     SingeNetworkDef def = singe_default_network();
     double positions[3 * (CHAIN + 1)] = {0}, lengths[CHAIN];
     uint32_t ends[2 * CHAIN];
+
     for (uint32_t i = 0; i <= CHAIN; i++) positions[3 * i] = i;
     for (uint32_t k = 0; k < CHAIN; k++) {
         ends[2 * k] = k, ends[2 * k + 1] = k + 1;
@@ -188,6 +195,7 @@ TEST(bad_networks_are_refused) {
     random.lengths[7] = 0;
     assert_int_equal(singe_network_create(&random.def, &network, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(error.element, 7);
+
     random_make(&random);
     random.positions[4] = NAN;
     assert_int_equal(singe_network_create(&random.def, &network, &error), SINGE_ERROR_ARGUMENT);
@@ -207,6 +215,7 @@ TEST(bad_networks_are_refused) {
 static SingeSim *swing(SingeSimDef *def, uint32_t cells, float side) {
     SingeMaterialDef material = singe_default_material();
     material.grammage = singe_param(0.1f);
+
     TestMesh mesh = test_grid(cells, cells, side / (float)cells, side / (float)cells);
     SingeSim *sim = test_sim(def, mesh, &material);
     SingePinDef pin = singe_default_pin();
@@ -230,12 +239,14 @@ TEST(bytes_do_not_depend_on_threads) {
         def.solver.projections = 2, def.solver.substeps = m ? 60 : 2;
         SingeSim *one = swing(&def, 32, 0.5f);
         test_steps(one, 3);
+
         for (int i = 0; i < 3; i++) {
             SingeSimDef other = def;
             if (i < 2) other.thread_count = i ? 4 : 2;
             else other.instructions = SINGE_INSTRUCTIONS_PLAIN;
             SingeSim *sim = swing(&other, 32, 0.5f);
             test_steps(sim, 3);
+
             SingeView a = singe_sim_view(one), b = singe_sim_view(sim);
             assert_memory_equal(a.position, b.position, a.particle_count * sizeof *a.position);
             assert_memory_equal(a.velocity, b.velocity, a.particle_count * sizeof *a.velocity);
@@ -255,6 +266,7 @@ TEST(projections_end_early) {
         def.solver.early_exit = early;
         SingeSim *sim = swing(&def, 10, 1);
         test_steps(sim, 50);
+
         SingeTimers timers = singe_sim_timers(sim);
         SingeView view = singe_sim_view(sim);
         for (uint32_t i = 0; i < view.particle_count; i++) height[early] += (double)view.position[i][2];
@@ -270,6 +282,7 @@ TEST(projections_end_early) {
     def.gravity[2] = 0, def.solver.early_exit = true;
     SingeSim *sim = swing(&def, 10, 1);
     test_steps(sim, 2);
+
     SingeTimers timers = singe_sim_timers(sim);
     assert_int_equal(timers.projection_iterations, 0);
     assert_int_equal(timers.springs_projected, 2 * 1000);
@@ -287,6 +300,7 @@ TEST(the_literal_method_diverges) {
     assert_int_equal(result, SINGE_ERROR_DIVERGED);
     assert_string_equal(singe_sim_error(sim)->stage, "dynamics");
     assert_true(strlen(singe_sim_error(sim)->message) > 10);
+
     SingeView view = singe_sim_view(sim);
     assert_int_equal(view.step, steps - 1);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_true(isfinite(view.position[i][2]));
@@ -327,11 +341,14 @@ static double strain_by_order(SingeSolverMethod method, const SingeColour order[
     material.ash_exponent = material.heat_share = singe_param(0), material.ash_density = singe_param(1);
     material.shrink_front = singe_param(0), material.shrink_back = material.fibre_shrink = singe_param(1);
     material.mass_min = singe_param(0.9f), material.mass_loss = material.char_yield = singe_param(0);
+
     memcpy(def.solver.order, order, sizeof def.solver.order);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = singe_param(0);
+
     TestMesh mesh = test_grid(8, 8, 0.005f, 0.005f);
     SingeSim *sim = test_sim(&def, mesh, &material);
     test_steps(sim, 40);
+
     SingeView view = singe_sim_view(sim);
     const double strain = strain_of(&view, SINGE_BLUE);
     singe_sim_destroy(sim);
@@ -379,10 +396,12 @@ TEST(paper_and_strand_end_alike) {
         def.solver.substeps = 1, def.solver.projections = 40;
         def.solver.smoothing = def.solver.height_min = 0;
         for (int c = 0; c < SINGE_COLOUR_COUNT; c++) def.solver.regularisation[c] = 1e-2f;
+
         SingeSim *sim = swing(&def, 6, 0.06f);
         SingeWindDef wind = singe_default_wind();
         test_ok(sim, singe_sim_set_wind(sim, &wind));
         test_steps(sim, 1500);
+
         SingeView view = singe_sim_view(sim);
         count = view.particle_count;
         assert_true(count <= 200);
@@ -417,6 +436,7 @@ TEST(a_spring_has_its_period) {
     network.inverse_mass[0] = 20, network.inverse_mass[1] = 70;
     network.groups[0].length[0] = 1, network.groups[0].weight[0] = 1;
     network.position[1][0] = 1.01;
+
     double before = 0.01, first = 0, last = 0;
     int crossings = 0;
     for (int step = 1; step <= 4000; step++) {
@@ -424,6 +444,7 @@ TEST(a_spring_has_its_period) {
         for (int i = 0; i < 2; i++) predicted[i] = network.position[i][0] += h * (double)velocity[i][0];
         mass_spring_project(&network, stiffness, (const float(*)[4])velocity, h, NULL);
         for (int i = 0; i < 2; i++) velocity[i][0] += (float)((network.position[i][0] - predicted[i]) / h);
+
         double now = network.position[1][0] - network.position[0][0] - 1;
         if (before > 0 && now <= 0) {
             last = step - now / (now - before);

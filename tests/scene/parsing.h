@@ -17,6 +17,7 @@ static inline Scene *good_scene(const char *text, const char *const *sets, int s
     Scene *scene = NULL;
     SceneMessages messages = {0};
     SingeResult result = scene_parse("test.yaml", text, strlen(text), NULL, sets, set_count, &scene, &messages);
+
     scene_messages_print(&messages, stderr);
     assert_int_equal(result, SINGE_OK);
     assert_int_equal(messages.count, 0);

@@ -33,6 +33,7 @@ static void see(const PreviewDef *light, float *white, float *colour) {
         flame++;
         *colour += 1 - (float)p[2] / (float)p[0];
     }
+
     assert_true(paper > W * H / 4 && flame > 100);
     *white = (float)pale / (float)paper;
     *colour /= (float)flame;
@@ -51,12 +52,14 @@ TEST(the_default_light_leaves_room_for_fire) {
         scene_preview(scene, &assets, &def);
         static const float sun[3] = {2.05f, 1.70f, 1.32f}, sky[3] = {0.18f, 0.21f, 0.27f};
         for (int c = 0; day && c < 3; c++) def.sun_colour[c] = sun[c], def.sky_colour[c] = sky[c];
+
         float white, colour;
         see(&def, &white, &colour);
         print_message("%s: %.3f of the paper is white, colour of the flame %.2f\n", day ? "by day" : "by default",
                       (double)white, (double)colour);
         assert_true((white < 0.05f) == !day && (colour > 0.56f) == !day);
     }
+
     scene_messages_free(&messages);
     scene_assets_free(&assets);
     scene_free(scene);

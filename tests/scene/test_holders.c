@@ -40,6 +40,7 @@ static void measure(const PreviewShape *shape, Float3 *low, Float3 *high) {
     double volume = 0, open[3] = {0, 0, 0};
     *low = float3(INFINITY, INFINITY, INFINITY);
     *high = float3(-INFINITY, -INFINITY, -INFINITY);
+
     for (uint32_t t = 0; t < s->triangle_count; t++) {
         double area[3];
         const float *p[3];
@@ -47,12 +48,14 @@ static void measure(const PreviewShape *shape, Float3 *low, Float3 *high) {
         area3(p[0], p[1], p[2], area);
         for (int k = 0; k < 3; k++) volume += area[k] * (double)p[0][k] / 6, open[k] += area[k];
     }
+
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         const Float3 p = float3_add(float3_load(shape->position),
                                     quat_rotate(shape->rotation, float3_load(s->vertices + 3 * (size_t)v)));
         *low = float3(fminf(low->x, p.x), fminf(low->y, p.y), fminf(low->z, p.z));
         *high = float3(fmaxf(high->x, p.x), fmaxf(high->y, p.y), fmaxf(high->z, p.z));
     }
+
     assert_true(s->triangle_count > 0 && volume > 0);
     for (int k = 0; k < 3; k++) assert_true(fabs(open[k]) < 1e-6);
 }
@@ -79,6 +82,7 @@ TEST(pegs_stand_on_the_edge_and_follow_their_pin) {
     assert_int_equal(hung.count, 3);
     assert_int_equal(hung.shapes[0].surface, PREVIEW_SURFACE_WOOD);
     assert_int_equal(hung.shapes[2].surface, PREVIEW_SURFACE_CORD);
+
     Float3 low, high, first;
     measure(&hung.shapes[0], &first, &high);
     assert_true(first.x > -0.06f && high.x < 0.06f && high.x > 0.05f && first.x < -0.05f);
@@ -101,6 +105,7 @@ TEST(clips_turn_with_their_pin) {
     Hung hung = hang("pins: [{points: [[0.1, 0, -0.01], [0.1, 0, 0.01]], radius: 12 mm, holder: clip,\n"
                      "  path: [{time: 0}, {time: 1, rotation: [0, 90, 0]}]}]");
     Float3 low, high;
+
     gather(&hung, 0);
     assert_int_equal(hung.count, 1);
     measure(&hung.shapes[0], &low, &high);
@@ -124,9 +129,11 @@ TEST(rings_hang_from_their_rod) {
                  "pins:\n  - {points: [[-0.05, 0, 0.15]], holder: ring, path: [{time: 0}, {time: 1, position: "
                  "[0.02, 0.014, 0]}]}\n  - {points: [[0.05, 0, 0.15]], holder: ring}\n%s",
                  rods[way]);
+
         Hung hung = hang(text);
         gather(&hung, 1);
         assert_int_equal(hung.count, 3); // the capsule or a rod of its own
+
         const PreviewShape *ring = &hung.shapes[way ? 0 : 1];
         Float3 low, high, x = quat_rotate(ring->rotation, float3(1, 0, 0));
         measure(ring, &low, &high);
@@ -145,6 +152,7 @@ static float covered(const Hung *hung, double time, int threads, uint8_t *rgb, f
     Float4 q;
     Preview *preview = NULL;
     PreviewShape shapes[16];
+
     scene_preview(hung->scene, &hung->assets, &def);
     def.width = W;
     def.height = H;
@@ -153,16 +161,20 @@ static float covered(const Hung *hung, double time, int threads, uint8_t *rgb, f
     def.camera = (PreviewCamera){.eye = {0, -0.5f, 0.19f}, .target = {0, 0, 0.19f}, .up = {0, 0, 1}, .fov = 0.5f};
     def.shapes = shapes;
     def.shape_count = scene_shapes(hung->scene, &hung->assets, time, shapes, 16);
+
     quad_make(&q, 0.01f, -0.5f); // below the picture
     assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+
     const PreviewLayers layers = {.coverage = coverage};
     assert_int_equal(preview_draw_layers(preview, &q.surface, time, rgb, &layers, NULL), SINGE_OK);
     preview_destroy(preview);
+
     float sum = 0, across = 0;
     for (int i = 0; i < W * H; i++) {
         sum += coverage[i];
         across += coverage[i] * ((float)(i % W) / W - 0.5f);
     }
+
     *middle = across / fmaxf(sum, 1);
     return sum / (W * H);
 }
@@ -174,6 +186,7 @@ TEST(pictures_show_what_holds_a_sheet) {
     Hung bare = hang(PIN "}]"),
          hung = hang(PIN ", holder: peg, path: [{time: 0}, {time: 1, position: [0.05, 0, 0]}]}]");
     assert_true(covered(&bare, 0, 1, rgb, &at) == 0);
+
     const float share = covered(&hung, 0, 1, rgb, &at), now = covered(&hung, 1, 1, other, &later);
     print_message("%.3f and %.3f of the picture, %.3f and %.3f of its width from the middle\n", (double)share,
                   (double)now, (double)at, (double)later);

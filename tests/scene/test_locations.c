@@ -43,11 +43,13 @@ static void parse(Sweep *sweep, const char *bytes, size_t size) {
     memcpy(text, bytes, size);
     text[size] = 0;
     sweep->lines = count_lines(text, size);
+
     SingeResult result = scene_parse(sweep->name, text, size, sweep->folder, NULL, 0, &scene, &messages);
     assert_true(result == SINGE_OK || result == SINGE_ERROR_FORMAT);
     assert_int_equal(result == SINGE_OK, messages.count == 0);
     for (uint32_t i = 0; i < messages.count; i++)
         if (!messages.items[i].location.file) expect_location(sweep, &messages.items[i], text);
+
     sweep->parsed++;
     sweep->refused += result != SINGE_OK;
     scene_messages_free(&messages);
@@ -74,6 +76,7 @@ static void sweep_lines(Sweep *sweep, const char *text) {
         to += text[to] == '\n';
         size_t blanks = strspn(text + from, " ");
         if (!all && line / 5 % STRIDE) continue;
+
         parse(sweep, text, from);
         if (all || line % 5 == 0) parse_changed(sweep, text, from, to, 0, "");
         if (all || line % 5 == 1) parse_changed(sweep, text, from, to, 2, "");
@@ -94,6 +97,7 @@ static void sweep_words(Sweep *sweep, const char *text) {
             to = from + strcspn(text + from, "\n");
         if (text[from] == ' ' || text[from] == '\n' || text[from] == '#') continue;
         if (!all && words++ % STRIDE) continue;
+
         parse_changed(sweep, text, from, to, 0, "");
         parse_changed(sweep, text, from, to, 2, "");
         char other[2] = {marks[from % (sizeof marks - 1)], 0};
@@ -104,6 +108,7 @@ static void sweep_words(Sweep *sweep, const char *text) {
 TEST(every_prefix_of_the_examples_has_its_line) {
     glob_t files;
     assert_int_equal(glob("examples/*/*.yaml", 0, NULL, &files), 0);
+
     int words = 0;
     for (size_t i = 0; i < files.gl_pathc; i++) {
         Bytes bytes;

@@ -72,6 +72,7 @@ TEST(built_in_materials_are_good) {
         char text[200];
         assert_string_equal(scene_material_name(i), names[i]);
         snprintf(text, sizeof text, SHEET "    material: %s\n", names[i]);
+
         Scene *scene = good_scene(text, NULL, 0);
         const SceneMaterial *material = material_of(scene);
         assert_string_equal(material->name, names[i]);
@@ -94,11 +95,13 @@ TEST(a_base_can_be_changed) {
     assert_string_equal(material->name, "mine");
     assert_true(material->def.thickness.value == 0.002f && material->def.grammage.value == 0.045f);
     assert_false(material->measured.given);
+
     scene_free(scene);
     scene = good_scene(SHEET "    material: {base: newsprint}\n", NULL, 0);
     assert_true(material_of(scene)->measured.speed[0] == 7.8e-3f);
     scene_free(scene);
     scene = good_scene(SHEET "    material: {base: office-paper, measured: {speed: [1 mm/s, 2 mm/s]}}\n", NULL, 0);
+
     const SceneMeasured *measured = &material_of(scene)->measured;
     assert_true(measured->given && !measured->calibrated && measured->temperature[1] == 0);
     assert_true(measured->speed[0] == 1e-3f && measured->speed[1] == 2e-3f);
@@ -125,6 +128,7 @@ TEST(set_changes_materials) {
     scene = good_scene(SHEET "    material: {grammage: 60 g/m2}\n", word, 1);
     assert_true(material_of(scene)->def.grammage.value == 0.120f);
     scene_free(scene);
+
     const char *solver[] = {"solver.substeps=3"}; // another map that a word may stand for
     scene = good_scene(SHEET "solver: paper\n", solver, 1);
     assert_true(scene->sim.solver.method == SINGE_SOLVER_PAPER && scene->sim.solver.substeps == 3);
@@ -138,24 +142,29 @@ TEST(material_files_are_found) {
     char below[100];
     snprintf(below, sizeof below, "%s/below", folder.path);
     assert_int_equal(mkdir(below, 0700), 0);
+
     folder_file(&folder, "below/deep.yaml",
                 "base: newsprint\nmass_rate: {from: 1e-3, to: 2e-3, texture: rate.png}\n"
                 "thickness: {from: 1 mm, to: 2 mm, texture: t.png}\n");
     folder_file(&folder, "below/mine.yml", "base: deep.yaml\nname: my paper\ndrag: 2\nthickness: 3 mm\n");
     folder_file(&folder, "below/rate.png", "");
     folder_file(&folder, "below/t.png", "");
+
     Scene *scene = folder_scene(&folder, SHEET "    material: below/mine.yml\n", NULL, 0);
     const SceneMaterial *material = material_of(scene);
     assert_string_equal(material->name, "my paper");
     assert_true(material->def.grammage.value == 0.045f && material->def.drag.value == 2);
+
     const SceneFile *rate = &material->followed[SCENE_PARAM_SLOT(mass_rate)].texture;
     const SceneFile *thickness = &material->followed[SCENE_PARAM_SLOT(thickness)].texture;
     assert_string_equal(rate->name, "below/rate.png");
     assert_memory_equal(rate->path, folder.path, strlen(folder.path));
     assert_true(!material->def.thickness.field && !thickness->name); // the number replaced it
+
     char *yaml = dump_text(scene, SCENE_YAML), *json = dump_text(scene, SCENE_JSON);
     folder_remove(&folder);
     assert_null(strstr(yaml, "base:"));
+
     for (int k = 0; k < 2; k++) {
         Scene *again = folder_scene(NULL, k ? json : yaml, NULL, 0);
         char *text = dump_text(again, SCENE_YAML);
@@ -199,6 +208,7 @@ TEST(messages_quote_no_other_file) {
         "'SECRET': *SECRET\n",
         "SECRET: |0\n  SECRET\n",
     };
+
     Folder folder = folder_make();
     for (size_t i = 0; i < sizeof secrets / sizeof *secrets; i++) {
         Scene *scene = NULL;
@@ -207,6 +217,7 @@ TEST(messages_quote_no_other_file) {
         SingeResult result = folder_parse(&folder, SHEET "    material: other.yaml\n", NULL, 0, &scene, &messages);
         assert_int_equal(result, SINGE_ERROR_FORMAT);
         assert_true(messages.count > 0);
+
         for (uint32_t m = 0; m < messages.count; m++) {
             const SceneMessage *message = &messages.items[m];
             if (strstr(message->text, "SECRET") || message->source) fail_msg("%s: %s", secrets[i], message->text);
@@ -234,6 +245,7 @@ static void expect_mistake(const Folder *folder, const char *line, const char *o
         print_error("%s: result %d\n", line, (int)result), scene_messages_print(&messages, stderr);
     assert_int_equal(result, SINGE_ERROR_FORMAT);
     assert_int_equal(messages.count, count);
+
     const char *found = messages.items[0].origin, *slash = strrchr(found, '/'); // the folder's name is any
     if (strcmp(slash ? slash + 1 : found, origin) != 0 || !strstr(messages.items[0].text, says))
         fail_msg("%s: %s", found, messages.items[0].text);
@@ -258,6 +270,7 @@ TEST(wrong_materials_are_reported) {
     folder_file(in, "picture.yaml", "thickness: {from: 1, to: 2, texture: none.png}\n");
     folder_file(in, "unknown.yaml", "base: newsprnt\n");
     folder_file(in, "range.yaml", "measured: {speed: [2, 1]}\n");
+
     for (int i = 0; i < 20; i++) {
         char name[40], text[40];
         snprintf(name, sizeof name, "deep%d.yaml", i), snprintf(text, sizeof text, "base: deep%d.yaml\n", i + 1);
@@ -299,6 +312,7 @@ TEST(wrong_materials_are_reported) {
     expect_mistake(in,
                    "    material: key.yaml\n  - {grid: {size: [1, 1], cells: [1, 1]}, material: key.yaml}\npac: 2\n",
                    "scene.yaml:5:1", "did you mean 'pace'?", 2);
+
     char fifo[100];
     snprintf(fifo, sizeof fifo, "%s/fifo.yaml", folder.path);
     assert_int_equal(mkfifo(fifo, 0600), 0);
@@ -325,6 +339,7 @@ TEST(looks_come_with_their_base) {
                  {"{base: cotton, look: {weave: 1 mm}}", 1e-3f, true},
                  {"{base: cotton, thickness: 1 mm}", 0.4e-3f, false},
                  {"{base: tissue, look: {weave: 0.2 mm}}", 0.2e-3f, true}};
+
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[200];
         snprintf(text, sizeof text, "%s%s\n", head, cases[i].material);

@@ -49,10 +49,12 @@ static void check_full(const Scene *scene) {
     assert_true(scene->sim.time_step == (float)(1.0 / 250));
     assert_true(scene->sim.ambient_temperature == 293.15f && scene->sim.gravity[2] == -2.5f);
     assert_int_equal(scene->sheet_count, 2);
+
     const SceneSheet *sheet = &scene->sheets[0];
     assert_string_equal(sheet->picture.name, "pic \"x\".png");
     assert_true(sheet->scale == 0.001f && sheet->translate[1] == 0.01f && sheet->drop_pieces_below == 4e-6f);
     assert_true(fabsf(sheet->rotate[0] - 1.5707964f) < 1e-7f);
+
     const SingeMaterialDef *material = &sheet->material.def;
     assert_true(material->grammage.value == 0.06f && material->heat_operator == SINGE_HEAT_UMBRELLA &&
                 !material->ablate);
@@ -61,6 +63,7 @@ static void check_full(const Scene *scene) {
     assert_string_equal(sheet->material.followed[SCENE_PARAM_SLOT(weight[SINGE_BLUE])].texture.name, "w.png");
     assert_true(material->mass_rate.field->kind == SINGE_FIELD_NOISE && material->mass_rate.value == 0.01f &&
                 material->mass_rate.to == 0.02f && material->mass_rate.field->noise.seed == 7);
+
     assert_string_equal(material->mass_loss.field->attribute, "density");
     assert_true(material->weight[SINGE_RED].value == 0.5f &&
                 material->weight[SINGE_BLUE].field->kind == SINGE_FIELD_TEXTURE);
@@ -77,22 +80,26 @@ static void check_objects(const Scene *scene) {
     assert_true(scene->sources[1].key_count == 1 && scene->sources[1].keys[0].position[2] == 3 &&
                 !scene->sources[1].visible);
     assert_true(scene->sources[3].def.flux == 20e3f && scene->sources[3].strength[1].value == 0.5f);
+
     const SingeGasDef *gas = &scene->sim.gas;
     assert_true(gas->enabled && gas->cell_size == 0.012f && gas->conductance == 12 && gas->radiated == 0.25f);
     assert_true(isinf(scene->sources[0].def.end));
     assert_int_equal(scene->collider_count, 3);
     assert_true(scene->colliders[0].key_count == 1 && scene->colliders[0].def.friction == 0.25f);
     assert_true(scene->colliders[1].keys[0].position[2] == 5 && scene->colliders[1].keys[0].rotation[1] > 1.57f);
+
     assert_int_equal(scene->pin_count, 2);
     assert_true(scene->pins[0].sheet_index == 1 && scene->pins[0].point_count == 2 &&
                 scene->pins[0].points[1].position[0] == 0.01f);
     assert_true(scene->pins[1].sheet_index == 0 && scene->pins[1].vertices[0] == 3 && scene->pins[1].key_count == 2);
     assert_int_equal(scene->probe_count, 2);
+
     const SceneProbe *probe = scene->probes;
     assert_true(probe[0].kind == SCENE_PROBE_UV && probe[0].sheet_index == 1 && probe[0].uv[1] == 0.5f);
     assert_true(probe[1].kind == SCENE_PROBE_POINT && probe[1].sheet_index == 0 && probe[1].point[0] == 0.01f);
     assert_string_equal(probe[0].name, "a, b");
     assert_string_equal(probe[1].name, "probe2");
+
     assert_true(scene->output.events && scene->output.texture_size == 64 &&
                 output_has(scene->output.formats, OUTPUT_vtp));
     assert_true(scene->sim.gas.enabled && scene->sim.gas.radiated == 0.25f && scene->gas_detail == 4);
@@ -162,6 +169,7 @@ TEST(missing_keys_take_defaults) {
     assert_string_equal(scene->name, "test");
     SingeMaterialDef material = singe_default_material();
     assert_memory_equal(&scene->sheets[0].material.def, &material, sizeof material);
+
     SingeSolverDef solver = singe_default_solver();
     assert_memory_equal(&scene->sim.solver, &solver, offsetof(SingeSolverDef, height_gain) + sizeof solver.height_gain);
     assert_int_equal(scene->steps, 20);
@@ -177,6 +185,7 @@ static void round_trip(SceneSyntax syntax) {
 
     check_full(again);
     check_objects(again);
+
     char *second = dump_text(again, syntax);
     assert_string_equal(dump, second);
     assert_memory_equal(&scene->preview, &again->preview, sizeof scene->preview);
@@ -222,14 +231,17 @@ TEST(quoted_texts_are_read) {
         {"\"one\n          two \\\n          three\"", "one two three"},
         {"it's a 'b''c'", "it's a 'b''c'"},
     };
+
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         char text[1024];
         snprintf(text, sizeof text,
                  "name: 'a''''b'\n" SHEET "    material:\n      mass_loss: {from: 0.1, to: 0.3, 'attribute': %s}\n",
                  texts[i].written);
+
         Scene *scene = good_scene(text, NULL, 0);
         assert_string_equal(scene->name, "a''b");
         assert_string_equal(scene->sheets[0].material.def.mass_loss.field->attribute, texts[i].read);
+
         char *dump = dump_text(scene, SCENE_YAML);
         Scene *again = good_scene(dump, NULL, 0);
         assert_string_equal(again->sheets[0].material.def.mass_loss.field->attribute, texts[i].read);
@@ -259,12 +271,14 @@ TEST(set_overrides_values) {
         "name=a=b",
         "sheets.0.material.mass_rate.to=5",
     };
+
     Scene *scene = good_scene(SHEET "sources: [{kind: spot, position: [1, 2, 3]}]\nframes: 2\n", sets, 12);
     assert_true(scene->sheets[0].material.def.grammage.value == 0.06f);
     assert_true(scene->sheets[0].material.def.weight[SINGE_RED].value == 0.25f);
     assert_int_equal(scene->frames, 4); // the last one counts
     assert_true(scene->sources[0].def.start == 2);
     assert_true(scene->preview.def.camera.eye[1] == -1);
+
     assert_int_equal(scene->sheets[0].grid.cells[1], 31);
     assert_int_equal(scene->sim.solver.substeps, 9);
     assert_true(scene->sources[0].keys[0].position[2] == 0.007f);
@@ -288,6 +302,7 @@ TEST(gas_is_there_unless_switched_off) {
         {"gas: {height: 50 cm}\n", "gas=no", false, 0.25f},
         {"gas: {height: 50 cm}\n", "gas.enabled=no", false, 0.5f},
     };
+
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[400];
         snprintf(text, sizeof text, "%s%s", SHEET, cases[i].text);
@@ -316,9 +331,11 @@ TEST(defaults_suit_the_method) {
         {"solver: {projections: 2}\n", "solver.method=paper", SINGE_SOLVER_PAPER, 2},
         {"", "solver.method=paper", SINGE_SOLVER_PAPER, 7},
     };
+
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[200];
         snprintf(text, sizeof text, "%s%s", sheet, cases[i].text);
+
         Scene *scene = good_scene(text, &cases[i].set, cases[i].set != NULL);
         const SingeSolverDef *solver = &scene->sim.solver;
         SingeSolverDef standard;

@@ -60,10 +60,12 @@ static SingeResult attempt(const char *scene_text, long at, bool once, uint32_t 
     Scene *scene = NULL;
     SceneMessages messages = {0};
     calls = 0, fail_at = at, fail_once = once;
+
     SingeResult result = scene_parse("t.yaml", scene_text, strlen(scene_text), NULL, sets, 2, &scene, &messages);
     fail_at = 0;
     *reported = messages.count + messages.left_out;
     assert_int_equal(result == SINGE_OK, scene != NULL);
+
     if (scene) { // nothing of it was lost on the way
         char *dump = whole(scene);
         if (!undisturbed) undisturbed = dump;

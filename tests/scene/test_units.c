@@ -62,6 +62,7 @@ TEST(odd_quantities_are_refused) {
         assert_int_not_equal(quantity_read(not_numbers[i], DIM_LENGTH, &value), NUMBER_GOOD);
     for (size_t i = 0; i < sizeof bad_units / sizeof *bad_units; i++)
         assert_int_equal(quantity_read(bad_units[i], DIM_LENGTH, &value), NUMBER_BAD_UNIT);
+
     static const struct {
         const char *text;
         Dimension dimension;
@@ -88,6 +89,7 @@ TEST(odd_quantities_are_refused) {
         {"1 r a d", DIM_ANGLE},
         {"1 1/ s", DIM_RATE},
     };
+
     for (size_t i = 0; i < sizeof of_others / sizeof *of_others; i++)
         assert_int_equal(quantity_read(of_others[i].text, of_others[i].dimension, &value), NUMBER_BAD_UNIT);
 }
@@ -111,6 +113,7 @@ TEST(numbers_print_with_their_unit) {
     back(16777216, DIM_NONE, "16777216");
     back(3.4e38f, DIM_NONE, NULL);
     back(1e-45f, DIM_NONE, NULL);
+
     uint32_t bits = 1;
     for (int i = 0; i < 20000; i++) {
         float value;

@@ -163,6 +163,7 @@ QuadMesh mesh_sphere(uint32_t n) {
         float *p = mesh.position[v], r = sqrtf(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
         for (int k = 0; k < 3; k++) p[k] /= r;
     }
+
     return mesh;
 }
 
@@ -199,12 +200,14 @@ void mesh_shuffle(QuadMesh *mesh, uint32_t seed) {
     uint32_t *to = malloc(mesh->vertex_count * sizeof *to);
     float(*moved)[3] = malloc(mesh->vertex_count * sizeof *moved);
     assert_true(to && moved);
+
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         uint32_t k = random_hash(v, 1, 0, seed) % (v + 1);
         to[v] = to[k], to[k] = v;
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) memcpy(moved[to[v]], mesh->position[v], sizeof *moved);
     memcpy(mesh->position, moved, mesh->vertex_count * sizeof *moved);
+
     for (uint32_t c = 0; c < mesh->cell_count; c++) {
         uint32_t turned[4], k = random_hash(c, 2, 0, seed) % (c + 1), turn = random_hash(c, 3, 0, seed) & 3;
         for (uint32_t i = 0; i < 4; i++) turned[i] = to[mesh->cells[c][(i + turn) & 3]];
@@ -253,15 +256,18 @@ static void check_strands(const SpringSet *set, uint32_t particle_count) {
     assert_int_equal(set->strand_first[set->strand_count], set->count);
     assert_int_equal(set->family_first[0], 0);
     assert_int_equal(set->family_first[set->family_count], set->strand_count);
+
     for (uint32_t f = 0; f < set->family_count; f++) {
         assert_true(set->family_first[f] < set->family_first[f + 1]);
         for (uint32_t s = set->family_first[f]; s < set->family_first[f + 1]; s++) {
             uint32_t begin = set->strand_first[s], end = set->strand_first[s + 1];
             assert_true(begin < end);
             if (end - begin > longest) longest = end - begin;
+
             for (uint32_t k = begin; k < end; k++) {
                 assert_int_not_equal(set->ends[k][0], set->ends[k][1]);
                 if (k + 1 < end) assert_int_equal(set->ends[k][1], set->ends[k + 1][0]);
+
                 for (int side = 0; side < (k + 1 == end ? 2 : 1); side++) {
                     uint32_t p = set->ends[k][side];
                     assert_true(p < particle_count);
@@ -295,6 +301,7 @@ static void check_cells(const Shell *shell) {
     uint8_t *uses[SINGE_COLOUR_COUNT];
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         assert_non_null(uses[colour] = calloc((size_t)shell->springs[colour].count + 1, 1));
+
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         const CellSprings *springs = &shell->cell_springs[c];
         const uint32_t *corner = shell->cells[c];
@@ -307,8 +314,10 @@ static void check_cells(const Shell *shell) {
                 check_ends(&shell->springs[SINGE_YELLOW], springs->yellow[i], a, corner[i + 2], uses[SINGE_YELLOW]);
             assert_int_equal(other == SHELL_NONE, springs->green[i] == SHELL_NONE);
             if (other == SHELL_NONE) continue;
+
             check_ends(&shell->springs[SINGE_GREEN], springs->green[i], centre, shell_centre(shell, other),
                        uses[SINGE_GREEN]);
+
             int back = 0;
             for (int j = 0; j < 4; j++) {
                 if (shell->cell_springs[other].green[j] != springs->green[i]) continue;
@@ -336,6 +345,7 @@ static void check_cell_families(const Shell *shell) {
     assert_true(family_at && seen);
     assert_int_equal(shell->cell_family_first[0], 0);
     assert_int_equal(shell->cell_family_first[shell->cell_family_count], shell->cell_count);
+
     for (uint32_t f = 0; f < shell->cell_family_count; f++) {
         for (uint32_t k = shell->cell_family_first[f]; k < shell->cell_family_first[f + 1]; k++) {
             uint32_t c = shell->cell_order[k];

@@ -26,6 +26,7 @@ TEST(textures_are_sampled_linearly) {
         {1.0f / 3, 0.75f, 0.5f},
         {1e38f, -1e38f, 5},
     };
+
     for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++)
         assert_float_equal(shell_sample_texture(&picture, expected[i][0], expected[i][1]), expected[i][2], 1e-5f);
     SingeTexture dot = {1, 1, values + 4};
@@ -54,6 +55,7 @@ TEST(pictures_are_sampled_by_uv) {
     square.def.uv = square.uv[0];
     field.texture.width = 0;
     refuse(&square.def, -1, "empty texture");
+
     static const float broken[] = {0, NAN};
     field.texture = (SingeTexture){2, 1, broken};
     refuse(&square.def, 0, "thickness"); // bilinear: a pixel beside NaN is not known either
@@ -70,11 +72,13 @@ TEST(attributes_are_taken_as_they_are) {
     SingeAttribute attributes[2] = {{"other", values + 1}, {"burn", values}};
     attributes[0].values = values;
     square.def.attribute_count = 2, square.def.attributes = attributes;
+
     SingeField field = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "burn"};
     square.def.material.mass_rate = singe_param_field(100, 200, &field);
     SheetSource source = evaluate(&memory, &square.def);
     for (uint32_t v = 0; v < 16; v++)
         assert_float_equal(sheet_param(&source, PARAM_MASS_RATE, v), 100 + 25 * (float)v, 1e-3f);
+
     for (uint32_t c = 0; c < 9; c++) {
         float mean = 0;
         for (int i = 0; i < 4; i++) mean += 25 * (float)square.mesh.cells[c][i] / 4;
@@ -102,6 +106,7 @@ TEST(noise_depends_on_seed_and_position) {
     square.def.material.weight[SINGE_BLUE] = singe_param_field(0.2f, 1, &field);
     SheetSource a = evaluate(&memory, &square.def), b = evaluate(&memory, &square.def);
     field.noise.seed = 6;
+
     SheetSource c = evaluate(&memory, &square.def);
     uint32_t total = 25 * 25 + 24 * 24, different = 0;
     float low = 1, high = 0;
@@ -119,6 +124,7 @@ TEST(noise_depends_on_seed_and_position) {
     sheet_source_free(&memory, &b);
     sheet_source_free(&memory, &c);
     field.noise.scale = 0;
+
     refuse(&square.def, -1, "scale");
     field.noise = (SingeNoise){.scale = 1, .octaves = 9};
     refuse(&square.def, -1, "octaves");

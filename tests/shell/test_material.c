@@ -43,6 +43,7 @@ TEST(every_number_goes_to_its_slot) {
     for (int k = 0; k < FIRST; k++) *params[k] = singe_param(number_of(k));
     m->shrink_front = singe_param(1.25f), m->shrink_back = singe_param(0.75f);
     for (int k = 0; k < 4; k++) m->weight[k] = singe_param(0.5f + 0.1f * (float)k);
+
     SingeParam *more[] = {&m->layer_exchange,
                           &m->convection,
                           &m->emissivity,
@@ -58,9 +59,11 @@ TEST(every_number_goes_to_its_slot) {
     enum { MORE = sizeof more / sizeof *more };
     for (int k = 0; k < MORE; k++) *more[k] = singe_param(0.2f + 0.01f * (float)k);
     for (int k = 0; k < 4; k++) m->compliance[k] = singe_param(0.3f + 0.1f * (float)k);
+
     SheetSource source = evaluate(&memory, &square.def);
     Shell shell;
     assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
+
     const Matter *matter = &shell.matter;
     const Field others[] = {matter->layer_exchange,
                             matter->convection,
@@ -107,6 +110,7 @@ TEST(every_parameter_can_vary) {
     for (int v = 0; v < 49; v++) values[v] = (float)((v * 5) % 49) / 48;
     SingeAttribute attribute = {"field", values};
     square.def.attribute_count = 1, square.def.attributes = &attribute;
+
     SheetSource plain = evaluate(&memory, &square.def);
     const uint32_t total = 49 + 36;
     for (int kind = SINGE_FIELD_TEXTURE; kind <= SINGE_FIELD_NOISE; kind++) {
@@ -115,6 +119,7 @@ TEST(every_parameter_can_vary) {
         SingeParam param = singe_param_field(0.5f, 0.9f, &field);
         SingeSheetDef def = square.def;
         def.material.thickness = param;
+
         SheetSource known = evaluate(&memory, &def);
         for (int k = 0; k < VARYING; k++) {
             const float unit = varying[k].param == PARAM_TEMPERATURE ? 1024 : 1;
@@ -122,6 +127,7 @@ TEST(every_parameter_can_vary) {
             param.to = 0.9f * unit;
             def = square.def;
             memcpy((char *)&def.material + varying[k].offset, &param, sizeof param);
+
             SheetSource source = evaluate(&memory, &def);
             float low = INFINITY, high = 0;
             for (uint32_t i = 0; i < total; i++) {
@@ -161,9 +167,11 @@ TEST(mass_and_capacity_vary) {
         singe_param_field(0.05f, 0.2f, &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, pixels}});
     square.def.material.specific_heat =
         singe_param_field(1000, 3000, &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.3f, 2, 3}});
+
     SheetSource source = evaluate(&memory, &square.def);
     Shell shell;
     assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
+
     double ratio = 0;
     for (uint32_t p = 0; p < shell.particle_count; p++) {
         float mass = sheet_param(&source, PARAM_GRAMMAGE, p) / 2 * shell.matter.area[p];
@@ -184,10 +192,12 @@ TEST(mass_and_capacity_vary) {
     for (int v = 0; v < 25; v++) tiny[v] = v == 18 ? 0 : 1;
     for (int v = 0; v < 25; v++)
         for (int c = 0; c < 3; c++) square.mesh.position[v][c] *= 1e-12f; // cells of a quarter of a picometre
+
     SingeAttribute attribute = {"thin", tiny};
     square.def.attribute_count = 1, square.def.attributes = &attribute;
     square.def.material.grammage =
         singe_param_field(1e-6f, 0.1f, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "thin"});
+
     SingeError error = {0};
     assert_int_equal(sheet_source_create(&memory, &square.def, &source, &error), SINGE_ERROR_MESH);
     assert_int_equal(error.element, 10); // the first cell at vertex 18
@@ -213,6 +223,7 @@ TEST(rates_are_stated_for_a_grammage) {
         SheetSource source = evaluate(&memory, &square.def);
         Shell shell;
         assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
+
         const Matter *matter = &shell.matter;
         for (uint32_t p = 0; p < shell.particle_count; p++) {
             float grammage = sheet_param(&source, PARAM_GRAMMAGE, p), ratio = scaled ? 0.04f / grammage : 1;
@@ -251,6 +262,7 @@ TEST(bending_is_stated_as_a_stiffness) {
     for (int kind = 0; kind < 4; kind++) {
         m->bending = kind == 2 ? singe_param_field(1e-4f, 3e-4f, &texture) : singe_param(kind ? 3e-4f : 0);
         m->compliance[SINGE_BLUE] = singe_param(kind == 3 ? 1e-3f : 0);
+
         SheetSource source = evaluate(&memory, &square.def);
         Shell shell;
         assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
@@ -296,6 +308,7 @@ TEST(ranges_end_where_stated) {
             {NAN, false},
             {-INFINITY, false},
         };
+
         for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
             SingeSheetDef def = square.def;
             SingeParam filled = singe_param(cases[k].value);
@@ -337,6 +350,7 @@ TEST(older_defs_take_defaults) {
     square.def.material.grammage = singe_param(0.2f);
     square.def.material.damping = singe_param(77); // beyond the older material
     square.def.velocity[0] = 3;
+
     const size_t head = offsetof(SingeSheetDef, material), inner = offsetof(SingeMaterialDef, damping);
     const size_t cut = inner & ~(sizeof(void *) - 1), tail = 2 * sizeof(size_t);
     unsigned char *old = malloc(head + cut + tail); // exactly: reading more is an error
@@ -345,6 +359,7 @@ TEST(older_defs_take_defaults) {
     square.def.material.struct_size = cut;
     memcpy(old, &square.def, head + cut);
     memcpy(old + head + cut, square.def.velocity, tail);
+
     SheetSource source = evaluate(&memory, (const SingeSheetDef *)(const void *)old);
     assert_true(sheet_param(&source, PARAM_GRAMMAGE, 0) == 0.2f);
     assert_true(sheet_param(&source, PARAM_DAMPING, 0) == singe_default_material().damping.value);
@@ -378,6 +393,7 @@ TEST(long_names_are_cut) {
     memset(name, 'a', sizeof name);
     memcpy(name + 62, "\xC3\xA9\xC3\xA9", 5);
     square.def.name = name;
+
     SheetSource source = evaluate(&memory, &square.def);
     assert_int_equal(strlen(source.sheet.name), 62);
     sheet_source_free(&memory, &source);

@@ -19,6 +19,7 @@ static void refuse_def(const SingeSheetDef *def, SingeResult code, int64_t eleme
         result = shell_create(&memory, &source, 1, &shell, &error);
         sheet_source_free(&memory, &source);
     }
+
     assert_int_equal(result, code);
     assert_int_equal(error.code, code);
     assert_int_equal(error.element, element);
@@ -73,6 +74,7 @@ TEST(touching_spheres_are_refused) {
     uint32_t first = mesh.vertex_count, touch = 3;
     for (uint32_t v = 0; v < other.vertex_count; v++)
         mesh_add_vertex(&mesh, other.position[v][0] + 5, other.position[v][1], other.position[v][2]);
+
     for (uint32_t c = 0; c < other.cell_count; c++) {
         uint32_t k[4];
         for (int i = 0; i < 4; i++) k[i] = other.cells[c][i] == touch ? touch : first + other.cells[c][i];
@@ -91,12 +93,14 @@ TEST(errors_name_the_element_within_its_sheet) {
     bad.cell_count = 2;
     SingeSheetDef defs[2] = {mesh_sheet(&good), mesh_sheet(&bad)};
     defs[0].name = "good", defs[1].name = "bad";
+
     SheetSource sources[2];
     Shell shell;
     SingeError error;
     for (int i = 0; i < 2; i++) assert_int_equal(sheet_source_create(&memory, &defs[i], &sources[i], &error), SINGE_OK);
     assert_int_equal(shell_create(&memory, sources, 2, &shell, &error), SINGE_ERROR_MESH);
     assert_int_equal(error.element, 4);
+
     assert_non_null(strstr(error.message, "'bad'"));
     for (int i = 0; i < 2; i++) sheet_source_free(&memory, &sources[i]);
     assert_int_equal(memory.held, 0);
@@ -118,6 +122,7 @@ TEST(bad_numbers_are_refused) {
     def.uv = uv[0];
     uv[7][1] = NAN;
     refuse_def(&def, SINGE_ERROR_MESH, 7, "uv");
+
     mesh_release(&mesh);
     mesh = mesh_grid(3, 2, 1, 1);
     mesh.cells[4][2] = 12;
@@ -140,12 +145,14 @@ TEST(degenerate_cells_are_refused) {
     for (int v = 0; v < 4; v++) mesh.position[v][0] = (float)(v * v), mesh.position[v][1] = 0;
     refuse(&mesh, SINGE_ERROR_MESH, 0, "no area");
     mesh = mesh_grid(1, 1, 1, 1); // crossed: two turns that cancel
+
     uint32_t *cell = mesh.cells[0], swap = cell[2];
     cell[2] = cell[3], cell[3] = swap;
     refuse(&mesh, SINGE_ERROR_MESH, 0, "no area");
     mesh = mesh_grid(1, 1, 1e-20f, 1e-20f);
     refuse(&mesh, SINGE_ERROR_MESH, 0, "outside");
     mesh = mesh_grid(1, 1, 1e12f, 1e12f); // large, but floats hold it
+
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = mesh_shell(&memory, &mesh);
     shell_free(&memory, &shell);
@@ -163,10 +170,12 @@ TEST(a_tube_as_thick_as_its_radius_is_refused) {
         uint32_t swap = mesh.cells[c][1];
         mesh.cells[c][1] = mesh.cells[c][3], mesh.cells[c][3] = swap;
     }
+
     for (uint32_t v = 0; v < mesh.vertex_count; v++) { // exact corners, so that centres meet exactly
         static const float corner[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
         memcpy(mesh.position[v], corner[v % 4], sizeof corner[0]);
     }
+
     SingeSheetDef def = mesh_sheet(&mesh);
     def.material.thickness = singe_param(1);
     refuse_def(&def, SINGE_ERROR_MESH, 0, "too thick");
@@ -176,6 +185,7 @@ TEST(a_tube_as_thick_as_its_radius_is_refused) {
 TEST(bad_defs_are_refused) {
     QuadMesh mesh = mesh_grid(1, 1, 1, 1);
     SingeSheetDef def = mesh_sheet(&mesh);
+
     refuse_def(&(SingeSheetDef){0}, SINGE_ERROR_ARGUMENT, -1, "struct_size");
     def.material.struct_size = 0;
     refuse_def(&def, SINGE_ERROR_ARGUMENT, -1, "struct_size");
@@ -201,6 +211,7 @@ TEST(bad_defs_are_refused) {
     def.drop_pieces_below = -1;
     refuse_def(&def, SINGE_ERROR_ARGUMENT, -1, "drop_pieces_below");
     mesh_release(&mesh);
+
     Memory memory = memory_make((SingeAllocator){0});
     SheetSource source;
     assert_int_equal(sheet_source_create(&memory, NULL, &source, NULL), SINGE_ERROR_ARGUMENT);
@@ -210,11 +221,13 @@ TEST(bad_defs_are_refused) {
 TEST(too_many_cells_at_a_vertex_are_refused) {
     QuadMesh mesh = {0};
     const uint32_t sides = 21845;
+
     mesh_add_vertex(&mesh, 0, 0, 0);
     for (uint32_t k = 0; k < 2 * sides; k++) {
         double a = 3.14159265358979 * k / sides;
         mesh_add_vertex(&mesh, (float)cos(a), (float)sin(a), 0);
     }
+
     for (uint32_t s = 0; s < sides; s++) mesh_add_cell(&mesh, 0, 1 + 2 * s, 2 + 2 * s, 1 + (2 * s + 2) % (2 * sides));
     refuse(&mesh, SINGE_ERROR_LIMIT, 0, "21845 cells");
 }

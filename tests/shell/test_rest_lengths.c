@@ -36,11 +36,13 @@ TEST(rectangles_match_lengths_by_hand) {
     QuadMesh mesh = mesh_grid(4, 3, dx, dy);
     SingeSheetDef def = mesh_sheet(&mesh);
     def.material.thickness = singe_param(t);
+
     SheetSource source;
     Shell shell;
     assert_int_equal(sheet_source_create(&memory, &def, &source, NULL), SINGE_OK);
     assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
     check_layers(&shell, 12.0 * 0.02 * 0.01, 1e-6);
+
     double cell = 0.02 * 0.01;
     for (uint32_t v = 0; v < shell.vertex_count; v++) {
         uint32_t i = v % 5, j = v / 5;
@@ -60,6 +62,7 @@ TEST(rectangles_match_lengths_by_hand) {
         assert_near((double)shell.springs[SINGE_RED].rest[s], sqrt(1e-4 + 0.25e-4 + 9e-6), 1e-6);
     for (uint32_t s = 0; s < shell.springs[SINGE_YELLOW].count; s++)
         assert_near((double)shell.springs[SINGE_YELLOW].rest[s], sqrt(4e-4 + 1e-4), 1e-6);
+
     double green = 0, blue = 0;
     for (uint32_t s = 0; s < shell.springs[SINGE_GREEN].count; s++) green += (double)shell.springs[SINGE_GREEN].rest[s];
     for (uint32_t s = 0; s < shell.springs[SINGE_BLUE].count; s++) blue += (double)shell.springs[SINGE_BLUE].rest[s];
@@ -84,11 +87,13 @@ TEST(the_median_cell_size_is_exact) {
         Memory memory = memory_make((SingeAllocator){0});
         QuadMesh mesh = mesh_random(2 + seed, seed);
         for (uint32_t v = 0; v < mesh.vertex_count; v++) mesh.position[v][2] = 0.1f * sinf((float)(v * v));
+
         Shell shell = mesh_shell(&memory, &mesh);
         const SpringSet *blue = &shell.springs[SINGE_BLUE];
         float *sorted = malloc(blue->count * sizeof *sorted);
         assert_non_null(sorted);
         for (uint32_t s = 0; s < blue->count; s++) sorted[s] = blue->rest[s];
+
         qsort(sorted, blue->count, sizeof *sorted, compare);
         assert_true(shell.sheets[0].cell_size == sorted[blue->count / 2]);
         free(sorted);
@@ -137,11 +142,13 @@ TEST(the_centre_layer_of_a_cylinder_is_longer_outside) {
     QuadMesh mesh = mesh_cylinder(n, 6, (float)r, (float)h);
     SingeSheetDef def = mesh_sheet(&mesh);
     def.material.thickness = singe_param((float)t);
+
     SheetSource source;
     Shell shell;
     assert_int_equal(sheet_source_create(&memory, &def, &source, NULL), SINGE_OK);
     assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
     check_layers(&shell, n * 2 * r * sin(pi / n) * h, 1e-5);
+
     double around = 2 * (r * cos(pi / n) + t) * sin(pi / n);
     uint32_t rings = 0;
     const SpringSet *green = &shell.springs[SINGE_GREEN];

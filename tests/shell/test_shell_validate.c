@@ -10,6 +10,7 @@ TEST(good_ones_pass) {
 
     assert_int_equal(ablate_plan_create(&b->memory, &b->shell, &plan), SINGE_OK);
     sheet_ablate(b, plan);
+
     ShellFault fault;
     assert_true(shell_validate(&b->shell, &fault));
     assert_true(state_validate(&b->shell, &b->state, &fault));
@@ -35,6 +36,7 @@ TEST(faults_are_named) {
 
     assert_int_equal(ablate_plan_create(&b->memory, &b->shell, &plan), SINGE_OK);
     sheet_ablate(b, plan);
+
     ShellFault fault;
     Shell *shell = &b->shell;
     BREAKS(shell_validate(shell, &fault), shell->cells[3][1], shell->vertex_count,
@@ -51,6 +53,7 @@ TEST(faults_are_named) {
     BREAKS(shell_validate(shell, &fault), shell->split_count, 1, "1 splits have used 0 spares");
     BREAKS(shell_validate(shell, &fault), shell->cell_family_first[1], shell->cell_count + 1,
            "family 1 of cells ends before it begins");
+
     State *state = &b->state;
     BREAKS(state_validate(shell, state, &fault), state->burn.mass[4], 1.5f, "particle 4 has mass fraction 1.5");
     BREAKS(state_validate(shell, state, &fault), state->heat.temperature[4], NAN, "particle 4 has temperature nan");
@@ -63,6 +66,7 @@ TEST(faults_are_named) {
            "1 pins hold particle 3, whose flags say otherwise");
     BREAKS(state_validate(shell, state, &fault), state->ablate.spring_flags[SINGE_RED][0], 0,
            "live springs have 398 ends, the particles' degrees sum to 400");
+
     ablate_plan_free(&b->memory, plan);
     burning_sheet_free(b);
 }

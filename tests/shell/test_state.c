@@ -14,13 +14,16 @@ static Shell start_shell(Memory *memory) {
     SingeSheetDef def = mesh_sheet(&mesh);
     float warm[13] = {0};
     warm[4] = 1;
+
     SingeAttribute attribute = {"warm", warm};
     def.attribute_count = 1, def.attributes = &attribute;
     def.material.temperature =
         singe_param_field(300, 340, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "warm"});
     def.velocity[0] = 1, def.velocity[2] = -2;
+
     SheetSource source;
     Shell shell;
+
     assert_int_equal(sheet_source_create(memory, &def, &source, NULL), SINGE_OK);
     assert_int_equal(shell_create(memory, &source, 1, &shell, NULL), SINGE_OK);
     sheet_source_free(memory, &source);
@@ -35,12 +38,14 @@ TEST(a_state_starts_at_rest) {
 
     assert_int_equal(state_create(&memory, &shell, &state), SINGE_OK);
     assert_int_equal(shell.particle_count, 13 + 6);
+
     for (uint32_t p = 0; p < shell.particle_count; p++) {
         bool alive = p != 12;
         assert_int_equal(state.ablate.particle_flags[p], alive ? SINGE_ALIVE : 0);
         assert_int_equal(state.ablate.piece[p], alive ? 0 : -1);
         assert_true(state.burn.mass[p] == 1 && state.burn.burn_rate[p] == 0);
         assert_true(state.burn.time_ignited[p] == -1 && state.burn.time_burnt[p] == -1);
+
         for (int k = 0; k < 4; k++) {
             static const float velocity[4] = {1, 0, -2, 0};
             assert_true(state.dynamics.position[p][k] == (k < 3 ? shell.rest_position[p][k] : 0));
@@ -60,6 +65,7 @@ TEST(a_state_starts_at_rest) {
     assert_int_equal(state.ablate.degree[5], 4 + 4 + 4);
     assert_int_equal(state.ablate.degree[12], 0);
     assert_int_equal(state.ablate.degree[13], 4 + 2);
+
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         for (uint32_t s = 0; s < shell.springs[colour].count; s++) {
             assert_int_equal(state.ablate.spring_flags[colour][s], SINGE_ALIVE);
@@ -139,6 +145,7 @@ TEST(arrays_do_not_overlap) {
         {s.ablate.degree, 2 * n},
         {s.ablate.piece, 4 * n},
     };
+
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
         slices[15 + c].at = s.burn.spring_length[c], slices[15 + c].size = 4 * (size_t)shell.springs[c].count;
         slices[19 + c].at = s.ablate.spring_flags[c], slices[19 + c].size = shell.springs[c].count;

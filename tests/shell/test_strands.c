@@ -87,6 +87,7 @@ TEST(rings_of_two_springs_are_cut) {
     for (int i = 0; i < 4; i++) mesh_add_vertex(&mesh, square[i][0], square[i][1], 0);
     mesh_add_cell(&mesh, 0, 1, 2, 3);
     mesh_add_cell(&mesh, 0, 3, 2, 1);
+
     Shell shell = mesh_shell(&memory, &mesh);
     check_shell(&shell);
     assert_int_equal(shell.springs[SINGE_GREEN].count, 4);
@@ -95,6 +96,7 @@ TEST(rings_of_two_springs_are_cut) {
     assert_int_equal(shell.springs[SINGE_BLUE].strand_count, 1); // the square's outline
     assert_int_equal(count_rings(&shell.springs[SINGE_BLUE]), 1);
     assert_int_equal(shell.springs[SINGE_BLUE].family_count, 1);
+
     shell_free(&memory, &shell);
     mesh_release(&mesh);
 }
@@ -121,9 +123,11 @@ TEST(strands_of_a_cube_sphere_end_at_its_corners) {
     for (uint32_t n = 1; n <= 8; n++) {
         QuadMesh mesh = mesh_sphere(n);
         assert_int_equal(mesh.vertex_count, 6 * n * n + 2);
+
         Memory memory = memory_make((SingeAllocator){0});
         Shell shell = mesh_shell(&memory, &mesh);
         check_shell(&shell);
+
         const SpringSet *green = &shell.springs[SINGE_GREEN], *blue = &shell.springs[SINGE_BLUE];
         assert_int_equal(green->count, 12 * n * n);
         assert_int_equal(green->strand_count, 3 * n);
@@ -133,6 +137,7 @@ TEST(strands_of_a_cube_sphere_end_at_its_corners) {
         assert_int_equal(blue->count, 12 * n * n);
         assert_int_equal(blue->strand_count, 3 * (n - 1) + 12);
         assert_int_equal(count_rings(blue), 3 * (n - 1));
+
         print_message("sphere %u: families R %u G %u B %u Y %u cells %u\n", n, shell.springs[0].family_count,
                       shell.springs[1].family_count, shell.springs[2].family_count, shell.springs[3].family_count,
                       shell.cell_family_count);
@@ -182,6 +187,7 @@ TEST(strands_run_on_from_an_inner_corner) {
     assert_int_equal(shell.springs[SINGE_BLUE].count, 2 * ((n + 1) * 2 * n + n * n));
     assert_int_equal(shell.springs[SINGE_BLUE].longest, 2 * n);
     assert_int_equal(shell.springs[SINGE_GREEN].strand_count, 4 * n);
+
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         assert_int_equal(shell.springs[colour].family_count, 2);
         assert_int_equal(count_rings(&shell.springs[colour]), 0);
@@ -207,18 +213,22 @@ TEST(sheets_are_numbered_as_one_shell) {
     QuadMesh a = mesh_grid(4, 3, 0.01f, 0.01f), b = mesh_grid(2, 5, 0.03f, 0.03f);
     SingeSheetDef defs[2] = {mesh_sheet(&a), mesh_sheet(&b)};
     defs[0].name = "first", defs[1].name = "second";
+
     SheetSource sources[2];
     Shell shell;
+
     for (int i = 0; i < 2; i++) assert_int_equal(sheet_source_create(&memory, &defs[i], &sources[i], NULL), SINGE_OK);
     assert_int_equal(shell_create(&memory, sources, 2, &shell, NULL), SINGE_OK);
     check_shell(&shell);
     assert_int_equal(shell.vertex_count, 20 + 18);
     assert_int_equal(shell.cell_count, 12 + 10);
     assert_int_equal(shell.particle_count, 60);
+
     assert_string_equal(shell.sheets[1].name, "second");
     assert_int_equal(shell.sheets[1].vertex_first, 20);
     assert_int_equal(shell.sheets[1].cell_first, 12);
     assert_int_equal(shell.cells[12][0], 20 + b.cells[0][0]);
+
     for (uint32_t p = 0; p < 60; p++) assert_int_equal(shell.matter.sheet[p], p < 38 ? p >= 20 : p >= 38 + 12);
     assert_float_equal(shell.sheets[0].cell_size, 0.01f, 1e-8f);
     assert_float_equal(shell.sheets[1].cell_size, 0.03f, 1e-8f);
@@ -236,6 +246,7 @@ TEST(random_meshes_have_valid_strands) {
         Memory memory = memory_make((SingeAllocator){0});
         QuadMesh mesh = mesh_random(seed, seed);
         if (seed % 2) mesh_shuffle(&mesh, seed);
+
         Shell shell = mesh_shell(&memory, &mesh);
         check_shell(&shell);
         if (seed == 12)
@@ -244,6 +255,7 @@ TEST(random_meshes_have_valid_strands) {
                               shell.springs[colour].count, shell.springs[colour].strand_count,
                               count_rings(&shell.springs[colour]), shell.springs[colour].family_count,
                               shell.springs[colour].longest);
+
         shell_free(&memory, &shell);
         mesh_release(&mesh);
         assert_int_equal(memory.held, 0);

@@ -15,11 +15,13 @@ typedef struct Tape {
 static inline bool tape_write(void *context, const void *bytes, size_t size) {
     Tape *tape = context;
     if (tape->refuse_at && tape->size + size > tape->refuse_at) return false;
+
     if (tape->size + size > tape->room) {
         tape->room = 2 * (tape->size + size);
         tape->bytes = realloc(tape->bytes, tape->room);
         if (!tape->bytes) abort();
     }
+
     memcpy(tape->bytes + tape->size, bytes, size);
     tape->size += size;
     return true;

@@ -48,12 +48,14 @@ static SingeResult scene_sheets(Scene *scene, uint32_t cells) {
 
     test_mesh_add_vertex(&grid, 1, 1, 1); // belongs to no cell
     test_mesh_move(&tube, 0.1f, 0.1f, 0.06f);
+
     SingeSheetDef sheet = test_sheet(&grid);
     sheet.material = scene_quick_material();
     sheet.material.mass_rate = singe_param_field(sheet.material.mass_rate.value, 0.12f,
                                                  &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.03f, 3, 5}});
     sheet.drop_pieces_below = 1e-4f;
     SingeResult result = singe_sim_add_sheet(scene->sim, &sheet, &scene->sheets[0]);
+
     sheet = test_sheet(&tube);
     sheet.name = "tube";
     sheet.material = scene_quick_material();
@@ -86,8 +88,10 @@ static SingeResult scene_sources(Scene *scene) {
     SCENE_TRY(singe_sim_add_source(sim, &def, &scene->spot));
     def = singe_default_source();
     def.kind = SINGE_SOURCE_TEXTURE;
+
     const float grey[4] = {0, 0.5f, 1, 0};
     const SingeValueKey strength[] = {{0, 0}, {0.05f, 1}, {0.2f, 0.2f}};
+
     def.texture = (SingeTexture){2, 2, grey};
     def.strength_count = 3, def.strength = strength;
     def.flux = 40e3f;
@@ -116,12 +120,14 @@ static SingeResult scene_colliders(Scene *scene) {
     def.kind = SINGE_COLLIDER_CAPSULE;
     def.radius = 0.01f, def.height = 0.05f;
     SCENE_TRY(singe_sim_add_collider(sim, &def, &scene->capsule));
+
     static const float vertices[] = {0.01f, 0, 0, -0.01f, 0, 0, 0, 0.01f, 0, 0, -0.01f, 0, 0, 0, 0.01f, 0, 0, -0.01f};
     static const uint32_t triangles[] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
     def.kind = SINGE_COLLIDER_MESH;
     def.vertex_count = 6, def.vertices = vertices, def.triangle_count = 8, def.triangles = triangles;
     def.sides = SINGE_SIDES_BOTH;
     SCENE_TRY(singe_sim_add_collider(sim, &def, &scene->mesh));
+
     static const float heights[] = {0, 0.01f, 0, 0.02f, 0.01f, 0, 0, 0, 0.01f};
     def.kind = SINGE_COLLIDER_HEIGHTFIELD;
     def.columns = def.rows = 3, def.heights = heights;
@@ -136,6 +142,7 @@ static SingeResult scene_pins(Scene *scene) {
     def.radius = 0.015f;
     SCENE_TRY(singe_sim_add_pin(scene->sim, &def, &scene->points));
     def = singe_default_pin();
+
     const uint32_t vertices[] = {40, 41, 47};
     const SingePoseKey path[] = {test_key(0, 0, 0, 0), {0.3f, {0, 0, 0.02f}, {0, 0, 0.1f, 0.99f}}};
     def.sheet = scene->sheets[1];
@@ -183,12 +190,14 @@ static void scene_set(const Scene *scene) {
     test_ok(sim, singe_sim_set_gravity(sim, down));
     test_ok(sim, singe_sim_set_pace(sim, 3));
     assert_int_equal(singe_sim_set_pace(sim, -1), SINGE_ERROR_ARGUMENT);
+
     SingeWindDef wind = singe_default_wind();
     wind.velocity[0] = 2;
     test_ok(sim, singe_sim_set_wind(sim, &wind));
     wind.struct_size = 0;
     assert_int_equal(singe_sim_set_wind(sim, &wind), SINGE_ERROR_ARGUMENT);
     assert_int_equal(singe_sim_set_wind(sim, NULL), SINGE_ERROR_ARGUMENT);
+
     const float velocity[2][3] = {{0, 0, 1}, {0, 1, 0}};
     test_ok(sim, singe_sim_set_velocity(sim, scene->sheets[0], 3, 2, velocity[0]));
     assert_int_equal(singe_sim_set_velocity(sim, scene->sheets[0], 3, 1u << 30, velocity[0]), SINGE_ERROR_ARGUMENT);
@@ -197,11 +206,13 @@ static void scene_set(const Scene *scene) {
     test_ok(sim, singe_sim_advance(sim, 0.011, 0, &steps));
     test_ok(sim, singe_sim_advance(sim, 0.011, 2, NULL));
     test_ok(sim, singe_sim_set_ambient_temperature(sim, 280));
+
     SingeMaterialDef material = singe_default_material();
     const SingeField noise = {.kind = SINGE_FIELD_NOISE, .noise = {0.01f, 2, 5}};
     material.mass_rate = singe_param_field(0.5f, 2, &noise);
     material.drag = singe_param_field(1, 2, &noise);
     test_ok(sim, singe_sim_set_material(sim, scene->sheets[1], &material, NULL));
+
     static const float share[256] = {[1] = 0.5f, [20] = 1};
     test_ok(sim, singe_sim_set_material(sim, scene->sheets[1], &material, share));
     test_steps(sim, 2);
@@ -216,6 +227,7 @@ static void scene_move(const Scene *scene) {
     test_ok(sim, singe_sim_remove_source(sim, scene->spot));
     assert_int_equal(singe_sim_remove_source(sim, scene->spot), SINGE_ERROR_HANDLE);
     test_ok(sim, singe_sim_remove_collider(sim, scene->box));
+
     uint32_t held;
     const uint32_t *particles = singe_sim_pin_particles(sim, scene->vertices, &held);
     float(*positions)[3] = calloc(held, sizeof *positions);
@@ -233,6 +245,7 @@ static void scene_deform(SingeSim *sim) {
     wedge.vertex_count = wedge.triangle_count = 4;
     wedge.vertices = corners[0];
     wedge.triangles = triangles[0];
+
     SingeColliderId id;
     test_ok(sim, singe_sim_add_collider(sim, &wedge, &id));
     test_ok(sim, singe_sim_set_collider_vertices(sim, id, corners[0], 1));
@@ -244,9 +257,11 @@ void scene_every_call(const Scene *scene) {
     scene_set(scene);
     scene_move(scene);
     scene_deform(sim);
+
     SingeSurface surface = {0};
     test_ok(sim, singe_sim_surface(sim, &surface));
     singe_surface_free(&surface);
+
     TestBytes bytes = test_save(sim);
     free(bytes.data);
     test_ok(sim, singe_sim_clone(sim, &copy));

@@ -28,8 +28,10 @@ static SingeSim *mapped(int cell, float pace, float mass_rate, SingeSourceId *id
     def.pace = pace;
     def.gravity[2] = 0;
     def.solver.substeps = 2;
+
     SingeMaterialDef material = singe_default_material();
     material.mass_rate = singe_param(mass_rate);
+
     SingeSim *sim =
         test_sim(&def, test_grid(200u / (uint32_t)cell, 80u / (uint32_t)cell, 1e-3f * (float)cell, 1e-3f * (float)cell),
                  &material);
@@ -51,6 +53,7 @@ TEST(the_front_arrives_when_the_map_says) {
         int cell;
         float pace, mass_rate;
     } cases[] = {{5, 1, 9e-3f}, {10, 6, 9e-3f}, {10, 0.2f, 9e-3f}, {10, 1, 1e-4f}, {10, 1, 0.1f}};
+
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         SingeSourceId id;
         SingeSim *sim = mapped(cases[k].cell, cases[k].pace, cases[k].mass_rate, &id);
@@ -71,6 +74,7 @@ TEST(the_front_arrives_when_the_map_says) {
                     lit += is;
                 }
             }
+
             assert_true(lit > (half ? 200 : 80) && spared > 60);
             SingeStats stats = singe_sim_stats(sim);
             assert_true(stats.arrival_error > 0 && stats.arrival_error <= 1.01 * h && stats.arrival_missed == 0);
@@ -89,11 +93,13 @@ TEST(particles_that_miss_the_map_are_counted) {
     SingeSim *sim = mapped(10, 1, 9e-3f, &id);
     test_steps(sim, 100);
     test_ok(sim, singe_sim_remove_source(sim, id));
+
     float values[HIGH * WIDE];
     SingeTexture texture = ramp(values);
     SingeSourceDef source = map_of(&texture);
     source.arrival_from = 0.3f; // later than what has burnt
     test_ok(sim, singe_sim_add_source(sim, &source, &id));
+
     assert_true(singe_sim_stats(sim).arrival_error > 0.1);
     test_ok(sim, singe_sim_remove_source(sim, id));
     for (int k = 0; k < HIGH * WIDE; k++) values[k] = 1;
@@ -106,10 +112,12 @@ TEST(a_map_is_saved) {
     SingeSourceId id;
     SingeSim *sim = mapped(10, 2, 9e-3f, &id), *copy;
     test_steps(sim, 120);
+
     TestBytes bytes = test_save(sim);
     SingeSimDef hooks = singe_default_sim();
     hooks.thread_count = 2;
     SingeSim *loaded = test_load(&hooks, &bytes);
+
     test_ok(sim, singe_sim_clone(sim, &copy));
     test_steps(sim, 60), test_steps(loaded, 60), test_steps(copy, 60);
     test_assert_same(sim, loaded);
@@ -125,6 +133,7 @@ TEST(a_map_is_saved) {
         memcpy(run, bytes.data + k, k + sizeof run <= bytes.size ? sizeof run : 4);
         if (k + sizeof run <= bytes.size && run[0] == good && run[1] == good && run[2] == good) at = k;
     }
+
     assert_true(at > 0);
     memcpy(bytes.data + at, &bad, sizeof bad);
     SingeError error;
@@ -139,18 +148,21 @@ TEST(bad_maps_are_refused) {
     SingeTexture texture = ramp(values);
     SingeSourceDef good = map_of(&texture), bad[5];
     for (int k = 0; k < 5; k++) bad[k] = good;
+
     bad[0].texture.width = 0;
     bad[1].texture.values = NULL;
     bad[2].arrival_from = -1;
     bad[3].arrival_to = INFINITY;
     bad[4].lead = 0;
     for (int k = 0; k < 5; k++) test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &bad[k], &id));
+
     const float wrong[] = {-0.01f, 1.01f, NAN};
     for (int k = 0; k < 3; k++) {
         values[7] = wrong[k];
         test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &good, &id));
         assert_int_equal(singe_sim_error(sim)->element, 7);
     }
+
     values[7] = 0.5f;
     test_ok(sim, singe_sim_add_source(sim, &good, &id));
     singe_sim_destroy(sim);

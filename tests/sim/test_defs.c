@@ -88,6 +88,7 @@ TEST(bad_sources_are_refused) {
     SOURCE_BAD(SINGE_SOURCE_ATTRACT, (def.path_count = 0, def.position[1] = NAN));
     SOURCE_BAD(SINGE_SOURCE_TURBULENCE, (def.strength_count = 2, def.strength = strengths));
     SOURCE_BAD(SINGE_SOURCE_TURBULENCE, (strengths[0].value = 1e3f, def.strength_count = 1, def.strength = strengths));
+
     strengths[0].value = -1e4f;
     SOURCE_BAD(SINGE_SOURCE_TEXTURE, (def.flux = 1e12f, def.strength_count = 1, def.strength = strengths));
     SOURCE_BAD((SingeSourceKind)17, (void)0);
@@ -123,9 +124,11 @@ TEST(bad_pins_are_refused) {
     PIN_BAD(SINGE_ERROR_ARGUMENT, def.points = far_point);
     PIN_BAD(SINGE_ERROR_ARGUMENT, def.vertex_count = 2);
     PIN_BAD(SINGE_ERROR_ARGUMENT, (def.vertex_count = 2, def.vertices = vertices));
+
     assert_int_equal(singe_sim_error(sim)->element, 1);
     PIN_BAD(SINGE_ERROR_ARGUMENT, (def.path_count = 1, def.path = &key));
     PIN_BAD(SINGE_ERROR_ARGUMENT, def.path_count = 1);
+
     SingeView view = singe_sim_view(sim);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_int_equal(view.particle_flags[i], SINGE_ALIVE);
     singe_sim_destroy(sim);
@@ -137,11 +140,13 @@ TEST(bad_colliders_and_wind_are_refused) {
     SingeColliderId id;
     def.rotation[3] = 0;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id)); // without a path, no rotation
+
     SingePoseKey key = {0, {0, 0, 0}, {0, 0, 0, 0}};
     def.path_count = 1, def.path = &key;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id)); // no rotation
     def.path = NULL;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id));
+
     key.rotation[3] = 1;
     def.path = &key, def.struct_size = 0;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id));
@@ -151,6 +156,7 @@ TEST(bad_colliders_and_wind_are_refused) {
         test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id));
         assert_non_null(strstr(singe_sim_error(sim)->message, "kind"));
     }
+
     SingeWindDef wind = singe_default_wind();
     wind.struct_size = 0;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_wind(sim, &wind));
@@ -171,6 +177,7 @@ TEST(rubbish_beyond_an_older_def_is_not_read) {
     SingeSheetDef sheet = test_sheet(&mesh);
     sheet.struct_size = OLDER(SingeSheetDef, drop_pieces_below);
     sheet.drop_pieces_below = NAN;
+
     SingeSheetId sheet_id;
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &sheet_id));
     sheet.struct_size = OLDER(SingeSheetDef, material);
@@ -178,18 +185,21 @@ TEST(rubbish_beyond_an_older_def_is_not_read) {
     test_mesh_move(&mesh, 1, 0, 0);
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &sheet_id));
     test_ok(sim, singe_sim_commit(sim));
+
     SingePoseKey key = test_key(0, 0, 0, -1);
     SingeSourceDef source = singe_default_source();
     source.path_count = 1, source.path = &key;
     source.struct_size = OLDER(SingeSourceDef, texture);
     source.texture.width = -1, source.callback = (SingeFluxFn *)1;
     test_add_source(sim, &source);
+
     SingePinDef pin = singe_default_pin();
     const uint32_t vertex = 0;
     pin.sheet = sheet_id, pin.vertex_count = 1, pin.vertices = &vertex;
     pin.struct_size = OLDER(SingePinDef, path_count);
     pin.path_count = 99, pin.path = NULL;
     test_add_pin(sim, &pin);
+
     SingeWindDef wind = singe_default_wind();
     wind.struct_size = OLDER(SingeWindDef, gust_time);
     wind.gust = 1, wind.gust_time = NAN;
@@ -207,6 +217,7 @@ TEST(a_def_inside_may_be_older) {
     def.solver.substeps = 5;
     _Alignas(max_align_t) unsigned char bytes[sizeof def];
     memset(bytes, 0xFF, sizeof bytes);
+
     size_t head = offsetof(SingeSimDef, wind), inner = (def.wind.struct_size + 7) / 8 * 8;
     def.wind.struct_size = inner; // an old struct's size is a multiple of its alignment
     memcpy(bytes, &def, head);
@@ -214,11 +225,13 @@ TEST(a_def_inside_may_be_older) {
     memcpy(bytes + head + inner, &def.solver, sizeof def.solver);
     size_t size = head + inner + sizeof def.solver;
     memcpy(bytes, &size, sizeof size);
+
     SingeSim *old, *new;
     SingeSimDef *given = (SingeSimDef *)(void *)bytes;
     assert_int_equal(singe_sim_create(given, &old, NULL), SINGE_OK);
     def.wind.struct_size = sizeof def.wind;
     assert_int_equal(singe_sim_create(&def, &new, NULL), SINGE_OK);
+
     TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     SingeSim *both[2] = {old, new};
@@ -239,6 +252,7 @@ TEST(fields_of_newer_defs_are_ignored) {
         SingeWindDef wind;
         double unknown[4];
     } wind = {singe_default_wind(), {NAN, 1, 2, 3}};
+
     wind.wind.struct_size = sizeof wind;
     SingeSim *sim = small_sim();
     test_ok(sim, singe_sim_set_wind(sim, &wind.wind));
@@ -254,11 +268,13 @@ TEST(defs_are_copied) {
         float grey[4] = {0, 1, 0.5f, 0.2f};
         SingeSourceDef def = singe_default_source();
         SingeSourceId id;
+
         def.kind = SINGE_SOURCE_BALL, def.path_count = 2, def.path = keys;
         test_ok(b, singe_sim_add_source(i ? b : a, &def, &id));
         def.kind = SINGE_SOURCE_TEXTURE, def.texture = (SingeTexture){2, 2, grey};
         test_ok(b, singe_sim_add_source(i ? b : a, &def, &id));
         if (i == 0) continue;
+
         memset(keys, 0xFF, sizeof keys);
         memset(grey, 0xFF, sizeof grey);
         memset(&def, 0xFF, sizeof def);

@@ -9,6 +9,7 @@ TEST(the_order_does_not_matter) {
     SingeSimDef def = scene_def();
     Scene late, early;
     test_ok(NULL, scene_build(&def, 9, &late));
+
     SingeResult result = scene_build_early(&def, 9, &early);
     test_ok(early.sim, result);
     assert_memory_equal(&early.ball, &late.ball, sizeof late.ball);
@@ -32,25 +33,30 @@ TEST(invalid_objects_fail_at_the_commit) {
     TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     sheet.uv = NULL;
+
     SingePinDef pin = singe_default_pin();
     const uint32_t vertices[] = {3, 25};
     pin.vertex_count = 2, pin.vertices = vertices;
+
     SingePinId pin_id;
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &pin.sheet));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_pin(sim, &pin, &pin_id)); // there are 25
     assert_int_equal(singe_sim_error(sim)->element, 1);
     pin.vertex_count = 1;
     test_ok(sim, singe_sim_add_pin(sim, &pin, &pin_id));
+
     SingeSourceDef picture = singe_default_source();
     const float grey[4] = {0, 1, 0.5f, 1};
     picture.kind = SINGE_SOURCE_TEXTURE;
     picture.texture = (SingeTexture){2, 2, grey};
     SingeSourceId picture_id = test_add_source(sim, &picture);
+
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_commit(sim)); // a picture without uv
     assert_string_equal(singe_sim_error(sim)->stage, "source");
     test_ok(sim, singe_sim_remove_source(sim, picture_id));
     test_ok(sim, singe_sim_commit(sim));
     assert_true(singe_sim_view(sim).particle_flags[3] & SINGE_PINNED);
+
     assert_false(singe_sim_view(sim).particle_flags[4] & SINGE_PINNED);
     test_ok(sim, singe_sim_remove_pin(sim, pin_id));
     assert_false(singe_sim_view(sim).particle_flags[3] & SINGE_PINNED);
@@ -69,12 +75,14 @@ TEST(objects_removed_before_the_commit_leave_nothing) {
     SingePinDef pin = singe_default_pin();
     const float point[3] = {0, 0, 0};
     pin.point_count = 1, pin.points = point;
+
     SingePinId first, second;
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &pin.sheet));
     test_ok(sim, singe_sim_add_pin(sim, &pin, &first));
     test_ok(sim, singe_sim_add_pin(sim, &pin, &second));
     test_ok(sim, singe_sim_remove_pin(sim, first));
     test_ok(sim, singe_sim_commit(sim));
+
     SingePinId left[2];
     assert_int_equal(singe_sim_pins(sim, left, 2), 1);
     assert_memory_equal(&left[0], &second, sizeof second);
@@ -93,6 +101,7 @@ TEST(without_a_path_it_stands_still) {
         SingeSourceDef spot = singe_default_source();
         SingeColliderDef box = singe_default_collider();
         SingePoseKey there = test_key(0, 0.03f, 0.02f, 0.001f), under = {0, {0.03f, 0.03f, -0.06f}, {0.1f, 0, 0, 1}};
+
         box.kind = SINGE_COLLIDER_BOX;
         if (k == 0) {
             spot.path_count = 1, spot.path = &there;
@@ -121,6 +130,7 @@ TEST(handles_may_be_left_out) {
     for (int k = 0; k < 2; k++) {
         SingeSimDef def = singe_default_sim();
         test_ok(NULL, singe_sim_create(&def, &sims[k], NULL));
+
         TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
         SingeSheetDef sheet = test_sheet(&mesh);
         SingePinDef pin = singe_default_pin();
@@ -132,12 +142,14 @@ TEST(handles_may_be_left_out) {
         const uint32_t corner = 0;
         pin.vertex_count = 1, pin.vertices = &corner;
         plane.position[2] = -0.02f;
+
         test_ok(sims[k], singe_sim_add_sheet(sims[k], &sheet, k ? NULL : &pin.sheet));
         test_ok(sims[k], singe_sim_add_sheet(sims[k], &sheet, &pin.sheet));
         assert_int_equal(pin.sheet.index, 1);
         test_ok(sims[k], singe_sim_add_pin(sims[k], &pin, k ? NULL : &pin_id));
         test_ok(sims[k], singe_sim_add_source(sims[k], &spot, k ? NULL : &source));
         test_ok(sims[k], singe_sim_add_collider(sims[k], &plane, k ? NULL : &collider));
+
         pin.vertex_count = 0;
         test_refused(sims[k], SINGE_ERROR_ARGUMENT, singe_sim_add_pin(sims[k], &pin, k ? NULL : &pin_id));
         test_ok(sims[k], singe_sim_commit(sims[k]));
@@ -163,12 +175,15 @@ TEST(user_data_is_the_callers) {
     SingeColliderDef collider = singe_default_collider();
     SingePinDef pin = singe_default_pin();
     const uint32_t vertex = 0;
+
     sheet.user_data = &ours[0], source.user_data = &ours[1], collider.user_data = &ours[2], pin.user_data = &ours[3];
     pin.vertex_count = 1, pin.vertices = &vertex;
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &pin.sheet));
+
     SingeSourceId source_id = test_add_source(sim, &source);
     SingeColliderId collider_id = test_add_collider(sim, &collider);
     SingePinId pin_id = test_add_pin(sim, &pin);
+
     test_ok(sim, singe_sim_commit(sim));
     test_ok(sim, singe_sim_set_source_user_data(sim, source_id, &ours[4]));
     test_ok(sim, singe_sim_clone(sim, &copy));
@@ -183,12 +198,14 @@ TEST(user_data_is_the_callers) {
     assert_int_equal(singe_sim_sheets(copy, sheets, 2), 1);
     assert_memory_equal(&sheets[0], &pin.sheet, sizeof pin.sheet);
     assert_int_equal(singe_sim_sources(copy, NULL, 0), 1);
+
     SingeColliderId there;
     assert_int_equal(singe_sim_colliders(copy, &there, 1), 1);
     assert_memory_equal(&there, &collider_id, sizeof there);
     test_ok(sim, singe_sim_remove_collider(sim, collider_id));
     assert_null(singe_sim_collider_user_data(sim, collider_id));
     assert_null(singe_sim_sheet_user_data(sim, (SingeSheetId){1, 1}));
+
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_collider_user_data(sim, collider_id, ours));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_pin_user_data(sim, (SingePinId){5, 5}, ours));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_sheet_user_data(sim, (SingeSheetId){5, 1}, ours));
@@ -205,11 +222,13 @@ TEST(every_allocation_fails_once) {
     def.allocator = test_allocator(&count);
     test_ok(NULL, scene_build_early(&def, 3, &scene));
     singe_sim_destroy(scene.sim);
+
     long repeated = 0;
     for (long n = 1; n <= count.calls; n++) {
         TestAllocator hook = {.fail_at = n, .once = true};
         def.allocator = test_allocator(&hook);
         assert_int_equal(scene_build_early(&def, 3, &scene), SINGE_ERROR_MEMORY);
+
         SingePinId pin;
         if (scene.sim && singe_sim_pins(scene.sim, &pin, 1) == 2) { // all was there but the commit
             repeated++;

@@ -21,6 +21,7 @@ TEST(a_particle_ignites_once) {
     for (int i = 0; i < 120; i++) {
         double before = singe_sim_view(scene.sim).time;
         test_ok(scene.sim, singe_sim_step(scene.sim));
+
         size_t count;
         const SingeEvent *events = singe_sim_events(scene.sim, &count);
         int32_t last = -1;
@@ -104,6 +105,7 @@ TEST(a_cut_makes_one_piece) {
     SingeSourceDef source = singe_default_source();
     source.kind = SINGE_SOURCE_CALLBACK, source.callback = hot_line, source.callback_context = &line;
     test_add_source(sim, &source);
+
     Tally seen = {0};
     for (int i = 0; i < 400; i++) {
         test_ok(sim, singe_sim_step(sim));
@@ -118,6 +120,7 @@ TEST(a_cut_makes_one_piece) {
     assert_int_equal(view.piece[30], 0);
     assert_int_equal(seen.piece.element, view.piece[0]);
     assert_true(view.piece[0] > 0);
+
     for (uint32_t i = 0; i < view.particle_count; i++) {
         bool alive = view.particle_flags[i] & SINGE_ALIVE;
         int32_t expected = !alive ? -1 : view.rest_position[i][0] > line ? 0 : view.piece[0];
@@ -136,11 +139,13 @@ TEST(no_cells_vanish_with_ablation_off) {
         else material.ablate = false;
         SingeSim *sim = test_sim(&def, test_grid(10, 10, 0.005f, 0.005f), &material);
         test_spot(sim, 0.025f, 0.025f, 0, 0.02f, 1500, 2000);
+
         Tally seen = {0};
         for (int i = 0; i < 150; i++) {
             test_ok(sim, singe_sim_step(sim));
             tally(sim, &seen);
         }
+
         SingeStats stats = singe_sim_stats(sim);
         assert_true(stats.burnt_fraction > 0.3);
         assert_true(stats.mass_removed == 0);

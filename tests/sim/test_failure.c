@@ -18,13 +18,16 @@ TEST(a_failed_step_changes_nothing) {
     SingeSim *sim = scene.sim;
     test_steps(sim, 15);
     test_steps(twin.sim, 15);
+
     uint32_t particle = 30;
     SingeSourceDef def = singe_default_source();
     def.kind = SINGE_SOURCE_CALLBACK, def.callback = poison, def.callback_context = &particle;
+
     SingeSourceId id;
     test_ok(sim, singe_sim_add_source(sim, &def, &id));
     TestBytes before = test_save(sim);
     SingeTimers timers = singe_sim_timers(sim);
+
     for (int i = 0; i < 3; i++) {
         test_refused(sim, SINGE_ERROR_DIVERGED, singe_sim_step(sim));
         assert_string_equal(singe_sim_error(sim)->stage, "heat");
@@ -56,19 +59,23 @@ TEST(a_failure_late_in_the_step_changes_nothing) {
     Scene scene = scene_make(NULL, 10);
     SingeSim *sim = scene.sim;
     test_steps(sim, 30);
+
     float now = (float)singe_sim_view(sim).time;
     SingePoseKey path[2] = {test_key(now, 0, 0, 0), test_key(now + 1e-3f, 1e8f, 0, 0)}, still = test_key(0, 0, 0, 0);
     SingeSim *copy;
     test_ok(sim, singe_sim_clone(sim, &copy));
     test_ok(sim, singe_sim_move_pin(sim, scene.points, 2, path));
+
     SingeTimers timers = singe_sim_timers(sim);
     test_refused(sim, SINGE_ERROR_DIVERGED, singe_sim_step(sim));
     assert_string_equal(singe_sim_error(sim)->stage, "dynamics");
+
     SingeTimers now_timers = singe_sim_timers(sim);
     assert_memory_equal(&now_timers, &timers, sizeof timers);
     test_ok(sim, singe_sim_move_pin(sim, scene.points, 1, &still));
     test_ok(copy, singe_sim_move_pin(copy, scene.points, 2, path));
     test_ok(copy, singe_sim_move_pin(copy, scene.points, 1, &still));
+
     test_assert_same(sim, copy);
     test_steps(sim, 20);
     test_steps(copy, 20);
@@ -91,18 +98,21 @@ static bool ask(void *context) {
 static SingeSim *crowd_make(Asked *asked, int threads) {
     SingeSimDef def = scene_def();
     def.contact.enabled = true, def.thread_count = threads, def.cancel = (SingeCancel){ask, asked};
+
     SingeSim *sim = test_create(&def);
     for (int s = 0; s < 4; s++) {
         TestMesh mesh = test_grid(9, 9, 0.007f, 0.007f);
         test_mesh_move(&mesh, -0.03f, -0.03f, 0.0015f * (float)(s / 2 + 10));
         for (uint32_t v = 0; v < mesh.vertex_count && s == 1; v++)
             mesh.positions[3 * v + 2] += 0.1f * (mesh.positions[3 * v] + 0.01f);
+
         SingeSheetDef sheet = test_sheet(&mesh);
         sheet.velocity[2] = s < 2 ? 3 : -3;
         sheet.material.temperature = singe_param(s == 0 ? 800 : 300);
         test_add_sheet(sim, &sheet);
         test_mesh_free(&mesh);
     }
+
     SingeColliderDef ball = singe_default_collider();
     ball.kind = SINGE_COLLIDER_SPHERE, ball.radius = 0.01f, ball.conductance = 100, ball.temperature = 700;
     test_add_collider(sim, &ball);
@@ -118,6 +128,7 @@ static int give_up(SingeSim *sim, Asked *asked) {
     atomic_store(&asked->yes, 0);
     test_ok(sim, singe_sim_clone(sim, &copy));
     test_ok(copy, singe_sim_step(copy));
+
     const int polls = atomic_load(&asked->count);
     singe_sim_destroy(copy);
     assert_true(polls > 5);
@@ -134,6 +145,7 @@ static int give_up(SingeSim *sim, Asked *asked) {
     }
     free(before.data);
     atomic_store(&asked->yes, 0);
+
     return given_up;
 }
 
@@ -149,6 +161,7 @@ TEST(a_step_that_is_given_up_changes_nothing) {
             test_ok(twin, singe_sim_step(twin));
             test_assert_same(sim, twin);
         }
+
         const SingeTimers timers = singe_sim_timers(sim), other = singe_sim_timers(twin);
         print_message("given up %d times; %llu collisions stopped, %u cells crossed from the start\n", given_up,
                       (unsigned long long)timers.contact_stops, singe_sim_stats(sim).intersecting_cells);
@@ -164,6 +177,7 @@ TEST(steps_allocate_nothing) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
+
     Scene scene = scene_make(&def, 14);
     long calls = hook.calls, frees = hook.frees;
     size_t events = 0;
@@ -223,6 +237,7 @@ static long allocations(void) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
+
     Scene scene;
     SingeSurface surface = {.allocator = def.allocator};
     test_ok(scene.sim, whole_life(&def, &scene, &surface));
@@ -238,15 +253,18 @@ static long allocations(void) {
 TEST(every_allocation_fails_once) {
     long calls = allocations();
     assert_true(calls > 50);
+
     for (long n = 1; n <= 2 * calls; n++) {
         TestAllocator hook = {.fail_at = (n + 1) / 2, .once = n & 1};
         SingeSimDef def = scene_def();
         def.allocator = test_allocator(&hook);
+
         Scene scene;
         SingeSurface surface = {.allocator = def.allocator};
         SingeResult result = whole_life(&def, &scene, &surface);
         if (result != SINGE_ERROR_MEMORY)
             fail_msg("call %ld of %ld: %s", hook.fail_at, calls, singe_result_name(result));
+
         singe_surface_free(&surface);
         singe_sim_destroy(scene.sim);
         if (hook.blocks || hook.bytes || hook.faults)

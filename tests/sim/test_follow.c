@@ -21,6 +21,7 @@ static void block_make(Block *block, const float half[3], const float centre[3])
         int d = face / 2, e = (d + 1) % 3, f = (d + 2) % 3;
         float side = face & 1 ? 1 : -1;
         uint32_t first = block->vertex_count;
+
         for (int j = 0; j <= N; j++)
             for (int i = 0; i <= N; i++) {
                 float *v = block->vertices[block->vertex_count++];
@@ -28,6 +29,7 @@ static void block_make(Block *block, const float half[3], const float centre[3])
                 v[e] = centre[e] + half[e] * (2 * (float)i / N - 1);
                 v[f] = centre[f] + half[f] * (2 * (float)j / N - 1);
             }
+
         for (uint32_t j = 0; j < N; j++)
             for (uint32_t i = 0; i < N; i++) {
                 uint32_t a = first + j * (N + 1) + i, b = a + 1, c = a + N + 2, d4 = a + N + 1;
@@ -78,10 +80,12 @@ TEST(moved_as_a_whole_it_is_a_mesh_on_a_path) {
     const float half[3] = {0.08f, 0.08f, 0.02f}, centre[3] = {0, 0, TOP - 0.02f};
     Block block;
     block_make(&block, half, centre);
+
     SingeSimDef def = quiet();
     SingeSim *sims[2];
     SingeColliderId ids[2];
     const double frame = 1.0 / 48;
+
     for (int k = 0; k < 2; k++) {
         sims[k] = sheet_at(&def, TOP + 0.003f);
         SingeColliderDef collider = block_def(&block, k ? SINGE_COLLIDER_DEFORMING : SINGE_COLLIDER_MESH);
@@ -122,6 +126,7 @@ static void sweep(double speed, bool at_once, double *behind, double *ahead) {
     SingeSimDef def = quiet();
     def.gravity[2] = 0;
     def.time_step = 1.0f / 480;
+
     TestMesh mesh = test_grid(20, 20, 0.005f, 0.005f);
     test_mesh_raise(&mesh);
     for (uint32_t v = 0; v < mesh.vertex_count; v++) { // in the plane x = 0
@@ -137,6 +142,7 @@ static void sweep(double speed, bool at_once, double *behind, double *ahead) {
     shifted(&block, 0.2f, 0, 0, to);
     test_ok(sim, singe_sim_set_collider_vertices(sim, id, to[0], at_once ? 0 : end));
     test_steps(sim, (int)ceil(end * 480) + 2);
+
     SingeView view = singe_sim_view(sim);
     *behind = INFINITY, *ahead = -INFINITY;
     for (uint32_t v = 0; v < view.vertex_count; v++) {
@@ -164,16 +170,19 @@ TEST(a_swelling_block_lifts) {
     const float half[3] = {0.08f, 0.08f, 0.05f}, centre[3] = {0, 0, TOP - 0.05f};
     Block block;
     block_make(&block, half, centre);
+
     SingeSimDef def = quiet();
     SingeSim *sim = sheet_at(&def, TOP + 0.002f);
     SingeColliderDef collider = block_def(&block, SINGE_COLLIDER_DEFORMING);
     SingeColliderId id = test_add_collider(sim, &collider);
     test_steps(sim, 120);
+
     float to[6 * 36][3];
     shifted(&block, 0, 0, 0, to);
     for (uint32_t v = 0; v < block.vertex_count; v++)
         if (to[v][2] > TOP - 1e-4f) to[v][2] += 0.04f;
     test_ok(sim, singe_sim_set_collider_vertices(sim, id, to[0], 0.5));
+
     test_steps(sim, 120);
     assert_true(fabs(mean_of(sim, 2) - (double)TOP - 0.04) < 0.003);
     test_steps(sim, 120); // and it stays
@@ -197,9 +206,11 @@ static void round_trip(SingeSim *sim, SingePinId pin, SingeColliderId body, cons
         test_ok(sim, singe_sim_set_collider_vertices(sim, body, moved[0], end));
         test_steps(sim, 10);
         if (first) continue;
+
         SingeView view = singe_sim_view(sim);
         uint32_t count;
         const uint32_t *held = singe_sim_pin_particles(sim, pin, &count);
+
         assert_int_equal(count, 2);
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < 3; i++) assert_true(fabsf(view.position[held[k]][i] - to[k][i]) < 1e-5f);
@@ -210,6 +221,7 @@ static void round_trip(SingeSim *sim, SingePinId pin, SingeColliderId body, cons
 static SingeSim *cape(const SingeSimDef *def, SingePinId *pin, SingeColliderId *body, Block *block) {
     const float half[3] = {0.03f, 0.03f, 0.08f}, centre[3] = {0, 0, 0.05f};
     block_make(block, half, centre);
+
     SingeSim *sim = test_create(def);
     TestMesh mesh = test_grid(16, 16, 0.1f / 16, 0.1f / 16);
     test_mesh_move(&mesh, -0.05f, 0, 0.2f);
@@ -217,10 +229,12 @@ static SingeSim *cape(const SingeSimDef *def, SingePinId *pin, SingeColliderId *
     sheet_def.material = scene_quick_material();
     SingeSheetId sheet = test_add_sheet(sim, &sheet_def);
     test_mesh_free(&mesh);
+
     const uint32_t corners[2] = {0, 16};
     SingePinDef pin_def = singe_default_pin();
     pin_def.sheet = sheet, pin_def.vertex_count = 2, pin_def.vertices = corners;
     test_ok(sim, singe_sim_add_pin(sim, &pin_def, pin));
+
     SingeColliderDef collider = block_def(block, SINGE_COLLIDER_DEFORMING);
     collider.conductance = 20, collider.temperature = 350;
     test_ok(sim, singe_sim_add_collider(sim, &collider, body));
@@ -251,17 +265,20 @@ TEST(pins_follow_and_runs_resume) {
     shifted(&block, 0.03f, 0.01f, 0, moved);
     test_ok(sim, singe_sim_set_collider_vertices(sim, body, moved[0], 13 / 48.0));
     test_steps(sim, 4);
+
     TestBytes bytes = test_save(sim);
     SingeSimDef hooks = singe_default_sim();
     SingeError error = {0};
     SingeSim *resumed = test_load(NULL, &bytes);
     test_assert_same(sim, resumed);
+
     test_steps(sim, 6);
     test_steps(resumed, 6);
     test_assert_same(sim, resumed);
     round_trip(sim, pin, body, &block, 13, 20);
     round_trip(resumed, pin, body, &block, 13, 20);
     test_assert_same(sim, resumed);
+
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.burnt_fraction > 0.001 && singe_sim_timers(sim).contacts > 50);
     print_message("%.3f burnt, %u contacts\n", stats.burnt_fraction, (unsigned)singe_sim_timers(sim).contacts);
@@ -277,6 +294,7 @@ TEST(pins_follow_and_runs_resume) {
     SingePoseKey still = test_key(0, 0, 0, 0);
     uint32_t count, corner = singe_sim_pin_particles(sim, pin, &count)[0];
     float before = singe_sim_view(sim).position[corner][2];
+
     test_ok(sim, singe_sim_move_pin(sim, pin, 1, &still));
     test_steps(sim, 3);
     assert_true(fabsf(singe_sim_view(sim).position[corner][2] - before) < 1e-6f);
@@ -297,11 +315,13 @@ TEST(bad_positions_are_refused) {
     rigid.position[2] = -5;
     test_ok(sim, singe_sim_add_collider(sim, &rigid, &box));
     test_ok(twin, singe_sim_add_collider(twin, &rigid, &box));
+
     float to[2][3] = {{0, 0, 0}, {0, NAN, 0}}, moved[6 * 36][3];
     shifted(&block, 0, 0, 0, moved);
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_pin_positions(sim, pin, to[0], 1));
     assert_int_equal(singe_sim_error(sim)->element, 1);
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_pin_positions(sim, pin, NULL, 1));
+
     to[1][1] = 0;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_pin_positions(sim, pin, to[0], (double)NAN));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_pin_positions(sim, (SingePinId){4, 4}, to[0], 1));
@@ -310,9 +330,11 @@ TEST(bad_positions_are_refused) {
     moved[17][2] = 2e4f;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_collider_vertices(sim, body, moved[0], 1));
     assert_int_equal(singe_sim_error(sim)->element, 17);
+
     uint32_t count = 5;
     assert_null(singe_sim_pin_particles(sim, (SingePinId){9, 9}, &count));
     assert_int_equal(count, 0);
+
     SingeColliderDef open = block_def(&block, SINGE_COLLIDER_DEFORMING);
     open.triangle_count--;
     test_refused(sim, SINGE_ERROR_MESH, singe_sim_add_collider(sim, &open, &box));
@@ -328,11 +350,13 @@ TEST(a_mesh_may_collapse) {
     TestAllocator hook = {0};
     SingeSimDef def = quiet();
     def.allocator = test_allocator(&hook);
+
     SingePinId pin;
     SingeColliderId body;
     Block block;
     SingeSim *sim = cape(&def, &pin, &body, &block);
     long calls = hook.calls;
+
     for (int axis = 0; axis < 4; axis++) {
         float to[6 * 36][3];
         shifted(&block, 0, 0, 0.1f, to);
@@ -346,6 +370,7 @@ TEST(a_mesh_may_collapse) {
     assert_true(isfinite(mean_of(sim, 2)));
     singe_sim_destroy(sim);
     test_allocator_check(&hook);
+
     long last = hook.calls; // every allocation of it fails once
     for (long n = 1; n <= last; n += 1 + n / 40) {
         TestAllocator failing = {.fail_at = n, .once = true};
@@ -353,6 +378,7 @@ TEST(a_mesh_may_collapse) {
         SingeSim *made;
         SingeColliderId id;
         if (singe_sim_create(&def, &made, NULL)) continue;
+
         SingeColliderDef collider = block_def(&block, SINGE_COLLIDER_DEFORMING);
         SingeResult result = singe_sim_add_collider(made, &collider, &id);
         assert_true(result == SINGE_OK || result == SINGE_ERROR_MEMORY);

@@ -80,8 +80,10 @@ TEST(a_sheets_def_may_have_any_size) {
             singe_init_sheet(&bytes.sheet, size);
             assert_memory_equal(bytes.at + size, before.at + size, MAX - size);
         }
+
     SingeSheetDef def = singe_default_sheet();
     SingeMaterialDef material = singe_default_material();
+
     assert_int_equal(def.struct_size, sizeof def);
     assert_int_equal(def.material.struct_size, sizeof def.material);
     assert_true(def.material.grammage.value == material.grammage.value &&
@@ -103,9 +105,11 @@ TEST(a_sims_def_may_have_any_size) {
             singe_init_sim(&bytes.sim, size);
             assert_memory_equal(bytes.at + size, before.at + size, MAX - size);
         }
+
     SingeSimDef def = singe_default_sim();
     SingeWindDef wind = singe_default_wind();
     SingeSolverDef solver = singe_default_solver();
+
     assert_int_equal(def.struct_size, sizeof def);
     assert_true(def.thread_count == 1 && def.gravity[2] < -9);
     assert_memory_equal(&def.wind, &wind, sizeof wind);
@@ -128,6 +132,7 @@ TEST(defs_inside_may_have_any_size) {
     bytes = untouched();
     const size_t start = offsetof(SingeSheetDef, material), material = offsetof(SingeMaterialDef, weight) / 8 * 8;
     const size_t tail = sizeof(SingeSheetDef) - offsetof(SingeSheetDef, velocity);
+
     memcpy(bytes.at + start, &material, sizeof material);
     singe_init_sheet(&bytes.sheet, start + material + tail);
     assert_memory_equal(bytes.at + start, &material, sizeof material);

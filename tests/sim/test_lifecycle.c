@@ -18,19 +18,23 @@ TEST(calls_before_the_commit_are_refused) {
     assert_int_equal(singe_sim_error(sim)->code, SINGE_OK);
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_step(sim));
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_commit(sim));
+
     SingeSourceDef source = singe_default_source();
     SingeSourceId source_id = {1, 1};
     source.radius = -1;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &source, &source_id));
     assert_int_equal(source_id.generation, 0);
+
     SingeColliderDef collider = singe_default_collider();
     SingeColliderId collider_id;
     collider.rotation[3] = 0;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &collider, &collider_id));
+
     SingePinDef pin = singe_default_pin(); // of no sheet
     SingePinId pin_id;
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_add_pin(sim, &pin, &pin_id));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_source(sim, (SingeSourceId){0, 1}));
+
     uint8_t *bytes = (uint8_t *)1;
     size_t size = 1;
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_save(sim, &bytes, &size));
@@ -38,13 +42,16 @@ TEST(calls_before_the_commit_are_refused) {
     assert_int_equal(size, 0);
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_clone(sim, &copy));
     assert_null(copy);
+
     SingeSurface surface = {0};
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_surface(sim, &surface));
+
     SingeStats stats = singe_sim_stats(sim);
     assert_int_equal(stats.particles, 0);
     size_t count = 1;
     singe_sim_events(sim, &count);
     assert_int_equal(count, 0);
+
     SingeWindDef wind = singe_default_wind();
     test_ok(sim, singe_sim_set_wind(sim, &wind));
     singe_sim_destroy(sim);
@@ -72,6 +79,7 @@ TEST(a_refused_sheet_changes_nothing) {
     TestMesh good = test_grid(2, 2, 0.01f, 0.01f), bad = test_grid(2, 2, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&bad);
     SingeSheetId id;
+
     bad.cells[5] = 99;
     test_refused(sim, SINGE_ERROR_MESH, singe_sim_add_sheet(sim, &sheet, &id));
     assert_int_equal(singe_sim_error(sim)->element, 1);
@@ -81,6 +89,7 @@ TEST(a_refused_sheet_changes_nothing) {
     bad.positions[3] = 0.01f;
     sheet.material.thickness = singe_param(-1);
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_sheet(sim, &sheet, &id));
+
     SingeSheetDef fine = test_sheet(&good);
     test_ok(sim, singe_sim_add_sheet(sim, &fine, &id));
     assert_int_equal(id.index, 0);
@@ -96,6 +105,7 @@ TEST(a_refused_sheet_changes_nothing) {
     uint32_t cells[12];
     memcpy(cells, fan.cells, sizeof fan.cells[0] * 8);
     memcpy(cells + 8, (uint32_t[]){2, 3, 7, 6}, 4 * sizeof *cells);
+
     SingeSheetDef branching = test_sheet(&fan);
     branching.cell_count = 3, branching.cells = cells;
     SingeResult added = singe_sim_add_sheet(sim, &branching, &id);
@@ -105,6 +115,7 @@ TEST(a_refused_sheet_changes_nothing) {
     sim = create(); // a front that no cell comes near to is found there too, and a commit can be tried again
     fine.material.mass_rate = singe_param(1e12f);
     test_ok(sim, singe_sim_add_sheet(sim, &fine, &id));
+
     for (int k = 0; k < 2; k++) {
         test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_commit(sim));
         assert_non_null(strstr(singe_sim_error(sim)->message, "thickening"));
@@ -123,16 +134,19 @@ TEST(particles_are_numbered_as_documented) {
     test_mesh_move(&second, 1, 0, 0);
     SingeSheetDef a = test_sheet(&first), b = test_sheet(&second);
     b.velocity[0] = 2;
+
     SingeSheetId id;
     test_ok(sim, singe_sim_add_sheet(sim, &a, &id));
     test_ok(sim, singe_sim_add_sheet(sim, &b, &id));
     assert_int_equal(id.index, 1);
     test_ok(sim, singe_sim_commit(sim));
+
     SingeView view = singe_sim_view(sim);
     assert_int_equal(view.vertex_count, 13 + 4);
     assert_int_equal(view.cell_count, 6 + 1);
     assert_int_equal(view.particle_count, 24);
     for (uint32_t v = 0; v < 13; v++) assert_memory_equal(view.position[v], first.positions + 3 * v, 12);
+
     for (uint32_t v = 0; v < 4; v++) {
         assert_memory_equal(view.position[13 + v], second.positions + 3 * v, 12);
         assert_memory_equal(view.uv[13 + v], second.uv + 2 * v, 8);
@@ -155,10 +169,12 @@ TEST(particles_are_numbered_as_documented) {
     assert_int_equal(singe_sim_stats(sim).pieces, 2);
     assert_int_equal(view.piece[0], 0);
     assert_int_equal(view.piece[13], 1);
+
     float still[3];
     memcpy(still, view.position[12], sizeof still);
     test_steps(sim, 5);
     assert_memory_equal(view.position[12], still, sizeof still);
+
     SingeCounts counts = singe_sim_counts(sim);
     assert_int_equal(counts.particles, 23);
     assert_int_equal(counts.cells, 7);
@@ -166,6 +182,7 @@ TEST(particles_are_numbered_as_documented) {
     assert_int_equal(counts.springs[SINGE_YELLOW], 14);
     assert_int_equal(counts.springs[SINGE_BLUE], 17 + 4);
     assert_int_equal(counts.springs[SINGE_GREEN], 7);
+
     singe_sim_destroy(sim);
     test_mesh_free(&first);
     test_mesh_free(&second);
@@ -202,6 +219,7 @@ TEST(the_commit_is_logged) {
         SingeSimDef def = singe_default_sim();
         def.log = (SingeLog){hear, &heard};
         if (slow) def.time_step = 0.1f;
+
         SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.005f, 0.005f), NULL);
         assert_int_equal(heard.lines[SINGE_LOG_INFO], 2);
         assert_non_null(strstr(heard.last[SINGE_LOG_INFO], "cells of 5 mm"));
@@ -224,10 +242,12 @@ TEST(sheets_that_begin_inside_a_collider_are_logged) {
         SingeColliderDef plane = singe_default_collider();
         SingePoseKey key = {.position = {0, 0, deep ? 0.0041f : 0.0039f}, .rotation = {0, 0, 0, 1}};
         SingeColliderId id;
+
         plane.path_count = 1, plane.path = &key, plane.offset = 1e-3f;
         test_ok(sim, singe_sim_add_collider(sim, &plane, &id));
         test_steps(sim, 2);
         assert_int_equal(heard.lines[SINGE_LOG_WARNING], deep);
+
         const char *reported = "100 % of the sheets begin inside it, up to 0.0051 m";
         if (deep) assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], reported));
         singe_sim_destroy(sim);
@@ -270,10 +290,12 @@ TEST(timers_and_time_grow) {
     Scene scene = scene_make(NULL, 10);
     SingeTimers last = singe_sim_timers(scene.sim);
     assert_int_equal(last.steps, 0);
+
     for (int i = 1; i <= 40; i++) {
         test_ok(scene.sim, singe_sim_step(scene.sim));
         SingeTimers now = singe_sim_timers(scene.sim);
         SingeView view = singe_sim_view(scene.sim);
+
         assert_int_equal(now.steps, i);
         assert_int_equal(view.step, i);
         assert_true(view.time == i * (double)(1.0f / 240));
@@ -298,13 +320,16 @@ TEST(conduction_cut_short_is_warned_of_once) {
     int warnings = 0;
     SingeSimDef def = singe_default_sim();
     def.log = (SingeLog){count_warnings, &warnings};
+
     SingeMaterialDef material = singe_default_material();
     material.convection = material.emissivity = singe_param(0);
+
     SingeSim *sim = test_sim(&def, test_grid(600, 1, 0.002f, 0.002f), &material);
     test_spot(sim, 0, 0, 0, 0.1f, 400, 50);
     test_steps(sim, 2);
     assert_int_equal(warnings, 0);
     singe_sim_destroy(sim);
+
     def.pace = 1e5f;
     sim = test_sim(&def, test_grid(600, 1, 0.002f, 0.002f), &material);
     test_spot(sim, 0, 0, 0, 0.1f, 400, 50);
@@ -334,6 +359,7 @@ TEST(substeps_follow_from_mass_and_load) {
         float grammage;
         bool tearing;
     } cases[] = {{0, 0.02f, true}, {3, 0.02f, true}, {4, 0.02f, true}, {3, 0.08f, true}, {3, 0.02f, false}};
+
     HeardSubsteps heard[5] = {{0}};
     for (int k = 0; k < 5; k++) {
         SingeSimDef def = singe_default_sim();
@@ -341,11 +367,13 @@ TEST(substeps_follow_from_mass_and_load) {
         def.gas.enabled = true;
         def.solver.substeps = cases[k].substeps;
         def.log = (SingeLog){hear_substeps, &heard[k]};
+
         SingeMaterialDef material = singe_default_material();
         material.grammage = singe_param(cases[k].grammage);
         material.compliance[SINGE_RED] = singe_param(1e3f); // soft
         singe_sim_destroy(test_sim(&def, test_grid(60, 60, 0.00125f, 0.00125f), &material));
     }
+
     print_message("%d substeps carry it\n", heard[0].chosen);
     assert_in_range(heard[0].chosen, 7, 8);
     assert_false(heard[0].warned);
@@ -361,8 +389,10 @@ TEST(every_byte_is_counted_and_freed) {
     Scene scene = scene_make(&def, 8);
     assert_int_equal(singe_sim_counts(scene.sim).memory, hook.bytes);
     test_steps(scene.sim, 3);
+
     SingeSurface surface = {0};
     size_t before = hook.bytes;
+
     test_ok(scene.sim, singe_sim_surface(scene.sim, &surface));
     assert_true(surface.triangle_count > 0);
     singe_surface_free(&surface);

@@ -26,6 +26,7 @@ TEST(handles_go_stale) {
     SingePoseKey key = test_key(0, 0, 0, 0);
     SingeSourceDef source = singe_default_source();
     source.path_count = 1, source.path = &key;
+
     SingeColliderDef collider = singe_default_collider();
     collider.path_count = 1, collider.path = &key;
     SingePinDef pin = singe_default_pin();
@@ -36,6 +37,7 @@ TEST(handles_go_stale) {
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_source(sim, scene.ball));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_move_source(sim, scene.ball, 1, &key));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_source_callback(sim, scene.ball, scene_flux, NULL));
+
     SingeSourceId again = test_add_source(sim, &source);
     assert_int_equal(again.index, scene.ball.index); // the slot is used again
     assert_int_not_equal(again.generation, scene.ball.generation);
@@ -74,6 +76,7 @@ TEST(refused_moves_change_nothing) {
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_collider(sim, scene.box, 0, NULL));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_pin(sim, scene.vertices, 1, &bad));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_source_callback(sim, scene.ball, scene_flux, NULL));
+
     test_steps(sim, 10);
     test_steps(other.sim, 10);
     test_assert_same(sim, other.sim);
@@ -86,26 +89,31 @@ TEST(sources_come_and_go) {
     SingeSim *sim = test_sim(&def, test_grid(10, 10, 0.01f, 0.01f), NULL);
     test_steps(sim, 2);
     assert_true(heat_in(sim) == 0);
+
     SingeSourceId spot = test_spot(sim, 0.05f, 0.05f, 0, 0.02f, 400, 50);
     test_steps(sim, 2);
     double before = heat_in(sim);
     assert_true(before > 0);
+
     SingePoseKey away = test_key(0, 5, 5, 5), back = test_key(0, 0.05f, 0.05f, 0);
     test_ok(sim, singe_sim_move_source(sim, spot, 1, &away));
     test_steps(sim, 2);
     assert_true(heat_in(sim) == before);
     test_ok(sim, singe_sim_move_source(sim, spot, 1, &back));
+
     test_steps(sim, 2);
     assert_true(heat_in(sim) > before);
     test_ok(sim, singe_sim_remove_source(sim, spot));
     before = heat_in(sim);
     test_steps(sim, 2);
     assert_true(heat_in(sim) == before);
+
     SingeSourceDef late = singe_default_source();
     late.path_count = 1, late.path = &back;
     late.start = (float)singe_sim_view(sim).time + 1.5f * def.time_step;
     late.end = late.start + 2 * def.time_step;
     test_add_source(sim, &late);
+
     for (int i = 0; i < 6; i++) {
         before = heat_in(sim);
         test_ok(sim, singe_sim_step(sim));
@@ -120,6 +128,7 @@ TEST(pins_hold_move_and_let_go) {
     SingeView view = singe_sim_view(sim);
     test_steps(sim, 10);
     assert_true(view.position[0][2] < 0); // falls
+
     SingePinDef def = singe_default_pin();
     const float corner[3] = {0, 0, 0};
     def.sheet = (SingeSheetId){0, 1}, def.point_count = 1, def.points = corner, def.radius = 0.0105f;
@@ -128,6 +137,7 @@ TEST(pins_hold_move_and_let_go) {
     const uint32_t held[3] = {0, 1, 7};
     for (int k = 0; k < 3; k++) memcpy(at[k], view.position[held[k]], 12);
     test_steps(sim, 40);
+
     for (int k = 0; k < 3; k++) {
         assert_memory_equal(view.position[held[k]], at[k], 12);
         assert_true(view.particle_flags[held[k]] & SINGE_PINNED);
@@ -144,6 +154,7 @@ TEST(pins_hold_move_and_let_go) {
     test_ok(sim, singe_sim_step(sim));
     for (int k = 0; k < 3; k++) assert_true(fabsf(view.position[held[k]][0] - at[k][0]) < 0.05f / 40);
     test_steps(sim, 60);
+
     for (int k = 0; k < 3; k++) {
         assert_true(fabsf(view.position[held[k]][0] - at[k][0] - 0.05f) < 2e-6f);
         assert_true(fabsf(view.position[held[k]][1] - at[k][1]) < 2e-6f);
@@ -155,11 +166,13 @@ TEST(pins_hold_move_and_let_go) {
     def = singe_default_pin();
     def.sheet = (SingeSheetId){0, 1}, def.vertex_count = 1, def.vertices = &vertex;
     SingePinId second = test_add_pin(sim, &def);
+
     test_ok(sim, singe_sim_remove_pin(sim, pin));
     assert_true(view.particle_flags[0] & SINGE_PINNED);
     assert_false(view.particle_flags[1] & SINGE_PINNED);
     memcpy(at[0], view.position[0], 12);
     test_steps(sim, 20);
+
     assert_memory_equal(view.position[0], at[0], 12);
     test_ok(sim, singe_sim_remove_pin(sim, second));
     assert_false(view.particle_flags[0] & SINGE_PINNED);
@@ -175,6 +188,7 @@ TEST(pins_end) {
     SingePinDef def = singe_default_pin();
     def.sheet = (SingeSheetId){0, 1}, def.vertex_count = 1, def.vertices = &corner;
     def.path_count = 2, def.path = path;
+
     SingeSim *by_hand = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL);
     SingeSim *by_end = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL), *loaded = NULL;
     SingePinId removed, ended;
@@ -189,10 +203,12 @@ TEST(pins_end) {
             singe_sim_destroy(loaded);
             loaded = test_reload(NULL, by_end);
         }
+
         test_steps(by_hand, 1);
         test_steps(by_end, 1);
         if (loaded) test_steps(loaded, 1);
         if (step == 39) test_ok(by_hand, singe_sim_remove_pin(by_hand, removed));
+
         const SingeView a = singe_sim_view(by_hand), b = singe_sim_view(by_end);
         assert_memory_equal(a.position, b.position, a.particle_count * sizeof *a.position);
         assert_memory_equal(a.particle_flags, b.particle_flags, a.particle_count);
@@ -221,6 +237,7 @@ TEST(a_turning_pin_turns) {
     pin.path = path;
     test_add_pin(sim, &pin);
     test_steps(sim, 120);
+
     SingeView view = singe_sim_view(sim);
     assert_true(fabsf(view.position[4][0]) < 1e-6f && fabsf(view.position[4][1] - 0.04f) < 1e-6f);
     assert_true(fabsf(view.position[0][0]) < 1e-6f && fabsf(view.position[0][1]) < 1e-6f);
@@ -231,6 +248,7 @@ TEST(a_turning_pin_turns) {
 TEST(unused_vertices_are_not_pinned) {
     TestMesh mesh = test_grid(2, 2, 0.01f, 0.01f);
     test_mesh_add_vertex(&mesh, 0.03f, 0.03f, 0);
+
     SingeSim *sim = test_sim(NULL, mesh, NULL);
     const float point[3] = {0.03f, 0.03f, 0};
     SingePinDef pin = singe_default_pin();
@@ -246,14 +264,17 @@ TEST(pins_on_one_particle_are_limited) {
     const uint32_t vertex = 4;
     SingePinDef pin = singe_default_pin();
     SingePinId ids[256];
+
     pin.sheet = (SingeSheetId){0, 1}, pin.vertex_count = 1, pin.vertices = &vertex;
     for (int i = 0; i < 255; i++) test_ok(sim, singe_sim_add_pin(sim, &pin, &ids[i]));
     test_refused(sim, SINGE_ERROR_LIMIT, singe_sim_add_pin(sim, &pin, &ids[255]));
     assert_int_equal(singe_sim_error(sim)->element, 4);
+
     for (int i = 0; i < 255; i++) {
         assert_true(singe_sim_view(sim).particle_flags[4] & SINGE_PINNED);
         test_ok(sim, singe_sim_remove_pin(sim, ids[i]));
     }
+
     assert_false(singe_sim_view(sim).particle_flags[4] & SINGE_PINNED);
     singe_sim_destroy(sim);
 }
@@ -264,6 +285,7 @@ TEST(rings_can_be_pinned) {
         SingeSim *sim = test_sim(NULL, test_cylinder(8, 4, 0.03f, 0.05f), NULL);
         uint32_t vertices[8];
         for (uint32_t k = 0; k < 8; k++) vertices[k] = first < 8 && k > 1 ? (first + 1) % 8 : (first + k) % 8;
+
         SingePinDef pin = singe_default_pin();
         pin.sheet = (SingeSheetId){0, 1}, pin.vertex_count = 8, pin.vertices = vertices;
         test_add_pin(sim, &pin);
@@ -280,6 +302,7 @@ TEST(colliders_catch_move_and_go) {
     def.path_count = 1, def.path = &low;
     SingeColliderId plane = test_add_collider(sim, &def);
     test_steps(sim, 240);
+
     SingeView view = singe_sim_view(sim);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_true(view.position[i][2] > -0.01f);
     assert_true(mean_height(sim) < -0.008f);
@@ -306,6 +329,7 @@ TEST(hot_colliders_heat) {
     SingeColliderDef plane = singe_default_collider();
     plane.path_count = 1, plane.path = &key, plane.conductance = 100, plane.temperature = 350;
     test_add_collider(sim, &plane);
+
     test_steps(sim, 60);
     assert_true(heat_in(sim) > 0);
     assert_true(singe_sim_stats(sim).temperature_max > 294 && singe_sim_stats(sim).temperature_max < 350);
@@ -319,6 +343,7 @@ TEST(wind_blows) {
 
     test_steps(sim, 20);
     assert_true(fabsf(mean_height(sim)) < 1e-4f);
+
     SingeWindDef wind = singe_default_wind();
     wind.velocity[2] = 3;
     test_ok(sim, singe_sim_set_wind(sim, &wind));
@@ -341,16 +366,20 @@ TEST(callbacks_can_be_exchanged) {
     SingeSourceDef source = singe_default_source();
     source.kind = SINGE_SOURCE_CALLBACK; // none yet
     SingeSourceId id = test_add_source(sim, &source);
+
     test_steps(sim, 2);
     assert_true(heat_in(sim) == 0);
+
     float flux = 1e4f;
     test_ok(sim, singe_sim_set_source_callback(sim, id, flux_into_first, &flux));
+
     double time = singe_sim_view(sim).time;
     test_ok(sim, singe_sim_step(sim));
     assert_true(callback_seen_time == (float)time);
     double area = (double)singe_sim_view(sim).area[0];
     assert_true(fabs(heat_in(sim) / (1e4 * area * (double)def.time_step) - 1) < 1e-5);
     test_ok(sim, singe_sim_set_source_callback(sim, id, NULL, NULL));
+
     double before = heat_in(sim);
     test_ok(sim, singe_sim_step(sim));
     assert_true(heat_in(sim) == before);

@@ -61,16 +61,20 @@ static int try_table(SingeSim *sim, const DefTable *table, const void *standard,
         SingeSheetDef sheet;
         SingeColliderDef collider;
     } def;
+
     assert_true(size <= sizeof def);
     memcpy(&def, standard, size);
     assert_int_equal(call(sim, &def), SINGE_OK);
+
     int kind = 0, tried = 0;
     if (table->kind) memcpy(&kind, (const char *)standard + table->kind, sizeof kind);
+
     for (int i = 0; i < table->count; i++) {
         const DefField *field = &table->fields[i];
         const FieldRange *range = &field->range;
         const bool has = !field->kinds || (field->kinds >> kind & 1);
         if (!range->words) continue;
+
         const bool whole = field->type == FIELD_INT;
         for (int k = 0; k < field->length; k++) {
             const float below = whole             ? range->low - 1
@@ -86,6 +90,7 @@ static int try_table(SingeSim *sim, const DefTable *table, const void *standard,
                 put(&def, field, k, outside[o]);
                 assert_int_equal(call(sim, &def), has ? SINGE_ERROR_ARGUMENT : SINGE_OK);
                 if (!has) continue;
+
                 const char *message = singe_sim_error(sim)->message;
                 assert_string_equal(singe_sim_error(sim)->stage, table->stage);
                 if (!strstr(message, field->name) || !strstr(message, range->words))
@@ -140,6 +145,7 @@ TEST(ranges_match_the_tables) {
     sheet.cell_count = 1;
     sheet.cells = cell;
     tried += try_table(sim, &sheet_table, &sheet, sizeof sheet, try_sheet);
+
     SingePinDef pin = singe_default_pin();
     pin.sheet = (SingeSheetId){0, 1};
     pin.vertex_count = 1;

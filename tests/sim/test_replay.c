@@ -12,6 +12,7 @@ static SingeReplay replay_some(const Tape *tape, size_t size, SingeResult expect
     SingeError error = {0};
     uint8_t *copy = malloc(size ? size : 1); // of its very size, so that a byte too many is seen
     assert_non_null(copy);
+
     memcpy(copy, tape->bytes, size);
     assert_int_equal(singe_replay(&hooks, copy, size, &replay, &error), expected);
     if (expected) assert_true(error.message[0] && error.code == expected);
@@ -49,6 +50,7 @@ TEST(a_replay_makes_every_call_and_ends_in_the_same_bits) {
     uint64_t calls = 0;
     for (int kind = 16; kind < 256; kind++)
         for (int n = 0; tape_find(&tape, kind, n) < tape.size; n++) calls++;
+
     assert_int_equal(replay.calls, calls);
     for (int kind = 16; kind <= 40; kind++)
         if (tape_find(&tape, kind, 0) == tape.size) fail_msg("no recording of call %d is tried", kind);
@@ -62,6 +64,7 @@ TEST(a_recording_changes_nothing) {
     Scene a = scene_make(&def, 10), b = scene_make(&with, 10);
     test_ok(a.sim, singe_sim_set_ambient_temperature(a.sim, 280));
     test_ok(b.sim, singe_sim_set_ambient_temperature(b.sim, 280)); // rebuilt, and still recorded
+
     const size_t before = tape.size;
     test_steps(a.sim, 5);
     test_steps(b.sim, 5);
@@ -82,6 +85,7 @@ TEST(recordings_differ_only_in_the_number_of_threads) {
     with = recorded(def, &three);
     live(&with);
     assert_int_equal(one.size, three.size);
+
     const size_t at = HEADER + HEAD; // first in the first record
     assert_int_equal(one.bytes[at], 1);
     assert_int_equal(three.bytes[at], 3);
@@ -94,12 +98,14 @@ TEST(recordings_differ_only_in_the_number_of_threads) {
 TEST(recordings_may_begin_with_a_snapshot) {
     Scene scene = scene_make(NULL, 8);
     test_steps(scene.sim, 3);
+
     Tape tape = {0};
     SingeSimDef hooks = recorded(singe_default_sim(), &tape);
     SingeSim *sim = test_reload(&hooks, scene.sim);
     singe_sim_destroy(scene.sim);
     test_steps(sim, 3);
     singe_sim_destroy(sim);
+
     SingeReplay replay = replay_all(&tape);
     assert_true(replay.same && replay.complete);
     assert_int_equal(replay.steps, 3);
@@ -117,12 +123,14 @@ TEST(what_was_given_up_is_given_up_again) {
     test_steps(scene.sim, 3);
     gives_up = true;
     test_refused(scene.sim, SINGE_ERROR_CANCELLED, singe_sim_step(scene.sim));
+
     uint32_t steps;
     test_refused(scene.sim, SINGE_ERROR_CANCELLED, singe_sim_advance(scene.sim, 0.1, 4, &steps));
     assert_int_equal(steps, 0);
     gives_up = false;
     test_steps(scene.sim, 3);
     singe_sim_destroy(scene.sim);
+
     SingeReplay replay = replay_all(&tape);
     assert_string_equal(replay.what, "");
     assert_true(replay.same && replay.complete);
@@ -144,6 +152,7 @@ TEST(the_first_step_that_differs_is_named) {
     Tape tape = recording();
     const size_t state = tape_find(&tape, STATE, 7);
     const uint64_t step = tape_number(tape.bytes + state + HEAD, 8);
+
     tape.bytes[state + HEAD + 8] ^= 1;
     SingeReplay replay = replay_all(&tape);
     char expected[64];
@@ -194,6 +203,7 @@ TEST(fields_that_an_older_recording_lacks_have_their_defaults) {
     tape.size -= end - second;
     put_number(tape.bytes + count, 1, 4);
     put_number(tape.bytes + wind + 1, size - (end - second), 8);
+
     SingeReplay replay = replay_all(&tape);
     assert_string_equal(replay.what, ""); // only the velocity was another
     assert_true(replay.same && replay.complete);
@@ -236,6 +246,7 @@ TEST(damage_is_an_error_or_a_difference) {
         if (i % 2) at = tape_find(&tape, i % 4 == 1 ? RESULT : STEP, i / 8) + (size_t)(random >> 8) % HEAD;
         const uint8_t before = tape.bytes[at];
         tape.bytes[at] ^= (uint8_t)(1u << (random >> 5) % 8);
+
         SingeSimDef hooks = singe_default_sim();
         SingeReplay replay;
         SingeError error = {0};
@@ -243,6 +254,7 @@ TEST(damage_is_an_error_or_a_difference) {
         else if (!replay.same || !replay.complete) differences++;
         tape.bytes[at] = before;
     }
+
     assert_true(errors > 0 && differences > 0);
     free(tape.bytes);
 }
@@ -253,11 +265,13 @@ TEST(other_bytes_are_no_recording) {
     replay_some(&tape, 0, SINGE_ERROR_FORMAT);
     replay_some(&tape, 64, SINGE_ERROR_FORMAT);
     memcpy(tape.bytes, "SINGEREC", 8);
+
     const uint8_t others[] = {0, FORMAT - 1, FORMAT + 1, 200};
     for (size_t k = 0; k < sizeof others; k++) {
         tape.bytes[8] = others[k];
         replay_some(&tape, 64, SINGE_ERROR_VERSION);
     }
+
     tape.bytes[8] = FORMAT;
     replay_some(&tape, 64, SINGE_ERROR_FORMAT);
 }
@@ -269,9 +283,11 @@ TEST(a_small_recording_cannot_ask_for_endless_work) {
     SingeSim *sim = test_sim(&def, test_grid(3, 3, 0.01f, 0.01f), NULL);
     test_ok(sim, singe_sim_advance(sim, 0.0101, 0, NULL));
     singe_sim_destroy(sim);
+
     const size_t advance = tape_find(&tape, 37, 0);
     const double long_time = 1e6;
     memcpy(tape.bytes + advance + HEAD, &long_time, sizeof long_time);
+
     SingeReplay replay = replay_all(&tape);
     assert_int_equal(replay.steps, 5);
     assert_false(replay.same);
@@ -308,6 +324,7 @@ TEST(a_failing_writer_ends_only_the_recording) {
     int warnings = 0;
     SingeSimDef def = recorded(scene_def(), &tape);
     def.log = (SingeLog){count_warning, &warnings};
+
     Scene scene = scene_make(&def, 10);
     test_steps(scene.sim, 3);
     singe_sim_destroy(scene.sim);
@@ -334,8 +351,10 @@ TEST(a_replay_without_memory_is_an_error) {
     SingeSim *sim = test_sim(&def, test_grid(3, 3, 0.01f, 0.01f), NULL);
     test_steps(sim, 1);
     singe_sim_destroy(sim);
+
     TestAllocator counter = {.fail_at = 4};
     hooks.allocator = test_allocator(&counter);
+
     SingeReplay replay;
     SingeError error;
     assert_int_equal(singe_replay(&hooks, tape.bytes, tape.size, &replay, &error), SINGE_ERROR_MEMORY);

@@ -37,6 +37,7 @@ TEST(set_at_once_is_set_in_the_def) {
         if (k == 0) memcpy(other.gravity, gravity, sizeof gravity);
         if (k == 1) other.pace *= 1.5f;
         if (k == 2) other.ambient_temperature = 330;
+
         test_ok(NULL, scene_build(&other, 8, &made));
         test_steps(set.sim, 20);
         test_steps(made.sim, 20);
@@ -57,6 +58,7 @@ TEST(set_later_is_saved) {
         if (k == 2) test_ok(scene.sim, singe_sim_set_ambient_temperature(scene.sim, 400));
         assert_loads_the_same(scene.sim);
         test_steps(twin.sim, 15);
+
         SingeStats a = singe_sim_stats(scene.sim), b = singe_sim_stats(twin.sim);
         assert_true(a.heat_lost != b.heat_lost || a.speed_rms_unburnt != b.speed_rms_unburnt); // it matters
         assert_true(a.ledger_error < 1e-4);
@@ -71,6 +73,7 @@ TEST(substeps_are_those_of_the_commit) {
     def.solver.substeps = 0;
     SingeMaterialDef material = singe_default_material();
     material.compliance[SINGE_RED] = singe_param(1e3f);
+
     const float gravity[3] = {0, 0, -200};
     SingeSim *sim = test_sim(&def, test_grid(20, 20, 0.00125f, 0.00125f), &material);
     test_steps(sim, 3);
@@ -86,10 +89,12 @@ TEST(warmer_air_warms) {
     assert_true(singe_sim_stats(sim).heat_lost == 0);
     test_ok(sim, singe_sim_set_pace(sim, 10));
     test_ok(sim, singe_sim_set_ambient_temperature(sim, 400));
+
     SingeStats at_once = singe_sim_stats(sim);
     assert_true(fabs(at_once.heat_stored) < 1e-9 && at_once.heat_lost == 0);
     assert_int_equal(singe_sim_timers(sim).steps, 10);
     test_steps(sim, 240);
+
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.temperature_max > 300 && stats.temperature_max < 400);
     assert_true(stats.heat_lost < 0 && stats.ledgers_close);
@@ -102,6 +107,7 @@ TEST(refused_numbers_change_nothing) {
     const float nowhere[3] = {0, NAN, 0}, sideways[3] = {20, 0, -1}, fast[3] = {0, 1e5f, 0}, share[4] = {0};
     SingeMaterialDef material = singe_default_material();
     material.ash_density = singe_param(-1);
+
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_gravity(sim, nowhere));
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_set_gravity(sim, sideways)); // this scene has gas
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_pace(sim, 0));
@@ -110,6 +116,7 @@ TEST(refused_numbers_change_nothing) {
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_velocity(sim, (SingeSheetId){9, 1}, 0, 1, nowhere));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_velocity(sim, scene.sheets[0], 0, 1, nowhere));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_velocity(sim, scene.sheets[0], 3, 1, fast));
+
     assert_int_equal(singe_sim_error(sim)->element, 3);
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_velocity(sim, scene.sheets[0], 80, 1000, nowhere));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_velocity(sim, scene.sheets[0], UINT32_MAX, 1, nowhere));
@@ -118,6 +125,7 @@ TEST(refused_numbers_change_nothing) {
     material = singe_default_material();
     material.mass_min.field = &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "ours"};
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_material(sim, scene.sheets[0], &material, NULL));
+
     test_steps(sim, 10);
     test_steps(twin.sim, 10);
     test_assert_same(sim, twin.sim);
@@ -131,12 +139,14 @@ TEST(refused_numbers_change_nothing) {
 static float surface_differs(SingeSim *sim, float (*from)[3], double seconds) {
     SingeSurface surface = {0};
     test_ok(sim, singe_sim_surface(sim, &surface));
+
     float worst = 0;
     for (uint32_t v = 0; v < surface.vertex_count; v++)
         for (int k = 0; k < 3 && surface.source_vertex[v] >= 0; k++) {
             const float moved = surface.position[v][k] - from[surface.source_vertex[v]][k];
             worst = fmaxf(worst, fabsf(surface.velocity[v][k] - (seconds > 0 ? moved / (float)seconds : 0)));
         }
+
     singe_surface_free(&surface);
     return worst;
 }
@@ -163,6 +173,7 @@ TEST(surfaces_have_the_displacement_since_the_last_frame_as_velocity) {
     take_vertices(sim, from);
     test_steps(sim, 2);
     assert_true(surface_differs(sim, from, 2 * h) < 1e-6f);
+
     SingeSim *loaded = test_reload(NULL, sim);
     assert_true(surface_differs(loaded, from, 2 * h) < 1e-6f);
     test_steps(sim, 2);
@@ -183,12 +194,14 @@ TEST(velocities_throw) {
     SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), NULL);
     SingeSheetId sheet;
     assert_int_equal(singe_sim_sheets(sim, &sheet, 1), 1);
+
     float up[81][3];
     for (int v = 0; v < 81; v++) up[v][0] = up[v][1] = 0, up[v][2] = 2;
     test_steps(sim, 5);
     test_ok(sim, singe_sim_set_velocity(sim, sheet, 0, 81, up[0]));
     SingeView view = singe_sim_view(sim);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_true(fabsf(view.velocity[i][2] - 2) < 1e-5f);
+
     SingeSim *loaded = test_reload(NULL, sim);
     test_steps(sim, 48);
     test_steps(loaded, 48);
@@ -211,6 +224,7 @@ TEST(the_same_material_changes_nothing) {
                                            &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.03f, 3, 5}});
     test_steps(scene.sim, 25);
     test_steps(twin.sim, 25);
+
     test_ok(scene.sim, singe_sim_set_material(scene.sim, scene.sheets[0], &material, NULL));
     test_assert_same(scene.sim, twin.sim);
     test_steps(scene.sim, 25);
@@ -229,6 +243,7 @@ TEST(a_wet_strip_stops_the_fire) {
         SingeMaterialDef dry = singe_default_material(), soaked = dry;
         SingeSimDef def = singe_default_sim();
         def.pace = 20;
+
         SingeSim *sim = test_sim(&def, test_grid(N, N, 0.005f, 0.005f), &dry);
         SingeSheetId sheet;
         singe_sim_sheets(sim, &sheet, 1);
@@ -238,6 +253,7 @@ TEST(a_wet_strip_stops_the_fire) {
         test_steps(sim, 20);
         test_ok(sim, singe_sim_set_material(sim, sheet, &soaked, share));
         test_steps(sim, 480);
+
         SingeView view = singe_sim_view(sim);
         for (uint32_t v = 0; wet && v < view.vertex_count; v++)
             if (share[v] > 0) assert_true(view.mass[v] == 1);
@@ -255,12 +271,14 @@ TEST(a_wet_strip_stops_the_fire) {
 TEST(any_material_can_be_set_at_any_time) {
     SingeSimDef def = scene_def();
     def.solver.tearing = true;
+
     Scene scene;
     test_ok(NULL, scene_build(&def, 12, &scene));
     test_ok(scene.sim, singe_sim_remove_source(scene.sim, scene.callback));
     test_steps(scene.sim, 60);
     SingeStats before = singe_sim_stats(scene.sim);
     assert_true(before.burnt_fraction > 0.02);
+
     SingeMaterialDef material = scene_quick_material();
     material.mass_min = singe_param(0.6f), material.mass_loss = singe_param(0.3f),
     material.char_yield = singe_param(0.7f);
@@ -268,6 +286,7 @@ TEST(any_material_can_be_set_at_any_time) {
     material.compliance[SINGE_GREEN] = singe_param(3), material.grammage = singe_param(5),
     material.thickness = singe_param(1);
     test_ok(scene.sim, singe_sim_set_material(scene.sim, scene.sheets[0], &material, NULL));
+
     SingeStats after = singe_sim_stats(scene.sim);
     assert_true(after.mass == before.mass && after.mass_initial == before.mass_initial);
     assert_int_equal(after.tears, before.tears);
@@ -285,10 +304,12 @@ TEST(without_memory_nothing_changes) {
     Scene scene;
     test_ok(NULL, scene_build(&def, 4, &scene));
     test_steps(scene.sim, 5);
+
     TestBytes before = test_save(scene.sim);
     size_t held = singe_sim_counts(scene.sim).memory;
     SingeMaterialDef material = scene_quick_material();
     material.drag = singe_param(2);
+
     long refused = 0;
     for (int k = 0; k < 2; k++)
         for (long n = 1;; n++) {
@@ -301,6 +322,7 @@ TEST(without_memory_nothing_changes) {
             if (k == 0 && n % 7 == 0) test_assert_saved(scene.sim, &before);
             refused++;
         }
+
     assert_true(refused > 200);
     assert_true(singe_sim_counts(scene.sim).memory < held + held / 4 && singe_sim_counts(scene.sim).memory > held / 2);
     test_steps(scene.sim, 3);
@@ -340,12 +362,15 @@ TEST(frames_may_have_any_length) {
             assert_int_equal(count, of_steps);
             events += (uint32_t)count;
         }
+
     print_message("%u steps, %u events\n", done, events);
     assert_true(events > 20);
+
     SingeSim *loaded = test_reload(NULL, advanced.sim); // with what is left
     test_ok(loaded, singe_sim_advance(loaded, 0.7 * h, 0, &done));
     test_ok(advanced.sim, singe_sim_advance(advanced.sim, 0.7 * h, 0, NULL));
     assert_true(singe_sim_remainder(loaded) == singe_sim_remainder(advanced.sim) && done == 0);
+
     test_ok(loaded, singe_sim_advance(loaded, 0.31 * h, 0, &done));
     test_ok(advanced.sim, singe_sim_advance(advanced.sim, 0.31 * h, 0, NULL));
     test_assert_same(loaded, advanced.sim);
@@ -389,25 +414,30 @@ TEST(advance_takes_at_most_max_steps) {
 TEST(ranges_stay_through_tears) {
     SingeSimDef def = singe_default_sim();
     SingeMaterialDef weak = singe_default_material();
+
     def.solver.tearing = true;
     weak.strength = singe_param(0.05f), weak.char_strength = singe_param(0.05f);
     SingeSim *sim = test_sim(&def, test_grid(10, 10, 0.01f, 0.01f), &weak);
     SingeSheetId sheet;
     singe_sim_sheets(sim, &sheet, 1);
+
     const uint32_t corners[] = {0, 10};
     SingePinDef pin = singe_default_pin();
     pin.sheet = sheet, pin.vertex_count = 2, pin.vertices = corners;
     test_add_pin(sim, &pin);
+
     SingeSheetRange before = singe_sim_sheet_range(sim, sheet);
     assert_int_equal(before.vertex_count, 121);
     assert_int_equal(before.torn_count, 0);
     assert_true(before.reserve_count > 0);
     test_steps(sim, 240);
+
     SingeSheetRange range = singe_sim_sheet_range(sim, sheet);
     SingeView view = singe_sim_view(sim);
     print_message("%u tears\n", range.torn_count);
     assert_true(range.torn_count > 3);
     assert_int_equal(range.torn_count, singe_sim_stats(sim).tears);
+
     for (uint32_t v = 0; v < range.reserve_count; v++) {
         int32_t source = view.source_vertex[range.vertex_first + range.vertex_count + v];
         if (v < range.torn_count) assert_true(source >= 0 && source < 121);

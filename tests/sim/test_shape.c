@@ -14,6 +14,7 @@ static SingeSim *sheet(const uint32_t cells[2], const float size[2]) {
     def.thread_count = 1, def.contact.enabled = true;
     for (int k = 0; k < 2; k++) grid.cells[k] = cells[k], grid.size[k] = size[k];
     assert_int_equal(singe_mesh_create_grid(&grid, &mesh, NULL), SINGE_OK);
+
     SingeSim *sim = test_create(&def);
     SingeSheetDef sheet = singe_default_sheet();
     singe_mesh_fill_sheet(mesh, &sheet);
@@ -48,6 +49,7 @@ TEST(strips_cost_as_squares) {
                 test_steps(sims[k], 1);
                 cost[k] = fmin(cost[k], test_seconds() - begun);
             }
+
     for (int k = 0; k < SHAPES; k++) {
         print_message("%s: %.1f ms a step, %.2f times squares\n", shapes[k].name, 1e3 * cost[k], cost[k] / cost[0]);
         singe_sim_destroy(sims[k]);

@@ -5,6 +5,7 @@ TEST(a_million_springs_take_few_bytes) {
     TestAllocator hook = {0};
     SingeSimDef def = singe_default_sim();
     def.allocator = test_allocator(&hook);
+
     SingeSim *sim = test_sim(&def, test_grid(317, 316, 0.001f, 0.001f), NULL);
     SingeCounts counts = singe_sim_counts(sim);
     uint64_t springs = 0;

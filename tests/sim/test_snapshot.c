@@ -18,9 +18,11 @@ TEST(resumed_runs_are_the_same) {
     for (size_t k = 0; k < sizeof saves / sizeof *saves; k++) {
         Scene scene = scene_make(NULL, 14);
         test_steps(scene.sim, saves[k]);
+
         SingeSim *resumed = test_reload(NULL, scene.sim);
         test_assert_same(scene.sim, resumed);
         test_ok(resumed, singe_sim_set_source_callback(resumed, scene.callback, scene_flux, &flux_strength));
+
         for (int i = 0; i < 40; i++) {
             test_ok(scene.sim, singe_sim_step(scene.sim));
             test_ok(resumed, singe_sim_step(resumed));
@@ -48,9 +50,11 @@ TEST(bytes_are_the_same) {
     memcpy(&def, &standard, sizeof def);
     def.allocator = test_allocator(&hook);
     Scene b = scene_make(&def, 9);
+
     test_steps(a.sim, 12);
     test_steps(b.sim, 12);
     test_assert_same(a.sim, b.sim);
+
     TestBytes first = test_save(a.sim);
     test_assert_saved(a.sim, &first);
     SingeSim *loaded = test_load(NULL, &first);
@@ -67,13 +71,16 @@ TEST(handles_keep_their_values) {
     test_ok(scene.sim, singe_sim_remove_source(scene.sim, scene.ball));
     test_ok(scene.sim, singe_sim_remove_collider(scene.sim, scene.sphere));
     test_ok(scene.sim, singe_sim_remove_pin(scene.sim, scene.points));
+
     SingeSourceId fresh = test_spot(scene.sim, 0, 0, 0, 0.01f, 900, 100);
     TestBytes bytes = test_save(scene.sim);
     TestAllocator hook = {0};
     SingeSimDef hooks = singe_default_sim();
     hooks.allocator = test_allocator(&hook);
+
     SingeSim *sim;
     test_ok(NULL, singe_sim_load(&hooks, bytes.data, bytes.size, &sim, NULL));
+
     SingePoseKey key = test_key(0, 0, 0, 0);
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_source(sim, scene.ball));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_collider(sim, scene.sphere));
@@ -89,6 +96,7 @@ TEST(handles_keep_their_values) {
     SingePinDef pin = singe_default_pin();
     const uint32_t vertex = 1;
     SingePinId id;
+
     pin.sheet = sheet, pin.vertex_count = 1, pin.vertices = &vertex;
     test_ok(sim, singe_sim_add_pin(sim, &pin, &id)); // into a free slot, which held nothing
     assert_int_equal(id.index, scene.points.index);
@@ -104,12 +112,14 @@ TEST(clones_are_independent) {
     SingeSim *copy;
     test_ok(scene.sim, singe_sim_clone(scene.sim, &copy));
     test_assert_same(scene.sim, copy);
+
     TestBytes before = test_save(scene.sim);
     test_steps(copy, 30); // with its callback source: no need to set it again
     test_assert_saved(scene.sim, &before);
     test_steps(scene.sim, 30);
     test_assert_same(scene.sim, copy);
     test_ok(copy, singe_sim_remove_pin(copy, scene.points));
+
     test_steps(copy, 10);
     test_steps(scene.sim, 10);
     singe_sim_destroy(scene.sim);
@@ -123,11 +133,13 @@ static void refuse(uint8_t *bytes, size_t size, const char *what) {
     TestAllocator hook = {0};
     SingeSimDef hooks = singe_default_sim();
     hooks.allocator = test_allocator(&hook);
+
     SingeSim *sim = (SingeSim *)1;
     SingeError error = {0};
     SingeResult result = singe_sim_load(&hooks, bytes, size, &sim, &error);
     if (result != SINGE_ERROR_FORMAT && result != SINGE_ERROR_VERSION)
         fail_msg("%s: %s", what, singe_result_name(result));
+
     assert_null(sim);
     assert_int_equal(error.code, result);
     assert_string_equal(error.stage, "load");
@@ -152,23 +164,27 @@ TEST(the_state_after_any_step_loads) {
         SingeSimDef def = singe_default_sim();
         SingeSim *sim;
         test_ok(NULL, singe_sim_create(&def, &sim, NULL));
+
         TestMesh mesh = test_grid(3, 3, 0.01f, 0.01f);
         SingeSheetDef sheet = test_sheet(&mesh);
         sheet.material.temperature = singe_param(temperatures[k % 4]);
         sheet.material.grammage = singe_param(masses[k / 4 % 3]);
         sheet.material.specific_heat = singe_param(heats[k / 12 % 3]);
         sheet.material.convection = singe_param(exchanges[k / 36 % 3]);
+
         float white = 1;
         SingeSourceDef source = singe_default_source();
         source.kind = SINGE_SOURCE_TEXTURE;
         source.texture = (SingeTexture){1, 1, &white};
         source.flux = fluxes[k / 108];
+
         SingeSourceId id;
         SingeResult result = singe_sim_add_sheet(sim, &sheet, NULL);
         if (!result) result = singe_sim_commit(sim);
         if (!result) result = singe_sim_add_source(sim, &source, &id);
         refused += result != SINGE_OK;
         assert_true(result || temperatures[k % 4] <= 1e4f);
+
         for (int i = 0; !result && i < 3; i++) {
             (void)(singe_sim_step(sim) == SINGE_OK);
             SingeSim *copy = test_reload(NULL, sim);
@@ -176,6 +192,7 @@ TEST(the_state_after_any_step_loads) {
             singe_sim_destroy(copy);
             loaded++;
         }
+
         test_mesh_free(&mesh);
         singe_sim_destroy(sim);
     }
@@ -233,16 +250,19 @@ TEST(forged_snapshots_are_refused) {
     int refused = 0;
     uint32_t same;
     memcpy(&same, good.data + HEADER, sizeof same);
+
     TestBytes untouched = {malloc(good.size), good.size};
     assert_non_null(untouched.data);
     memcpy(untouched.data, good.data, good.size);
     forge(&untouched, 0, same);
     assert_memory_equal(untouched.data, good.data, good.size); // the checksum is where it is put
     free(untouched.data);
+
     for (int k = 0; k < 600; k++) {
         TestBytes bytes = {malloc(good.size), good.size};
         assert_non_null(bytes.data);
         memcpy(bytes.data, good.data, good.size);
+
         for (int change = 0; change < 2; change++) {
             random = random * 1664525u + 1013904223u;
             size_t body = good.size - HEADER - 3, at = (k < 300 ? (size_t)k * 8 : random >> 4) % body / 4 * 4;
@@ -253,10 +273,12 @@ TEST(forged_snapshots_are_refused) {
         TestAllocator hook = {0};
         SingeSimDef hooks = singe_default_sim();
         hooks.allocator = test_allocator(&hook);
+
         SingeSim *sim;
         SingeError error = {0};
         SingeResult result = singe_sim_load(&hooks, bytes.data, bytes.size, &sim, &error);
         refused += result != SINGE_OK;
+
         for (int step = 0; !result && step < 2; step++)
             if (singe_sim_step(sim)) break;
         if (!result) singe_sim_destroy(sim);
@@ -418,6 +440,7 @@ TEST(other_versions_are_refused) {
     assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &sim, &error), SINGE_ERROR_FORMAT);
     assert_int_equal(singe_sim_load(&hooks, NULL, 0, &sim, NULL), SINGE_ERROR_FORMAT);
     hooks.thread_count = 0;
+
     bytes.data[0] = 'S';
     assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &sim, &error), SINGE_ERROR_ARGUMENT);
     free(bytes.data);
@@ -427,6 +450,7 @@ TEST(other_versions_are_refused) {
 TEST(hooks_are_only_hooks) {
     Scene scene = scene_make(NULL, 8);
     test_steps(scene.sim, 5);
+
     SingeSimDef hooks = singe_default_sim();
     hooks.time_step = 0.001f, hooks.gravity[2] = 5, hooks.pace = 3, hooks.solver.substeps = 1, hooks.thread_count = 2;
     SingeSim *sim = test_reload(&hooks, scene.sim);

@@ -22,6 +22,7 @@ TEST(ledgers_close) {
     print_message("ledger errors: heat %.1e, mass %.1e\n", worst_heat, worst_mass);
     assert_true(worst_heat < 1e-5);
     assert_true(worst_mass < 1e-6);
+
     SingeStats stats = singe_sim_stats(scene.sim);
     assert_true(stats.heat_of_combustion > 0 && stats.heat_lost > 0 && stats.mass_removed > 0 &&
                 stats.burnt_fraction > 0.3);
@@ -47,6 +48,7 @@ TEST(energies_are_accounted_for) {
             const double v = g * (1 - exp(-rate * time * (i + 0.5) / 1000)) / rate;
             taken += rate * mass * v * v * time / 1000;
         }
+
         print_message("damping %g: kinetic %.4g J, gravity %.4g J, lost %.4g J, to damping %.4g J\n", rate,
                       stats.energy_kinetic, stats.energy_gravity, stats.energy_lost, taken);
         assert_true(fabs(stats.energy_lost - taken) < 4e-3 * fabs(stats.energy_gravity));
@@ -62,9 +64,11 @@ TEST(energies_are_accounted_for) {
     SingeSim *sim = test_sim(&def, test_grid(16, 4, 0.0025f, 0.0025f), &material);
     float points[3 * 10] = {0};
     for (int k = 0; k < 10; k++) points[3 * k] = k < 5 ? 0 : 0.0025f, points[3 * k + 1] = 0.0025f * (float)(k % 5);
+
     SingePinDef pin = singe_default_pin();
     pin.sheet = (SingeSheetId){0, 1}, pin.points = points, pin.point_count = 10, pin.radius = 1e-4f;
     test_add_pin(sim, &pin);
+
     double passed = 0, elastic = 0, lost = 0;
     for (int i = 0; i < 160; i++) {
         test_steps(sim, 1);
@@ -87,6 +91,7 @@ TEST(a_hot_sheet_does_not_blur_another) {
     for (int run = 0; run < 2 * PACES; run++) {
         SingeSimDef def = singe_default_sim();
         def.pace = paces[run % PACES];
+
         SingeMaterialDef light = singe_default_material(), heavy = singe_default_material();
         light.mass_rate = heavy.mass_rate = singe_param(0);
         light.grammage = singe_param(0.02f), heavy.grammage = singe_param(2);
@@ -104,6 +109,7 @@ TEST(a_hot_sheet_does_not_blur_another) {
             test_add_sheet(sim, &added);
             test_mesh_free(&mesh);
         }
+
         test_ok(sim, singe_sim_commit(sim));
         test_steps(sim, 10);
 
@@ -129,13 +135,16 @@ TEST(bad_cells_burn_and_stay_above_the_air) {
     for (uint32_t seed = 0; seed < 2; seed++) {
         SingeSimDef def = scene_def();
         def.solver.tearing = seed == 1;
+
         SingeMaterialDef material = scene_quick_material();
         TestMesh mesh = test_grid(20, 20, 0.01f, 0.01f);
         for (uint32_t v = 0; v < mesh.vertex_count; v++)
             for (uint32_t k = 0; k < 2; k++)
                 mesh.positions[3 * v + k] += 0.0084f * (random_unit(random_hash(v, k, seed, 9)) - 0.5f);
+
         SingeSim *sim = test_sim(&def, mesh, &material);
         test_spot(sim, 0.1f, 0.1f, 0, 0.05f, 1500, 1000);
+
         for (int step = 0; step < 160; step++) {
             test_ok(sim, singe_sim_step(sim));
             SingeView view = singe_sim_view(sim);
@@ -158,6 +167,7 @@ TEST(ledgers_that_do_not_close_are_reported) {
     material.temperature = singe_param(400);
     SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), &material);
     test_steps(sim, 40);
+
     SingeStats stats = singe_sim_stats(sim);
     print_message("pace 1e-6: ledger error %.2g\n", stats.ledger_error);
     assert_true(stats.ledger_error > SINGE_LEDGER_BOUND && !stats.ledgers_close);
@@ -173,6 +183,7 @@ TEST(combustion_is_eta_times_mass) {
     SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), &material);
     test_spot(sim, 0.04f, 0.04f, 0, 0.02f, 1500, 1000);
     test_steps(sim, 100);
+
     SingeStats stats = singe_sim_stats(sim);
     double expected = stats.mass_burnt * (double)material.specific_heat.value * 1500;
 
@@ -196,6 +207,7 @@ TEST(statistics_match_the_view) {
         uint32_t n = 0, springs = 0, cells = 0, particles = 0;
         float *strain = malloc(view.spring_count[SINGE_BLUE] * sizeof *strain), hottest = 0;
         assert_non_null(strain);
+
         double sum = 0;
         for (uint32_t k = 0; k < view.spring_count[SINGE_BLUE]; k++) {
             const uint32_t *ends = view.springs[SINGE_BLUE][k];
@@ -213,6 +225,7 @@ TEST(statistics_match_the_view) {
         assert_true(fabs(stats.strain_max - (double)strain[n - 1]) < 1e-6);
         assert_true(fabs(stats.strain_p99 - (double)strain[(size_t)(0.99 * (n - 1))]) < 1e-6);
         free(strain);
+
         for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
             for (uint32_t k = 0; k < view.spring_count[c]; k++) springs += view.spring_flags[c][k] & SINGE_ALIVE;
         for (uint32_t c = 0; c < view.cell_count; c++) cells += view.cell_flags[c] & SINGE_ALIVE;
@@ -237,11 +250,13 @@ TEST(a_sheet_at_rest_has_no_strain) {
                 stats.burnt_fraction == 0);
     assert_true(stats.strain_max < 1e-6 && stats.heat_stored == 0 && stats.ledger_error == 0 &&
                 stats.mass_ledger_error < 1e-12);
+
     assert_int_equal(stats.inverted_cells, 0);
     assert_int_equal(stats.pieces, 1);
     assert_true(fabsf(stats.temperature_max - 293.15f) < 1e-3f);
     assert_true(stats.thickening >= 1);
     test_steps(sim, 12);
+
     double speed = singe_sim_stats(sim).speed_rms_unburnt; // falls freely, less a little air
     assert_true(speed > 0.1 && speed < 9.81 * 12 / 480 + 1e-6);
     singe_sim_destroy(sim);
@@ -255,10 +270,12 @@ TEST(heat_without_fire_is_stored_or_lost) {
     SingeSim *sim = test_sim(&def, test_grid(6, 6, 0.01f, 0.01f), &material);
     SingeSourceId spot = test_spot(sim, 0.03f, 0.03f, 0, 0.05f, 450, 200);
     test_steps(sim, 30);
+
     SingeStats hot = singe_sim_stats(sim);
     assert_true(hot.heat_in > 0 && hot.heat_stored > 0.1 * hot.heat_in && hot.heat_of_combustion == 0);
     test_ok(sim, singe_sim_remove_source(sim, spot));
     test_steps(sim, 240 * 30);
+
     SingeStats cold = singe_sim_stats(sim);
     assert_true(cold.heat_in == hot.heat_in);
     assert_true(fabs(cold.heat_stored) < 2e-3 * cold.heat_in);
@@ -272,6 +289,7 @@ TEST(a_front_runs_along_a_strip) {
     SingeSimDef def = singe_default_sim();
     def.gravity[2] = 0;
     def.pace = 4;
+
     SingeSim *sim = test_sim(&def, test_grid(50, 4, size, size), NULL);
     SingeSourceId spot = test_spot(sim, 0, 0.004f, 0, 0.006f, 1100, 200);
     double gate[2] = {0, 0}; // s, when the middle line had ignited up to 40 % and 90 %
@@ -282,6 +300,7 @@ TEST(a_front_runs_along_a_strip) {
             float d[2] = {view.rest_position[i][0] - (k ? 0.9f : 0.4f) * length, view.rest_position[i][1] - 0.004f};
             if (fabsf(d[0]) + fabsf(d[1]) < 1e-5f) hit[k] = i;
         }
+
     for (int step = 0; step < 480 * 6 && gate[1] == 0; step++) {
         test_ok(sim, singe_sim_step(sim));
         if (step == 240) test_ok(sim, singe_sim_remove_source(sim, spot));

@@ -14,6 +14,7 @@ static SingeSim *lit(float moisture, bool burns) {
     SingeSimDef def = singe_default_sim();
     def.gravity[2] = 0;
     def.solver.substeps = 1;
+
     SingeMaterialDef material = singe_default_material();
     material.moisture = singe_param(moisture);
     material.convection = singe_param(0);
@@ -21,6 +22,7 @@ static SingeSim *lit(float moisture, bool burns) {
     material.drag = singe_param(0);
     material.ablate = false;
     if (!burns) material.mass_rate = singe_param(0);
+
     SingeSim *sim = test_sim(&def, test_grid(4, 4, 5e-3f, 5e-3f), &material);
     SingeSourceDef source = singe_default_source();
     source.kind = SINGE_SOURCE_TEXTURE;
@@ -56,6 +58,7 @@ TEST(nothing_wet_is_hotter_than_boiling) {
     SingeSim *sim = lit(0.5f, false);
     double mass = 4e-4 * 2 * GRAMMAGE, before = singe_sim_stats(sim).water;
     assert_true(fabs(before / (0.5 * mass) - 1) < 1e-5);
+
     for (int k = 0; k < 200; k++) {
         test_steps(sim, 4);
         SingeStats stats = singe_sim_stats(sim);
@@ -66,6 +69,7 @@ TEST(nothing_wet_is_hotter_than_boiling) {
         const double heat = (before - stats.water) * (2.257e6 + 4186 * 80);
         assert_true(fabs(stats.heat_lost - heat) < 1e-3 * (before * 2.6e6));
     }
+
     assert_true(singe_sim_stats(sim).water == 0 && singe_sim_stats(sim).temperature_max > 500);
     singe_sim_destroy(sim);
 }
@@ -76,6 +80,7 @@ static SingeSim *rained_on(float wetting, int steps) {
     SingeSourceDef rain = singe_default_source();
     SingeSourceId id, heat;
     const SingeValueKey strength[] = {{300 / 480.0f, 0}, {301 / 480.0f, 1}};
+
     singe_sim_sources(sim, &heat, 1);
     rain.kind = SINGE_SOURCE_WATER;
     rain.texture = (SingeTexture){1, 1, &WHITE};
@@ -83,9 +88,11 @@ static SingeSim *rained_on(float wetting, int steps) {
     rain.strength_count = 2;
     rain.strength = strength;
     test_ok(sim, singe_sim_add_source(sim, &rain, &id));
+
     test_steps(sim, 400);
     test_ok(sim, singe_sim_remove_source(sim, heat));
     test_steps(sim, steps);
+
     return sim;
 }
 
@@ -93,6 +100,7 @@ TEST(rain_puts_a_fire_out) {
     SingeSim *dry = rained_on(0, 100), *wet = rained_on(1, 100);
     assert_true(singe_sim_stats(dry).temperature_max > 600);
     assert_true(singe_sim_stats(wet).temperature_max < 380);
+
     SingeView view = singe_sim_view(wet);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_true(view.burn_rate[i] == 0);
     assert_true(singe_sim_stats(wet).mass > singe_sim_stats(dry).mass);
@@ -119,6 +127,7 @@ static SingeSim *put_out(float speed, float blow_out, bool smothers, float condu
     SingeColliderDef plate = singe_default_collider();
     SingeSourceId id, heat;
     const SingeValueKey strength[] = {{170 / 480.0f, 0}, {171 / 480.0f, 1}};
+
     singe_sim_sources(sim, &heat, 1);
     jet.kind = SINGE_SOURCE_JET;
     jet.radius = 0.05f;
@@ -129,6 +138,7 @@ static SingeSim *put_out(float speed, float blow_out, bool smothers, float condu
     jet.strength = strength;
     test_ok(sim, singe_sim_add_source(sim, &jet, &id));
     test_steps(sim, 170);
+
     const SingePoseKey below = {.position = {0, 0, -0.1f}, .rotation = {0, 0, 0, 1}};
     test_ok(sim, singe_sim_move_source(sim, id, 1, &below));
     plate.position[2] = -1.5e-3f;
@@ -138,6 +148,7 @@ static SingeSim *put_out(float speed, float blow_out, bool smothers, float condu
     test_ok(sim, singe_sim_remove_source(sim, heat));
     test_steps(sim, 160);
     assert_true(singe_sim_stats(sim).ledgers_close);
+
     return sim;
 }
 
@@ -149,6 +160,7 @@ TEST(a_jet_blows_a_fire_out) {
                   (double)free_.temperature_max, (double)cooled.temperature_max, (double)out.temperature_max);
     assert_true(out.mass > cooled.mass && cooled.mass > free_.mass);
     assert_true(out.temperature_max < 513); // below ignition, so it stays out
+
     const SingeView view = singe_sim_view(blown);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_true(view.burn_rate[i] == 0);
 
@@ -174,10 +186,12 @@ static SingeSim *covered_by(float cover_rate, float height, float distance, bool
     def.thread_count = threads;
     def.gravity[2] = 0;
     def.solver.substeps = 1;
+
     SingeSheetId burning, cover;
     SingeSim *sim = test_create(&def);
     TestMesh low = test_grid(8, 8, 2.5e-3f, 2.5e-3f), high = test_grid(4, 4, 5e-3f, 5e-3f);
     test_mesh_move(&high, 0, 0, height);
+
     SingeSheetDef sheet = test_sheet(&low), above = test_sheet(&high);
     sheet.material.drag = above.material.drag = singe_param(0);
     sheet.material.ablate = false;
@@ -192,8 +206,10 @@ static SingeSim *covered_by(float cover_rate, float height, float distance, bool
     source.texture = (SingeTexture){1, 1, &WHITE};
     source.flux = (float)FLUX;
     SingeSourceId heat = test_add_source(sim, &source);
+
     test_steps(sim, 200);
     test_ok(sim, singe_sim_remove_source(sim, heat));
+
     SingeMaterialDef *keeps = from_above ? &above.material : &sheet.material;
     keeps->smother_distance = singe_param(distance);
     test_ok(sim, singe_sim_set_material(sim, from_above ? cover : burning, keeps, NULL));
@@ -234,6 +250,7 @@ TEST(a_sheet_smothers_a_fire) {
     SingeSim *loaded = test_reload(NULL, near);
     test_steps(near, 20), test_steps(loaded, 20);
     test_assert_same(near, loaded);
+
     SingeSim *all[] = {plain, near, again, far, own, loaded};
     for (int k = 0; k < 6; k++) singe_sim_destroy(all[k]);
 }
@@ -264,11 +281,13 @@ static double flames_above(float distance) {
     SingeSim *sim = test_create(&def);
     TestMesh low = test_grid(8, 8, 5e-3f, 5e-3f), high = test_grid(10, 10, 8e-3f, 8e-3f);
     test_mesh_move(&high, -20e-3f, -20e-3f, 3e-3f);
+
     SingeSheetDef sheet = test_sheet(&low), blanket = test_sheet(&high);
     sheet.material.drag = blanket.material.drag = singe_param(0);
     sheet.material.ablate = false;
     sheet.material.air_supply = singe_param(INFINITY);
     sheet.material.temperature = singe_param(800); // gives off gas whatever its flame does
+
     blanket.material.mass_rate = singe_param(0);
     blanket.material.smother_distance = singe_param(distance);
     test_add_sheet(sim, &sheet);
@@ -309,16 +328,19 @@ TEST(bad_water_is_refused) {
     SingeSim *sim = lit(0, true);
     SingeSourceDef rain = singe_default_source();
     SingeSourceId id;
+
     rain.kind = SINGE_SOURCE_WATER;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &rain, &id)); // no picture
     rain.texture = (SingeTexture){1, 1, &WHITE};
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &rain, &id)); // a dry sheet has no room
     singe_sim_destroy(sim);
+
     sim = lit(0.01f, true);
     rain.wetting = -1;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &rain, &id));
     rain.wetting = 1;
     test_ok(sim, singe_sim_add_source(sim, &rain, &id));
+
     SingeMaterialDef material = singe_default_material();
     material.moisture = singe_param(3.5f);
     SingeSheetId sheet;

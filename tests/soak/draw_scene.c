@@ -68,6 +68,7 @@ static double draw_number(Draw *draw, const Schema *schema, const SchemaRow *row
             low = fmax(low, limits[k].low), high = fmin(high, limits[k].high);
             return low + share(draw) * (high - low);
         }
+
     double x = usual * exp(2 * share(draw) - 1), how = share(draw);
     if (usual == 0) x = 0.1 * share(draw) * fmin(high, 1);
     if (draw->wild && how < 0.1) x = how < 0.05 ? low : high;
@@ -98,6 +99,7 @@ static void put_list(Draw *draw, const SchemaRow *row, void *object) {
     int count = some + pick(draw, sheets ? 5 : 3);
     draw->moment = 0;
     putchar('[');
+
     for (int i = 0; i < count; i++) {
         if (i) fputs(", ", stdout);
         void *item = row_begin(draw->arena, row, object);
@@ -115,6 +117,7 @@ static void put_param(Draw *draw, const Schema *schema, const SchemaRow *row, co
         put_number(draw, schema, row, (double)param.value);
         return;
     }
+
     if (pick(draw, 3) == 0 && !scene_param_lasts(row->key)) {
         for (int i = 0, count = 1 + pick(draw, 3); i < count; i++) {
             printf("%s{\"time\": %g, \"value\": ", i ? ", " : "[", 0.03 * i);
@@ -123,6 +126,7 @@ static void put_param(Draw *draw, const Schema *schema, const SchemaRow *row, co
         }
         return;
     }
+
     fputs("{\"from\": ", stdout);
     put_number(draw, schema, row, (double)param.value);
     fputs(", \"to\": ", stdout);
@@ -207,15 +211,18 @@ static bool is_drawn(Draw *draw, const Schema *schema, const SchemaRow *row) {
     static const RowType left_out[] = {ROW_TEXT, ROW_NAME, ROW_FILE, ROW_STRENGTH};
     for (size_t k = 0; k < sizeof left_out / sizeof *left_out; k++)
         if (row->type == left_out[k]) return false;
+
     static const char *const always[] = {"frames",  "steps",     "sheets", "substeps",  "grid",     "size",
                                          "samples", "cell_size", "points", "translate", "position", "path"};
     if (row->type == ROW_BASE) return pick(draw, 2);
     if (strcmp(row->key, "measured") == 0) return false; // nothing is computed from it
     if (row->flags & ROW_SHORT) return false;
     if (strcmp(row->key, "height") == 0 && strcmp(schema->title, "the gas") == 0) return true;
+
     for (size_t k = 0; k < sizeof always / sizeof *always; k++)
         if (strcmp(always[k], row->key) == 0) return true;
     if (row->flags & ROW_REQUIRED) return true;
+
     return row->type == ROW_MAP || row->type == ROW_LIST ? pick(draw, 2) : pick(draw, 4) == 0;
 }
 
@@ -234,6 +241,7 @@ static unsigned put_kind(Draw *draw, const Schema *schema) {
         if (strcmp(schema->rows[i].key, "kind") == 0) row = &schema->rows[i];
     int count = 0, kind;
     if (!row || !schema->kind_offset) return ~0u;
+
     while (row->names[count]) count++;
     do kind = pick(draw, count);
     while (!row->names[kind][0] || needs_file(schema, 1u << kind)); // kinds for programs have no name here
@@ -247,20 +255,24 @@ static void put_map(Draw *draw, const Schema *schema, void *object) {
     if (!object) exit(2);
     draw->first = true;
     putchar('{');
+
     unsigned kind = put_kind(draw, schema);
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
         if (!row_allowed(row, kind) || (kind != ~0u && strcmp(row->key, "kind") == 0)) continue;
         if (path && (row->type == ROW_LIST || row->type == ROW_ROTATION)) continue; // a place, or a path
         if (row->sub && needs_file(row->sub, ~0u)) continue;
+
         const bool paced = strcmp(row->key, "pace") == 0 || strcmp(row->key, "burn_by") == 0;
         const bool refused = (draw->keyed && paced) || (draw->paper && strcmp(row->key, "isotropic") == 0);
         if (refused || !is_drawn(draw, schema, row)) continue;
+
         draw->keyed |= (row->flags & ROW_KEYED) != 0;
         put_key(draw, row->key);
         put_value(draw, schema, row, object);
         path |= row->type == ROW_POSITION;
     }
+
     putchar('}');
     draw->first = outer;
 }
@@ -272,6 +284,7 @@ static bool end_of(const SchemaRow *row, bool high, double *end) {
     const bool whole =
         row->type == ROW_INT || row->type == ROW_UINT32 || row->type == ROW_UINT64 || row->type == ROW_INTS;
     if ((!real && !whole) || !(row->max > row->min)) return false;
+
     *end = high ? row->max : row->min;
     if (real && !high && (row->flags & ROW_OPEN_MIN)) *end = (double)nextafterf((float)row->min, INFINITY);
     if (real && high && (row->flags & ROW_OPEN_MAX)) *end = (double)nextafterf((float)row->max, -INFINITY);
@@ -290,6 +303,7 @@ static void put_ends(const Schema *schema, const char *path) {
         double end[2];
         snprintf(at, sizeof at, "%s%s%s%s", path, *path ? "." : "", row->key, row->type == ROW_LIST ? ".0" : "");
         if (row->sub && row->type != ROW_STRENGTH) put_ends(row->sub, at);
+
         const bool number = end_of(row, false, &end[0]) && end_of(row, true, &end[1]);
         if (!number && row->type != ROW_ENUM && row->type != ROW_BOOL) continue;
 
@@ -298,10 +312,12 @@ static void put_ends(const Schema *schema, const char *path) {
         for (int k = 0; kinds && kinds != row && kinds->names[k]; k++)
             if (row->kinds >> k & 1) printf("%s\"%s\"", first ? "" : ", ", kinds->names[k]), first = false;
         fputs("], \"values\": [", stdout);
+
         for (int k = 0; number && k < 2; k++) {
             quantity_print((float)end[k], row->dimension, text[k], sizeof text[k]);
             printf("%s%s", k ? ", " : "", text[k]);
         }
+
         if (number && (row->flags & ROW_INF)) fputs(", \"inf\"", stdout);
         if (row->type == ROW_BOOL) fputs("false, true", stdout);
         for (int k = 0; row->type == ROW_ENUM && row->names[k]; k++) printf("%s\"%s\"", k ? ", " : "", row->names[k]);
@@ -322,6 +338,7 @@ int main(int argc, char **argv) {
         fputs("usage: draw_scene SEED | --ends\n", stderr);
         return 2;
     }
+
     draw.wild = pick(&draw, 2);
     put_map(&draw, &schema_scene, scene);
     putchar('\n');

@@ -14,6 +14,7 @@ static void *allocator_resize(void *context, void *block, size_t old_size, size_
     TestAllocator *allocator = context;
     BlockHead *old = block ? (BlockHead *)block - 1 : NULL;
     if ((old && (old->mark != block_mark || old->size != old_size)) || (!old && old_size)) allocator->faults++;
+
     if (new_size == 0) {
         if (!old) return NULL;
         allocator->frees++;
@@ -29,6 +30,7 @@ static void *allocator_resize(void *context, void *block, size_t old_size, size_
     if (allocator->fail_at &&
         (allocator->once ? allocator->calls == allocator->fail_at : allocator->calls >= allocator->fail_at))
         return NULL;
+
     BlockHead *head = malloc(sizeof *head + new_size);
     if (!head) return NULL;
 

@@ -30,11 +30,13 @@ TestMesh test_grid(uint32_t nx, uint32_t ny, float dx, float dy) {
         for (uint32_t i = 0; i <= nx; i++)
             mesh_vertex(&mesh, j * (nx + 1) + i, (double)i * (double)dx, (double)j * (double)dy, 0, (double)i / nx,
                         (double)j / ny);
+
     for (uint32_t j = 0; j < ny; j++)
         for (uint32_t i = 0; i < nx; i++) {
             uint32_t v = j * (nx + 1) + i;
             mesh_cell(&mesh, j * nx + i, v, v + 1, v + nx + 2, v + nx + 1);
         }
+
     return mesh;
 }
 
@@ -46,12 +48,14 @@ TestMesh test_cylinder(uint32_t around, uint32_t along, float radius, float leng
             mesh_vertex(&mesh, j * around + i, (double)radius * cos(a), (double)radius * sin(a),
                         (double)length * j / along, (double)i / around, (double)j / along);
         }
+
     for (uint32_t j = 0; j < along; j++)
         for (uint32_t i = 0; i < around; i++) {
             uint32_t next = (i + 1) % around;
             mesh_cell(&mesh, j * around + i, j * around + i, j * around + next, (j + 1) * around + next,
                       (j + 1) * around + i);
         }
+
     return mesh;
 }
 
@@ -63,11 +67,13 @@ TestMesh test_torus(uint32_t around, uint32_t tube, float radius, float tube_rad
             mesh_vertex(&mesh, j * around + i, r * cos(a), r * sin(a), (double)tube_radius * sin(b), (double)i / around,
                         (double)j / tube);
         }
+
     for (uint32_t j = 0; j < tube; j++)
         for (uint32_t i = 0; i < around; i++) {
             uint32_t next = (i + 1) % around, up = (j + 1) % tube;
             mesh_cell(&mesh, j * around + i, j * around + i, j * around + next, up * around + next, up * around + i);
         }
+
     return mesh;
 }
 

@@ -71,10 +71,12 @@ SingeResult test_life(SingeSimDef def, SingeAllocator allocator) {
     const TestAllocator *counter = allocator.context;
     SingeSheetId id;
     SingeSim *sim;
+
     def.allocator = allocator;
     SingeResult result = singe_sim_create(&def, &sim, NULL);
     if (!result) result = singe_sim_add_sheet(sim, &sheet, &id);
     if (!result) result = singe_sim_commit(sim);
+
     const long calls = counter->calls;
     if (!result) result = singe_sim_step(sim);
     assert_int_equal(counter->calls, calls);
@@ -88,6 +90,7 @@ SingePoseKey test_key(float time, float x, float y, float z) { return (SingePose
 SingeSourceId test_spot(SingeSim *sim, float x, float y, float z, float radius, float temperature, float conductance) {
     SingeSourceDef def = singe_default_source();
     SingePoseKey key = test_key(0, x, y, z);
+
     def.kind = SINGE_SOURCE_SPOT;
     def.path_count = 1;
     def.path = &key;

@@ -95,11 +95,13 @@ static inline void expect_linear_fields(const Drawing *d, Linear level, double n
         assert_float_equal(s->temperature_peak[v], value_at(linear_fields.peak, p), 1e-3);
         assert_float_equal(s->burn_rate[v], value_at(linear_fields.rate, p), 1e-5);
         assert_float_equal(s->time_ignited[v], value_at(linear_fields.ignited, p), 2e-5);
+
         for (int k = 0; k < 3; k++)
             assert_float_equal(s->velocity[v][k], value_at(linear_fields.velocity[k], p), k == 1 ? 0 : 2e-5);
         assert_float_equal(p[2], 0.5 * (double)p[0], 2e-6);
         assert_float_equal(s->uv[v][0], (double)p[0] / nx, 1e-6);
         assert_float_equal(s->uv[v][1], (double)p[1] / ny, 1e-6);
+
         for (int k = 0; k < 2; k++) assert_float_equal(s->rest_position[v][k], p[k], 1e-6);
         assert_float_equal(s->rest_position[v][2], 0, 0);
         assert_float_equal(s->normal[v][0], -0.5 / sqrt(1.25), normal_tolerance);
@@ -121,6 +123,7 @@ static inline void tear_along(Drawing *d, uint32_t row, uint32_t length) {
         split_fan(&b->shell, split.vertex, &fan);
         for (int k = 0; k < fan.count; k++) split.cells |= (uint32_t)(fan.cell[k] >= row * b->nx) << k;
         assert_true(split_is_possible(&b->shell, &fan, &split));
+
         uint32_t spare = split_vertex(&b->shell, &fan, &split).spare;
         memcpy(b->state.dynamics.position[spare], b->state.dynamics.position[split.vertex], 16);
         b->state.burn.mass[spare] = b->state.burn.mass[split.vertex];
@@ -134,6 +137,7 @@ static inline void burn_rings(Drawing *d, float time) {
     const float at[3][2] = {{0.031f, 0.042f}, {0.068f, 0.075f}, {0.083f, 0.017f}};
     const float width = 0.008f; // of the front, m
     BurnState *burn = &d->sheet->state.burn;
+
     d->sheet->state.time = (double)time;
     for (uint32_t i = 0; i < d->sheet->shell.particle_count; i++) {
         const float *p = d->sheet->shell.rest_position[i];

@@ -40,6 +40,7 @@ static inline Edge *drawn_edges(const SingeSurface *s) {
             edges[3 * t + i] = (Edge){s->triangles[t][i], s->triangles[t][(i + 1) % 3]};
             assert_true(edges[3 * t + i].a != edges[3 * t + i].b && edges[3 * t + i].a < s->vertex_count);
         }
+
     qsort(edges, count, sizeof *edges, compare_edges);
     return edges;
 }

@@ -60,6 +60,7 @@ TEST(random_levels_leave_no_cracks) {
     for (uint32_t seed = 0; seed < 20; seed++) {
         Drawing *d = fine_drawing(12, 9, 1, details[seed % 5], seed % 3 ? 0.4f : 0);
         State *state = &d->sheet->state;
+
         set_random_levels(d, seed);
         draw_fine(d); // nothing has been removed yet: the surface ends where the level does
         assert_true(d->surface.triangle_count > 200);
@@ -67,6 +68,7 @@ TEST(random_levels_leave_no_cracks) {
         assert_true(area_of(&d->surface) > 1);
         ablate(d);
         draw_fine(d);
+
         expect_no_cracks(&d->surface);
         for (uint32_t t = 0; t < d->surface.triangle_count; t++) { // nothing is drawn where nothing is
             float x = 0, y = 0;
@@ -89,6 +91,7 @@ TEST(linear_fields_are_exact) {
         set_linear_fields(d, levels[k]);
         draw_fine(d);
         expect_linear_fields(d, levels[k], 1e-4);
+
         double min = 1;
         for (uint32_t v = 0; v < s->vertex_count; v++) min = fmin(min, value_at(levels[k], s->position[v]));
         assert_float_equal(min, 0, 2e-6); // cut at the level, wherever that is
@@ -101,13 +104,16 @@ TEST(bent_sheets_are_drawn_round) {
     Drawing *d = fine_drawing(12, 9, 1, 0.1f, 0);
     const float radius = 3, sagitta = 1 / (8 * radius), drawn = (4 + 2 * cosf(1 / radius)) / 6 * radius;
     set_linear_fields(d, (Linear){0.03, 0.07, -0.4});
+
     for (uint32_t i = 0; i < d->sheet->shell.vertex_count; i++) {
         float *p = d->sheet->state.dynamics.position[i], angle = d->sheet->shell.rest_position[i][0] / radius;
         p[0] = radius * sinf(angle), p[2] = radius * cosf(angle);
     }
     draw_fine(d);
+
     const SingeSurface *s = &d->surface;
     assert_true(s->fine_triangle_count > 1000);
+
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         if (s->rest_position[v][0] < 1 || s->rest_position[v][0] > 11) continue; // at the border it lies farther out
         float distance = hypotf(s->position[v][0], s->position[v][2]);
@@ -130,6 +136,7 @@ TEST(no_triangle_is_lost_to_rounding) {
     for (uint32_t seed = 0; seed < 12; seed++) {
         Drawing *d = fine_drawing(12, 9, 2.5e-3f, 4e-4f, seed % 3 ? 1e-3f : 0);
         set_random_levels(d, seed);
+
         for (uint32_t v = 0; v < d->sheet->shell.vertex_count; v++) {
             const float *rest = d->sheet->shell.rest_position[v];
             Float3 p = float3_mad(float3_mad(float3(5, -6, -7), along, rest[0]), up, rest[1]);
@@ -162,6 +169,7 @@ TEST(crumpled_sheets_are_not_turned_over) {
         Drawing *round = fine_drawing(12, 9, 1, 0.1f, 0), *straight = fine_drawing(12, 9, 1, 0.1f, 0);
         float room[130]; // another surface everywhere: as finely drawn, and as flat as can be
         for (int v = 0; v < 130; v++) room[v] = 1e-9f;
+
         for (uint32_t v = 0; v < round->sheet->shell.vertex_count; v++) {
             float *p = round->sheet->state.dynamics.position[v];
             p[0] *= seed < 4 ? 1 : 2.5f; // sides of different lengths
@@ -173,8 +181,10 @@ TEST(crumpled_sheets_are_not_turned_over) {
         set_random_levels(round, seed), set_random_levels(straight, seed);
         straight->detail.room = room, round->detail.bulge_max = seed & 1 ? 0.06f : 0;
         draw_fine(round), draw_fine(straight);
+
         const SingeSurface *s = &round->surface, *plain = &straight->surface;
         assert_int_equal(s->triangle_count, plain->triangle_count);
+
         for (uint32_t t = 0; t < s->triangle_count; t++) {
             assert_true(float3_dot(doubled_normal(s, t), doubled_normal(plain, t)) > 0);
             for (int i = 0; i < 3; i++) { // no step between triangles
@@ -203,6 +213,7 @@ TEST(tear_edges_at_one_point_are_drawn_apart) {
         set_random_levels(d, seed);
         tear_along(d, 4, 7);
         draw_fine(d);
+
         const SingeSurface *s = &d->surface;
         int ends[2] = {0, 0};
         for (uint32_t t = 0; t < s->triangle_count; t++) {
@@ -229,10 +240,12 @@ TEST(triangles_pulled_apart_by_a_lost_corner_are_left_out) {
     d->detail.room = room; // flat cells, which are not split for their bends
     set_linear_fields(d, (Linear){0.03, 0.07, -0.05});
     draw_fine(d);
+
     uint32_t whole = d->surface.triangle_count;
     d->sheet->state.dynamics.position[corner][0] -= 3;
     draw_fine(d);
     assert_int_equal(d->surface.triangle_count, whole);
+
     for (int k = 0; k < 4; k++) {
         const Shell *shell = &d->sheet->shell;
         const uint32_t centre = shell_centre(shell, shell->fan[shell->fan_first[corner] + (uint32_t)k]);
@@ -241,6 +254,7 @@ TEST(triangles_pulled_apart_by_a_lost_corner_are_left_out) {
 
     draw_fine(d);
     assert_true(d->surface.triangle_count <= whole - 8);
+
     for (uint32_t t = 0; t < d->surface.triangle_count; t++)
         for (int i = 0; i < 3; i++) {
             uint32_t a = d->surface.triangles[t][i], b = d->surface.triangles[t][(i + 1) % 3];
@@ -258,6 +272,7 @@ TEST(whole_sheets_are_drawn_coarsely) {
     assert_int_equal(d->surface.triangle_count, 48);
     assert_int_equal(d->surface.vertex_count, 20 + 12);
     for (uint32_t v = 0; v < 32; v++) assert_float_equal(d->surface.mass[v], 1, 0);
+
     d->sheet->state.burn.time_ignited[0] = 3; // never ignited ends do not count
     draw_fine(d);
     for (uint32_t v = 0; v < 32; v++)
@@ -270,6 +285,7 @@ TEST(threads_draw_the_same) {
     assert_int_equal(pool_create(&four->sheet->memory, (SingeTasks){0}, 4, &four->pool), SINGE_OK);
     burn_rings(one, 0.02f), burn_rings(four, 0.02f);
     draw_fine(one), draw_fine(four);
+
     const SingeSurface *a = &one->surface, *b = &four->surface;
     assert_int_equal(a->vertex_count, b->vertex_count);
     assert_int_equal(a->triangle_count, b->triangle_count);
@@ -319,6 +335,7 @@ TEST(survives_lack_of_memory) {
     const BurningSheet *b = d->sheet;
     SingeSurface surface;
     Memory memory;
+
     burn_rings(d, 0.02f);
     test_allocations_fail(30,
                           (memory = memory_make(allocator), surface = (SingeSurface){.allocator = allocator},

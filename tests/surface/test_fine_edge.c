@@ -85,6 +85,7 @@ TEST(removed_surface_stays_removed) {
     State *state = &d->sheet->state;
     int gone = 0, back = 0;
     memset(before, 1, sizeof before);
+
     for (uint32_t step = 0; step < 30; step++) {
         for (uint32_t i = 0; i < d->sheet->shell.particle_count; i++) { // each burns as it likes
             float *mass = &state->burn.mass[i];
@@ -116,12 +117,15 @@ TEST(edges_are_eaten_by_a_length) {
             const float *p = d->sheet->shell.rest_position[i];
             set_level(d, i, (p[0] * cosf(angle) + p[1] * sinf(angle) - 0.07f) / width[k] * 0.2f);
         }
+
         d->detail.raggedness = 0;
         draw_fine(d);
+
         double whole = area_of(&d->surface);
         d->detail.raggedness = 1.5e-3f;
         draw_fine(d);
         lost[k] = whole - area_of(&d->surface);
+
         double length = 0.12; // of the front, about
         assert_true(lost[k] > 0.15 * 1.5e-3 * length && lost[k] < 1.5e-3 * length * 1.2);
         drawing_free(d);
@@ -153,6 +157,7 @@ TEST(edges_stay_within_a_cell) {
         raster(&d->surface, SIZE, SIZE, 0.0005f, coarse);
         draw_fine(d);
         raster(&d->surface, SIZE, SIZE, 0.0005f, fine);
+
         for (int k = 0; k < SIZE * SIZE; k++) {
             if (coarse[k] == fine[k]) continue;
             missing += coarse[k];

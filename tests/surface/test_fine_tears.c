@@ -29,6 +29,7 @@ static Float3 mean_displacement(const BurningSheet *b, uint32_t vertex) {
             uint32_t corner = shell->cells[shell->fan[f]][i];
             sum = float3_add(sum, corner == vertex ? location : float3_load(b->state.dynamics.position[corner]));
         }
+
     return float3_sub(float3_scale(sum, 0.25f / (float)(last - first)), location);
 }
 
@@ -39,15 +40,18 @@ TEST(tear_edges_do_not_cross) {
         BurningSheet *b = burning_spare_sheets(1, 2, 2, 1, &material, 0, 6);
         for (uint32_t v = 0; v < 9; v++)
             for (int k = 0; k < 3; k++) b->state.dynamics.position[v][k] += 3 * any(&random);
+
         Float3 before = float3_load(b->state.dynamics.position[MIDDLE]);
         ShellSplit split = {.vertex = MIDDLE, .cells = trial % 2 ? 3 : 5};
         Fan fan;
         SplitResult result;
+
         split_fan(&b->shell, MIDDLE, &fan);
         if (!any_cross(b) && split_is_possible(&b->shell, &fan, &split)) {
             tear_split(&b->shell, &b->state, &fan, &split, &result);
             Float3 after = float3_load(b->state.dynamics.position[MIDDLE]);
             float3_store(b->state.dynamics.position[MIDDLE], before);
+
             Float3 displacement = float3_sub(float3_mad(before, mean_displacement(b, MIDDLE), 0.002f), after);
             float3_store(b->state.dynamics.position[MIDDLE], after);
             otherwise += float3_length(displacement) > 1e-5f;

@@ -27,6 +27,7 @@ static void bend(Bent *b, float size) {
 static void location(Bent *b) {
     Fine *fine = &b->fine;
     const size_t corners = b->shell.vertex_count, cells = b->shell.cell_count;
+
     *fine = (Fine){.shell = &b->shell, .state = &b->state, .memory = &b->memory, .bulge_max = INFINITY};
     assert_non_null(NEW(&b->memory, fine->sheets, b->shell.sheet_count));
     assert_non_null(NEW(&b->memory, fine->normal, b->shell.particle_count));
@@ -37,6 +38,7 @@ static void location(Bent *b) {
     assert_non_null(NEW(&b->memory, fine->rail, b->shell.springs[SINGE_BLUE].count));
     assert_non_null(NEW(&b->memory, fine->limit, corners)), assert_non_null(NEW(&b->memory, fine->shift, corners));
     assert_non_null(NEW(&b->memory, fine->bent, cells));
+
     fine->sheets[0].splits = 4;
     fine_position(fine);
 }
@@ -51,12 +53,14 @@ static Bent *bent(QuadMesh mesh, float size) {
     mesh_release(&mesh);
     bend(b, size);
     location(b);
+
     return b;
 }
 
 static void bent_free(Bent *b) {
     Fine *fine = &b->fine;
     const size_t corners = b->shell.vertex_count, cells = b->shell.cell_count;
+
     FREE(&b->memory, fine->sheets, b->shell.sheet_count), FREE(&b->memory, fine->normal, b->shell.particle_count);
     FREE(&b->memory, fine->share, corners), FREE(&b->memory, fine->max, corners);
     FREE(&b->memory, fine->corner, corners), FREE(&b->memory, fine->sound, cells);
@@ -123,6 +127,7 @@ static Steps steps_of(const Bent *b) {
                 steps.flat += pow((double)between(flat_normal(&b->fine, c, i), flat), 2);
             }
         }
+
     steps.drawn = sqrt(steps.drawn / count), steps.flat = sqrt(steps.flat / count);
     return steps;
 }
@@ -142,6 +147,7 @@ TEST(cells_agree_on_their_sides) {
         {"five cells", mesh_polygon(5, 6), 1 / 6.0f, 0.5},
         {"ell", mesh_ell(6), 1, 0.5},
     };
+
     for (size_t k = 0; k < sizeof meshes / sizeof *meshes; k++) {
         Bent *b = bent(meshes[k].mesh, meshes[k].size);
         Steps steps = steps_of(b);
@@ -160,13 +166,16 @@ TEST(bent_cells_are_split_alike) {
         Drawing *d = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
         if (threads > 1) assert_int_equal(pool_create(&d->sheet->memory, (SingeTasks){0}, threads, &d->pool), SINGE_OK);
         burn_rings(d, 0.01f);
+
         for (uint32_t v = 0; v < d->sheet->shell.vertex_count; v++) {
             float *p = d->sheet->state.dynamics.position[v];
             p[2] += 0.004f * sinf(2 * pi * (p[0] + 0.6f * p[1]) / 0.03f);
         }
         draw_fine(d);
+
         const SingeSurface *s = &d->surface;
         assert_true(s->triangle_count > s->fine_triangle_count + 4 * 4 * 400);
+
         if (threads == 1) first = *s, d->surface = (SingeSurface){0};
         else {
             assert_int_equal(s->vertex_count, first.vertex_count);

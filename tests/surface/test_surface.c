@@ -38,6 +38,7 @@ TEST(one_cell_is_cut_by_its_levels) {
         {{0, 1, 1, 1, 1}, 1, 4, 5},
         {{0, 1, 0, -1, -1}, 2.0 / 8, 2, 4},
     };
+
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         Drawing *d = plain_drawing(1, 1, 1);
         for (int i = 0; i < 5; i++)
@@ -95,6 +96,7 @@ TEST(whole_sheet_keeps_the_input_order) {
 TEST(without_ablation_all_is_drawn) {
     SingeMaterialDef material = plain_material();
     material.ablate = false;
+
     Drawing *d = drawing_of(burning_sheet(3, 3, 1, &material));
     for (uint32_t i = 0; i < d->sheet->shell.particle_count; i++) d->sheet->state.burn.mass[i] = i & 1 ? 0.15f : 0.5f;
     draw_coarse(d);
@@ -122,6 +124,7 @@ static double part_inside(const float level[3], double whole) {
     int inside = 0;
     for (int i = 0; i < 3; i++) inside += level[i] >= 0;
     if (inside == 0 || inside == 3) return inside ? whole : 0;
+
     for (int i = 0; i < 3; i++) {
         if ((level[i] >= 0) != (inside == 1)) continue; // the one that is alone
         double own = (double)level[i], p = (double)level[(i + 1) % 3], q = (double)level[(i + 2) % 3];
@@ -160,6 +163,7 @@ TEST(random_levels_leave_no_cracks) {
         const SingeSurface *s = &d->surface;
         for (uint32_t i = 0; i < shell->particle_count; i++)
             set_level(d, i, ((float)(random_hash(i, seed, 0, 0) % 15) - 6.5f - (float)(seed % 5)) / 64);
+
         double expected = 0;
         for (uint32_t c = 0; c < shell->cell_count; c++)
             for (int i = 0; i < 4; i++) {
@@ -168,6 +172,7 @@ TEST(random_levels_leave_no_cracks) {
                 for (int k = 0; k < 3; k++) level[k] = ablate_level(shell, &d->sheet->state, at[k]);
                 expected += part_inside(level, 0.25);
             }
+
         ablate(d);
         draw_coarse(d);
         assert_true(expected > 1);
@@ -189,6 +194,7 @@ TEST(levels_near_zero_leave_no_cracks) {
             d->sheet->state.burn.mass[i] = levels[random_hash(i, seed, 1, 0) % 7];
         }
         draw_coarse(d);
+
         const SingeSurface *s = &d->surface;
         size_t count = 3 * (size_t)s->triangle_count;
         Edge *edges = drawn_edges(s);
@@ -196,6 +202,7 @@ TEST(levels_near_zero_leave_no_cracks) {
             assert_true(edges[k].a != edges[k].b);
             assert_true(k == 0 || compare_edges(&edges[k - 1], &edges[k]) != 0);
         }
+
         assert_true(area_of(s) > 0); // and no triangle without area
         free(edges);
         drawing_free(d);
@@ -224,6 +231,7 @@ TEST(sheets_and_pieces_are_kept_apart) {
     ablate_label(d->plan, &d->sheet->shell, &d->sheet->state.ablate);
     set_level(d, shell_centre(&d->sheet->shell, 4), -0.25f); // a cell of the second sheet
     draw_coarse(d);
+
     for (uint32_t t = 0; t < d->surface.triangle_count; t++) {
         int32_t sheet = d->surface.position[d->surface.triangles[t][0]][0] > 0.5f;
         for (int i = 0; i < 3; i++) {
@@ -250,6 +258,7 @@ TEST(survives_lack_of_memory) {
             b = large->sheet;
             result = surface_draw(large->plan, &b->shell, &b->state, &surface, NULL);
             assert_true(result == SINGE_OK || result == SINGE_ERROR_MEMORY);
+
             if (result) {
                 failures++;
                 assert_int_equal(surface.vertex_count + surface.triangle_count, 0);

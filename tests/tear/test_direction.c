@@ -19,6 +19,7 @@ static BurningSheet *blocks_of_a_sheet(void) {
     assert_int_equal(state_create(&b->memory, &b->shell, &b->state), SINGE_OK);
     sheet_source_free(&b->memory, &source);
     b->nx = b->ny = CELLS;
+
     float *strength = burning_sheet_vary(b, &b->shell.matter.strength);
     for (uint32_t i = 0; i < b->shell.particle_count; i++) {
         strength[i] = i < (CELLS + 1) * (CELLS + 1) && is_weak(i) ? 1 : 2;
@@ -57,6 +58,7 @@ static double off_across(float angle) {
     assert_false(short_of_spares);
     assert_int_equal(tears, BLOCKS * BLOCKS);
     assert_int_equal(b->shell.edge_spare_used, 2 * tears);
+
     const SpringSet *blue = &b->shell.springs[SINGE_BLUE];
     double sum[2] = {0, 0};
     for (uint32_t k = blue->count - b->shell.edge_spare_count, end = k + 2 * tears; k < end; k++) {
@@ -93,14 +95,17 @@ static uint32_t splits_beside(bool both) {
     assert_int_equal(state_create(&b->memory, &b->shell, &b->state), SINGE_OK);
     sheet_source_free(&b->memory, &source);
     b->nx = b->ny = 6;
+
     float *strength = burning_sheet_vary(b, &b->shell.matter.strength), *pull[SINGE_COLOUR_COUNT];
     for (uint32_t i = 0; i < b->shell.particle_count; i++) strength[i] = 1, b->state.ablate.piece[i] = 0;
     b->state.ablate.cell_flags[cell_at(b, 2, 3)] &= (uint8_t)~SINGE_ALIVE;
     if (both) b->state.ablate.cell_flags[cell_at(b, 3, 2)] &= (uint8_t)~SINGE_ALIVE;
+
     TearPlan *plan;
     bool short_of_spares;
     assert_int_equal(tear_plan_create(&b->memory, &b->shell, 1e-3f, &plan), SINGE_OK);
     pull_evenly(b, 0.4f, 0, 0, pull);
+
     uint32_t splits = tear_step(plan, &b->shell, &b->state, (const float *const *)pull, NULL, 1, &short_of_spares);
     if (splits) assert_int_equal(b->state.tear.splits[0].vertex, corner_at(b, 3, 3));
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) free(pull[colour]);

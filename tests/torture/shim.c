@@ -285,6 +285,7 @@ static int run_main(int argc, char **argv, char **environment) {
 static void read_environment(void) {
     const char *path = getenv("SINGE_TORTURE_STATE"), *kind = getenv("SINGE_TORTURE_KIND");
     const char *at = getenv("SINGE_TORTURE_AT"), *error = getenv("SINGE_TORTURE_ERROR");
+
     for (int i = 0; kind && i < KIND_COUNT; i++)
         if (strcmp(kind, kinds[i]) == 0) failing = i;
     failing_at = at ? strtoull(at, NULL, 10) : 0;
@@ -292,6 +293,7 @@ static void read_environment(void) {
     failure = error ? atoi(error) : 0;
     traps = getenv("SINGE_TORTURE_TRAP") != NULL;
     all_after = getenv("SINGE_TORTURE_ALL") != NULL;
+
     const int file = path ? open(path, O_RDWR | O_CLOEXEC) : -1;
     if (file >= 0) {
         void *shared = mmap(NULL, sizeof *state, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);

@@ -42,6 +42,7 @@ Triangles triangles_sphere(uint32_t around, float radius, float rough) {
             float r = radius * (1 + random_between(&state, -rough, rough));
             put_vertex(&mesh, r * sinf(polar) * cosf(turn), r * sinf(polar) * sinf(turn), r * cosf(polar));
         }
+
     uint32_t top = put_vertex(&mesh, 0, 0, radius), low = put_vertex(&mesh, 0, 0, -radius);
     for (uint32_t i = 0; i < around; i++) {
         uint32_t next = (i + 1) % around, last = (rings - 2) * around;
@@ -65,6 +66,7 @@ Triangles triangles_torus(uint32_t around, uint32_t tube, float radius, float tu
             float r = radius + tube_radius * cosf(angle);
             put_vertex(&mesh, r * cosf(turn), r * sinf(turn), tube_radius * sinf(angle));
         }
+
     for (uint32_t j = 0; j < around; j++)
         for (uint32_t i = 0; i < tube; i++) {
             uint32_t a = j * tube + i, b = (j + 1) % around * tube + i;
@@ -72,6 +74,7 @@ Triangles triangles_torus(uint32_t around, uint32_t tube, float radius, float tu
             put_triangle(&mesh, a, b, c);
             put_triangle(&mesh, a, c, d);
         }
+
     return mesh;
 }
 
@@ -83,6 +86,7 @@ Triangles triangles_box(uint32_t n, float x, float y, float z) {
         int axis = face / 2, e = (axis + 1) % 3, f = (axis + 2) % 3;
         float side = face & 1 ? 1 : -1;
         uint32_t first = mesh.vertex_count;
+
         for (uint32_t j = 0; j <= n; j++)
             for (uint32_t i = 0; i <= n; i++) {
                 float p[3];
@@ -90,6 +94,7 @@ Triangles triangles_box(uint32_t n, float x, float y, float z) {
                 p[e] = half[e] * (2 * (float)i / (float)n - 1), p[f] = half[f] * (2 * (float)j / (float)n - 1);
                 put_vertex(&mesh, p[0], p[1], p[2]);
             }
+
         for (uint32_t j = 0; j < n; j++)
             for (uint32_t i = 0; i < n; i++) {
                 uint32_t a = first + j * (n + 1) + i, b = a + 1, c = a + n + 2, d = a + n + 1;
@@ -138,9 +143,11 @@ double triangles_distance(const Triangles *mesh, const float at[3]) {
             for (int i = 0; i < 3; i++)
                 p[c][i] = (double)mesh->vertices[3 * (size_t)mesh->triangles[3 * t + (uint32_t)c] + (size_t)i] -
                           (double)at[i];
+
         double u[3], v[3];
         for (int i = 0; i < 3; i++) u[i] = p[1][i] - p[0][i], v[i] = p[2][i] - p[0][i];
         for (int i = 0; i < 3; i++) n[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+
         double height = dot(p[0], n), triple;
         bool over = true;
         for (int c = 0; c < 3; c++) {

@@ -37,6 +37,7 @@ TEST(normals_are_gradients) {
             Float3 p = float3(any(3), any(3), any(3)), normal;
             double d = (double)distance_at(&def, p, &normal);
             assert_true(isfinite(d) && fabsf(float3_length(normal) - 1) < 1e-5f);
+
             double gradient[3] = {
                 (distance(&def, float3(p.x + e, p.y, p.z)) - distance(&def, float3(p.x - e, p.y, p.z))) /
                     (2 * (double)e),
@@ -45,8 +46,10 @@ TEST(normals_are_gradients) {
                 (distance(&def, float3(p.x, p.y, p.z + e)) - distance(&def, float3(p.x, p.y, p.z - e))) /
                     (2 * (double)e),
             };
+
             double length = sqrt(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
             if (length < 0.99) continue; // on the medial axis
+
             checked++;
             double off = fabs(gradient[0] - (double)normal.x) + fabs(gradient[1] - (double)normal.y) +
                          fabs(gradient[2] - (double)normal.z);

@@ -37,6 +37,7 @@ TEST(positions_are_linear_and_held) {
     Fixture *f = fixture();
     SingePoseKey keys[] = {test_key(1, 0, 0, 0), test_key(2, 2, 4, -6), test_key(4, 2, 0, -6)};
     set(f, 3, keys);
+
     near_float3(path_pose(&f->path, -100).position, 0, 0, 0);
     near_float3(path_pose(&f->path, 1).position, 0, 0, 0);
     near_float3(path_pose(&f->path, 1.25).position, 0.5f, 1, -1.5f);
@@ -53,6 +54,7 @@ TEST(one_key_stands_still) {
     assert_true(path_pose(&f->path, 3).rotation[3] == 1);
     set(f, 0, NULL);
     near_float3(path_pose(&f->path, 3).position, 0, 0, 0);
+
     SingePoseKey key = test_key(5, 1, 2, 3);
     set(f, 1, &key);
     for (int t = 0; t < 10; t++) near_float3(path_pose(&f->path, t).position, 1, 2, 3);
@@ -98,6 +100,7 @@ TEST(poses_invert) {
     Fixture *f = fixture();
     SingePoseKey key = {0, {1, -2, 3}, {0.1f, -0.4f, 0.3f, 0.8f}};
     set(f, 1, &key);
+
     Pose pose = path_pose(&f->path, 0);
     Float3 p = float3(0.3f, -0.7f, 1.1f), world = pose_apply(&pose, p);
     near_float3(pose_unapply(&pose, world), p.x, p.y, p.z);

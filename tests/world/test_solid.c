@@ -51,9 +51,11 @@ static int compare(const Triangles *mesh, const char *name, int count, float siz
             fail_msg("%s at (%g, %g, %g): %g, not %g", name, (double)p[0], (double)p[1], (double)p[2], (double)found,
                      expected);
         assert_true(fabsf(float3_length(normal) - 1) < 1e-4f);
+
         Float3 foot = float3_mad(at, normal, -found), other; // one distance along the normal lies on the surface
         if (fabsf(found) > 1e-4f * size)
             assert_true(fabsf(collider_distance(&collider, foot, INFINITY, &other)) < 1e-5f * size);
+
         float limit = any(0, 0.2f) * size, near = collider_distance(&collider, at, limit, &normal);
         if (found < limit) assert_true(near == found);
         else assert_true(near >= limit && near <= found * (1 + 1e-5f));
@@ -127,8 +129,10 @@ TEST(inside_out_is_turned) {
         uint32_t *corner = mesh.triangles + 3 * (size_t)t, swap = corner[0];
         corner[0] = corner[1], corner[1] = swap;
     }
+
     collider = make_mesh(&memory, &mesh);
     Float3 normal;
+
     assert_true(collider.mesh.turned);
     assert_true(collider_distance(&collider, float3(0, 0, 0.02f), INFINITY, &normal) < 0);
     assert_true(collider_distance(&collider, float3(0, 0, 0.08f), INFINITY, &normal) > 0 && normal.z > 0.9f);
@@ -165,19 +169,23 @@ TEST(bad_meshes_are_refused_by_number) {
     } cases[] = {{spoil_hole, -2, "open"},      {spoil_turned, -2, "wrong way"},       {spoil_index, 5, "names vertex"},
                  {spoil_number, 3, "finite"},   {spoil_twice, 9, "triangles 8 and 9"}, {spoil_flat, 4, "no area"},
                  {spoil_few, -1, "at least 4"}, {spoil_none, -1, "at least 4"}};
+
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Memory memory = memory_make((SingeAllocator){0});
         Triangles mesh = triangles_sphere(8, 0.0625f, 0);
         uint32_t count = mesh.triangle_count;
+
         if (cases[i].spoil == spoil_flat) mesh.vertices[3 * mesh.triangles[12] + 1] += 0; // exact positions there
         cases[i].spoil(&mesh);
         SingeColliderDef def = triangles_def(&mesh);
         def.path_count = 1, def.path = &STILL;
+
         Collider collider = {0};
         SingeError error = {0};
         SingeResult result = collider_create(&memory, &def, &collider, &error);
         if (result != SINGE_ERROR_MESH || !strstr(error.message, cases[i].word))
             fail_msg("case %zu: %d, \"%s\"", i, (int)result, error.message);
+
         assert_string_equal(error.stage, "collider");
         if (cases[i].element > -2) assert_int_equal(error.element, cases[i].element);
         else assert_true(error.element >= 0 && error.element < count);
@@ -211,6 +219,7 @@ static Triangles column(uint32_t columns, uint32_t rows, const float *heights, c
                                       a + nodes, c + nodes, b + nodes, a + nodes, d + nodes, c + nodes};
             memcpy(t, new, sizeof new), t += 12;
         }
+
     for (uint32_t side = 0; side < 4; side++) {
         uint32_t count = side & 1 ? rows : columns, step = side & 1 ? columns : 1;
         uint32_t first = side == 1 ? columns - 1 : side == 2 ? nodes - columns : 0;
@@ -234,14 +243,17 @@ TEST(heights_match_their_triangles) {
         heights[k] = hill(size[0] * ((float)(k % COLUMNS) / (COLUMNS - 1) - 0.5f),
                           size[1] * ((float)(k / COLUMNS) / (ROWS - 1) - 0.5f)) +
                      any(0, 0.002f);
+
     Triangles mesh = column(COLUMNS, ROWS, heights, size, -1);
     SingeColliderDef def = singe_default_collider();
     def.kind = SINGE_COLLIDER_HEIGHTFIELD;
     def.columns = COLUMNS, def.rows = ROWS, def.heights = heights;
     memcpy(def.size, size, sizeof size);
+
     Memory memory = memory_make((SingeAllocator){0});
     Collider solid = make_mesh(&memory, &mesh); // is what it says it is
     collider_free(&memory, &solid);
+
     Collider collider = make(&memory, def);
     double worst = 0;
     int inside = 0;
@@ -255,6 +267,7 @@ TEST(heights_match_their_triangles) {
         worst = fmax(worst, fabs((double)found - expected));
         if (fabs((double)found - expected) > 1e-6)
             fail_msg("at (%g, %g, %g): %g, not %g", (double)p[0], (double)p[1], (double)p[2], (double)found, expected);
+
         if (fabsf(found) > 1e-4f) {
             Float3 foot = float3_mad(at, normal, -found), other;
             float rest = collider_distance(&collider, foot, INFINITY, &other);
@@ -286,10 +299,12 @@ TEST(bad_heights_are_refused) {
     def.columns = 3, def.rows = 2, def.size[0] = def.size[1] = 0.1f;
     assert_int_equal(collider_create(&memory, &def, &collider, &error), SINGE_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "heights"));
+
     def.heights = heights;
     assert_int_equal(collider_create(&memory, &def, &collider, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(error.element, 4);
     heights[4] = 0;
+
     def.size[1] = 0;
     assert_int_equal(collider_create(&memory, &def, &collider, &error), SINGE_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "size"));
@@ -331,6 +346,7 @@ TEST(ten_thousand_triangles_are_quick) {
     double start = test_seconds();
     Collider collider = make_mesh(&memory, &mesh);
     start = test_seconds() - start;
+
     double touching = cost(&collider, &mesh, 0.0005f), near = cost(&collider, &mesh, 0.005f);
     double far = cost(&collider, &mesh, 0.05f);
     printf("%u triangles: %.0f ms to add, %.2f MB; ns a particle: %.0f within 0.5 mm, %.0f within 5 mm, %.0f within 50 "

@@ -22,6 +22,7 @@ TEST(gusts_have_their_mean_and_bound) {
     SingeWindDef def = singe_default_wind();
     def.velocity[0] = 3;
     def.gust = 2;
+
     enum { COUNT = 50000 };
     double mean[3] = {0}, square = 0;
     for (int i = 0; i < COUNT; i++) {
@@ -40,10 +41,12 @@ TEST(gusts_follow_their_seed) {
     a.gust = 1;
     SingeWindDef b = a;
     int equal = 0;
+
     for (int i = 0; i < 1000; i++) {
         Float3 v = at(&a, i), w = at(&b, i);
         assert_memory_equal(&v, &w, sizeof v);
     }
+
     b.seed++;
     for (int i = 0; i < 1000; i++) equal += at(&a, i).x == at(&b, i).x;
     assert_true(equal < 5);
@@ -91,12 +94,14 @@ TEST(sources_move_air) {
     assert_true(float3_length(moved(SINGE_SOURCE_VORTEX, float3(0, 0, 0.3f), 2)) == 0);
     assert_true(fabsf(moved(SINGE_SOURCE_ATTRACT, float3(0, 0, 0.01f), 2).z + 8) < 1e-4f);
     assert_true(fabsf(moved(SINGE_SOURCE_ATTRACT, float3(0, -0.03f, 0), 2).y - 4.8f) < 1e-4f);
+
     double square = 0;
     for (int i = 0; i < 1000; i++) {
         const Float3 u = moved(SINGE_SOURCE_TURBULENCE, float3(0.003f * (float)i, 0, 0), 2 + 0.01 * i);
         assert_true(fabsf(u.x) <= 8 && fabsf(u.y) <= 8 && fabsf(u.z) <= 8);
         square += (double)(u.x * u.x) / 1000;
     }
+
     assert_true(sqrt(square) > 1 && sqrt(square) < 5);
     assert_true(float3_length(moved(SINGE_SOURCE_WATER, float3(0, 0, 0.05f), 2)) == 0);
 }

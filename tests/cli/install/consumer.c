@@ -15,6 +15,7 @@ int main(void) {
     sheet.cell_count = 1, sheet.cells = cell;
     if (singe_sim_create(&def, &sim, &error)) return 1;
     if (singe_sim_add_sheet(sim, &sheet, &id) || singe_sim_commit(sim) || singe_sim_step(sim)) return 1;
+
     printf("%s %u\n", singe_version(), (unsigned)singe_sim_stats(sim).particles);
     singe_sim_destroy(sim);
     return strcmp(singe_version(), SINGE_VERSION) != 0;

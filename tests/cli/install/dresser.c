@@ -11,19 +11,23 @@ int main(void) {
 
     def.vertex_count = 6, def.positions = positions, def.face_count = 4, def.corners = corners;
     if (singe_mesh_create(&def, &mesh, &error)) return puts(error.message), 1;
+
     SingeSheetDef sheet = singe_default_sheet();
     singe_mesh_fill_sheet(mesh, &sheet);
     if (singe_material_preset("cotton", &sheet.material, &error)) return puts(error.message), 1;
+
     SingeSimDef sim_def = singe_default_sim();
     SingePinDef pin = singe_default_pin();
     SingePinId held;
     SingeSim *sim;
     const uint32_t vertex = singe_mesh_vertex(mesh, collar[0]);
     pin.vertex_count = 1, pin.vertices = &vertex;
+
     if (singe_sim_create(&sim_def, &sim, &error)) return 1;
     if (singe_sim_add_sheet(sim, &sheet, &pin.sheet) || singe_sim_add_pin(sim, &pin, &held) || singe_sim_commit(sim) ||
         singe_sim_step(sim))
         return puts(singe_sim_error(sim)->message), 1;
+
     printf("%.1f g\n", 1e3 * singe_sim_stats(sim).mass);
     singe_sim_destroy(sim);
     singe_mesh_destroy(mesh);
