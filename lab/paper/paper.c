@@ -87,15 +87,14 @@ static const PageItem items[] = {
 static const ArgOption paper_options[] = {
     {"output", 'o', "DIR", "folder for the page [out/paper]", .read = args_folder, offsetof(PageRequest, folder)},
     {"quick", 0, NULL, "small sizes, for a quick check", .read = args_switch, offsetof(PageRequest, quick)},
-    {"threads", 0, "N", "threads [all]", .read = args_int, offsetof(PageRequest, threads), 1, JOB_THREADS_MAX},
+    {ARGS_THREADS(PageRequest)},
 };
 
 const ArgCommand paper_command = {
     "paper",
     "WHAT",
     "Runs the paper's experiments and writes a page about them, DIR/index.html.",
-    paper_options,
-    sizeof paper_options / sizeof *paper_options,
+    ARGS_OPTIONS(paper_options),
     "WHAT is all, or one of\n"
     "  fig1 fig2 fig3 fig4 fig5 fig6 fig7ab fig7cd fig8 fig10 fig11 table1 table2 whole\n"
     "  heat alpha all-at-once mass-loss weights rival crossing adaptive readings statements   (docs/cli.md "

@@ -49,15 +49,14 @@ static const ArgOption validate_options[] = {
      "one of heat, umbrella, front, pmma, cone, oxygen, damp, plume, beam, disc, kinetics, ledgers, grades",
      .read = args_text, offsetof(PageRequest, only)},
     {"quick", 0, NULL, "small sizes, for a quick check", .read = args_switch, offsetof(PageRequest, quick)},
-    {"threads", 0, "N", "threads [all]", .read = args_int, offsetof(PageRequest, threads), 1, JOB_THREADS_MAX},
+    {ARGS_THREADS(PageRequest)},
 };
 
 const ArgCommand validate_command = {
     "validate",
     NULL,
     "Compares the physics with independent sources and writes a page about it, DIR/index.html.",
-    validate_options,
-    sizeof validate_options / sizeof *validate_options,
+    ARGS_OPTIONS(validate_options),
     .footer = "Exit codes: 0 good, 1 an error, or a measure outside its bars, 2 bad usage.",
     .examples = "singe validate -o out\n"
                 "singe validate --only heat"};

@@ -44,12 +44,23 @@ struct ArgCommand {
 /// command ends here, with *code: the help has been printed, or an error with a hint to it.
 bool args_read(const ArgCommand *command, int argc, char **argv, void *options, ExitCode *code);
 
-/// Fields: a bool; a const char *, also of a folder, which is not empty; an int, and a double, within low and high; int[2] of "A-B", or of "A" for both, with 1 <= A <= B; a
-/// SetList, to which it adds.
+/// Fields: a bool; a const char *, also of a folder, which is not empty; an int, and a double, within low and high; int[2]
+/// of "A-B", or of "A" for both, with 1 <= A <= B; a SetList, to which it adds.
 ArgRead args_switch, args_text, args_folder, args_int, args_number, args_span, args_set;
 
 /// The option `--frames`, a row but for its field: what the command does with these frames, and what else it means.
 #define ARGS_FRAMES(does, more) "frames", 0, "A-B", does " only these frames (or A alone)" more, .read = args_span
+
+/// Options that several commands have, each a whole row; the field of the options `S` has the same name.
+#define ARGS_THREADS(S)                                                                                                \
+    "threads", 0, "N", "threads [all]; the result does not depend on them", .read = args_int, offsetof(S, threads), 1, \
+                                                                            JOB_THREADS_MAX
+#define ARGS_SET(S) \
+    "set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated", .read = args_set, offsetof(S, sets)
+#define ARGS_QUIET(S) "quiet", 'q', NULL, "prints only warnings and errors", .read = args_switch, offsetof(S, quiet)
+
+/// A command's table of options and their number.
+#define ARGS_OPTIONS(table) table, sizeof table / sizeof *(table)
 
 void args_help(const ArgCommand *command);
 

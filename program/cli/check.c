@@ -22,17 +22,15 @@ typedef struct CheckOptions {
 static const ArgOption check_options[] = {
     {"frames", 0, "N", "frames to estimate the time for", .read = args_int, offsetof(CheckOptions, frames), 1,
      JOB_FRAMES_MAX},
-    {"threads", 0, "N", "threads [all]", .read = args_int, offsetof(CheckOptions, threads), 1, JOB_THREADS_MAX},
-    {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated", .read = args_set,
-     offsetof(CheckOptions, sets)},
+    {ARGS_THREADS(CheckOptions)},
+    {ARGS_SET(CheckOptions)},
 };
 
 const ArgCommand check_command = {
     "check",
     "SCENE",
     "Reads a scene with its meshes and images, builds it, and prints its size and cost.",
-    check_options,
-    sizeof check_options / sizeof *check_options,
+    ARGS_OPTIONS(check_options),
     "Exit codes: 0 the scene is valid, 1 a step failed, memory ran out or standard output could not be written,\n"
     "2 bad input.",
     "singe check letter.yaml\n"

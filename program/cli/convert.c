@@ -74,7 +74,7 @@ static const ArgOption convert_options[] = {
     {"set", 0, "PATH=VALUE", "sets a value of the scene (output.texture_size, gas.detail); may be repeated",
      .read = args_set, offsetof(ConvertOptions, sets)},
     {ARGS_FRAMES("writes", ", and no root file"), offsetof(ConvertOptions, frames)},
-    {"quiet", 'q', NULL, "prints only warnings and errors", .read = args_switch, offsetof(ConvertOptions, quiet)},
+    {ARGS_QUIET(ConvertOptions)},
 };
 
 static bool convert_check(const ArgCommand *command, void *options) {
@@ -90,8 +90,7 @@ const ArgCommand convert_command = {
     "convert",
     "DIR",
     "Writes the frames of a cache in other formats, beside it.",
-    convert_options,
-    sizeof convert_options / sizeof *convert_options,
+    ARGS_OPTIONS(convert_options),
     "Existing frames are written again. Exit codes: 0 success, 1 failed or interrupted, 2 bad input.",
     "singe convert out --to usd\n"
     "singe convert out --to glb --single\n"

@@ -187,7 +187,7 @@ typedef struct CleanOptions {
 static const ArgOption clean_options[] = {
     {"keep-every", 0, "N", "keeps frames N, 2N, 3N, ..., the first and the last", .read = args_int,
      offsetof(CleanOptions, every), 1, JOB_FRAMES_MAX},
-    {"quiet", 'q', NULL, "prints only warnings and errors", .read = args_switch, offsetof(CleanOptions, quiet)},
+    {ARGS_QUIET(CleanOptions)},
 };
 
 static bool clean_check(const ArgCommand *command, void *options) {
@@ -198,8 +198,7 @@ const ArgCommand clean_command = {
     "clean",
     "DIR",
     "Removes frames of a run, and keeps every N-th one. Only files of frames that DIR/run.json lists are removed.",
-    clean_options,
-    sizeof clean_options / sizeof *clean_options,
+    ARGS_OPTIONS(clean_options),
     "A run that lacks frames cannot be resumed or branched. Exit codes: 0 success, 1 a file cannot be removed,\n"
     "2 bad input.",
     "singe clean out --keep-every 10",

@@ -40,8 +40,7 @@ const ArgCommand new_command = {
     "new",
     "TEMPLATE",
     "Writes a commented scene to start from: letter, cloth, mesh or sweep.",
-    new_options,
-    sizeof new_options / sizeof *new_options,
+    ARGS_OPTIONS(new_options),
     "letter  a sheet of paper burns on a table\n"
     "cloth   a cloth hangs, and burns in the wind\n"
     "mesh    a sample mesh burns; replace it with yours\n"

@@ -51,8 +51,8 @@ static const ArgOption render_options[] = {
      offsetof(RenderOptions, exr)},
     {"gif", 0, NULL, "also writes DIR/preview.gif, of the frames that are drawn", .read = args_switch,
      offsetof(RenderOptions, gif)},
-    {"threads", 0, "N", "threads [all]", .read = args_int, offsetof(RenderOptions, threads), 1, JOB_THREADS_MAX},
-    {"quiet", 'q', NULL, "prints only warnings and errors", .read = args_switch, offsetof(RenderOptions, quiet)},
+    {ARGS_THREADS(RenderOptions)},
+    {ARGS_QUIET(RenderOptions)},
 };
 
 static bool render_check(const ArgCommand *command, void *options) {
@@ -72,8 +72,7 @@ static bool render_check(const ArgCommand *command, void *options) {
 const ArgCommand render_command = {"render",
                                    "DIR",
                                    "Draws the pictures and the video of a cache again.",
-                                   render_options,
-                                   sizeof render_options / sizeof *render_options,
+                                   ARGS_OPTIONS(render_options),
                                    "Exit codes: 0 success, 1 failed or interrupted, 2 bad input.",
                                    "singe render out --set preview.exposure=2\n"
                                    "singe render out --frames 24 --exr -o stills --set preview.samples=256\n"

@@ -15,16 +15,14 @@ typedef struct ReplayOptions {
 } ReplayOptions;
 
 static const ArgOption replay_options[] = {
-    {"threads", 0, "N", "threads [all]; the result does not depend on them", .read = args_int,
-     offsetof(ReplayOptions, threads), 1, JOB_THREADS_MAX},
+    {ARGS_THREADS(ReplayOptions)},
 };
 
 const ArgCommand replay_command = {
     "replay",
     "FILE",
     "Repeats the calls of a recording (singe run --record) and compares the state after every step.",
-    replay_options,
-    sizeof replay_options / sizeof *replay_options,
+    ARGS_OPTIONS(replay_options),
     "Exit codes: 0 identical (a truncated recording is compared up to its end), 1 different, or out of memory,\n"
     "2 not a recording, or a damaged one.",
     "singe run letter.yaml --record letter.replay\n"

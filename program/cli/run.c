@@ -16,10 +16,8 @@ static const ArgOption run_options[] = {
     {"output", 'o', "DIR", "folder of the cache [out/NAME]", .read = args_text, offsetof(RunOptions, output)},
     {"frames", 0, "N", "number of frames; the first is the start", .read = args_int, offsetof(RunOptions, frames), 1,
      JOB_FRAMES_MAX},
-    {"threads", 0, "N", "threads [all]; the result does not depend on them", .read = args_int,
-     offsetof(RunOptions, threads), 1, JOB_THREADS_MAX},
-    {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated", .read = args_set,
-     offsetof(RunOptions, sets)},
+    {ARGS_THREADS(RunOptions)},
+    {ARGS_SET(RunOptions)},
     {"resume", 0, NULL, "continues from DIR/checkpoint.singe", .read = args_switch, offsetof(RunOptions, resume)},
     {"from", 0, "DIR:FRAME", "starts from a frame of an earlier run, with a changed scene", .read = args_text,
      offsetof(RunOptions, from)},
@@ -31,7 +29,7 @@ static const ArgOption run_options[] = {
      offsetof(RunOptions, exr)},
     {"record", 0, "FILE", "also writes a recording, which `singe replay` repeats and compares", .read = args_text,
      offsetof(RunOptions, record)},
-    {"quiet", 'q', NULL, "prints only warnings and errors", .read = args_switch, offsetof(RunOptions, quiet)},
+    {ARGS_QUIET(RunOptions)},
 };
 
 static bool run_check(const ArgCommand *command, void *options) {
@@ -46,8 +44,7 @@ const ArgCommand run_command = {
     "run",
     "SCENE",
     "Simulates a scene file and writes a cache, pictures, a video and statistics to DIR.",
-    run_options,
-    sizeof run_options / sizeof *run_options,
+    ARGS_OPTIONS(run_options),
     "Ctrl-C ends the run after the current step; a second Ctrl-C ends it at once. Exit codes: 0 success,\n"
     "1 the run failed or was interrupted, or ffmpeg failed, 2 bad input.",
     "singe run letter.yaml -o out\n"

@@ -45,8 +45,7 @@ const ArgCommand verify_command = {
     "verify",
     "DIR",
     "Reads a cache and counts crossings, inverted cells and other faults.",
-    verify_options,
-    sizeof verify_options / sizeof *verify_options,
+    ARGS_OPTIONS(verify_options),
     "docs/cli.md defines the faults. Exit codes: 0 no faults, 1 faults or interrupted, 2 a frame cannot be read.",
     "singe verify out\n"
     "singe verify out --stretch 1.5 --csv faults.csv",

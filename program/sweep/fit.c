@@ -26,8 +26,7 @@
 
 static const ArgOption fit_options[] = {
     {"output", 'o', "DIR", "folder of the fit [out/NAME]", .read = args_text, offsetof(SweepOptions, output)},
-    {"threads", 0, "N", "threads [all]; the result does not depend on them", .read = args_int,
-     offsetof(SweepOptions, threads), 1, JOB_THREADS_MAX},
+    {ARGS_THREADS(SweepOptions)},
     {"quiet", 'q', NULL, "prints only warnings, errors and the result", .read = args_switch,
      offsetof(SweepOptions, quiet)},
 };
@@ -35,8 +34,7 @@ static const ArgOption fit_options[] = {
 const ArgCommand fit_command = {"fit",
                                 "PLAN",
                                 "Finds the parameters with which a scene best matches measurements.",
-                                fit_options,
-                                sizeof fit_options / sizeof *fit_options,
+                                ARGS_OPTIONS(fit_options),
                                 "docs/sweep.md describes plans. The same command continues a fit that was stopped.\n"
                                 "Exit codes: 0 success, 1 a row failed or the fit was interrupted, 2 bad input.",
                                 "singe fit fit.yaml -o out",

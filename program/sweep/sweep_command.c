@@ -40,7 +40,7 @@ static const ArgOption sweep_options[] = {
      offsetof(SweepOptions, slurm)},
     {"render-frames", 0, "N", "with --slurm: frames that one job draws [24]", .read = args_int,
      offsetof(SweepOptions, frames), 1, JOB_FRAMES_MAX},
-    {"quiet", 'q', NULL, "prints only warnings and errors", .read = args_switch, offsetof(SweepOptions, quiet)},
+    {ARGS_QUIET(SweepOptions)},
 };
 
 static bool sweep_check(const ArgCommand *command, void *options) {
@@ -55,8 +55,7 @@ const ArgCommand sweep_command = {
     "sweep",
     "PLAN",
     "Runs a scene many times with other parameters, and writes a report.",
-    sweep_options,
-    sizeof sweep_options / sizeof *sweep_options,
+    ARGS_OPTIONS(sweep_options),
     "docs/sweep.md describes plans. The same command continues a sweep that was stopped.\n"
     "Exit codes: 0 all rows are complete, 1 a row failed or the sweep was interrupted, 2 bad input.",
     "singe sweep sweep.yaml -o out --jobs 4\n"

@@ -20,8 +20,7 @@ typedef struct ViewOptions {
 } ViewOptions;
 
 static const ArgOption view_options[] = {
-    {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated", .read = args_set,
-     offsetof(ViewOptions, sets)},
+    {ARGS_SET(ViewOptions)},
     {"frames", 0, "N", "frames of the scene", .read = args_int, offsetof(ViewOptions, frames), 1, JOB_FRAMES_MAX},
     {"threads", 0, "N", "threads of the burn [all]", .read = args_int, offsetof(ViewOptions, threads), 1,
      JOB_THREADS_MAX},
@@ -34,8 +33,7 @@ const ArgCommand view_command = {
     "view",
     "SCENE|DIR",
     "Shows a burn in a browser: the cache in DIR, or SCENE while it burns, again each time its file is saved.",
-    view_options,
-    sizeof view_options / sizeof *view_options,
+    ARGS_OPTIONS(view_options),
     "The address works on this machine only; keep it secret. From another machine: ssh -L PORT:127.0.0.1:PORT and --port PORT.\nExit codes: 0 ended by Ctrl-C, 1 failed, 2 bad input.",
     "singe view letter.yaml\n"
     "singe view out",
