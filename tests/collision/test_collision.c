@@ -37,11 +37,10 @@ static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float cells_thick,
 
 static SingeSim *new_sim(int threads, bool contact) {
     SingeSimDef def = singe_default_sim();
-    SingeSim *sim;
     def.thread_count = threads;
     def.contact.enabled = contact;
     def.solver.substeps = 3; // sheets stay soft, and fold
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_create(&def);
     return sim;
 }
 
@@ -49,8 +48,7 @@ static void add_ground(SingeSim *sim) {
     SingeColliderDef ground = singe_default_collider();
     SingePoseKey key = {.rotation = {0, 0, 0, 1}};
     ground.path_count = 1, ground.path = &key, ground.friction = 0.3f, ground.offset = 1e-3f;
-    SingeColliderId id;
-    assert_int_equal(singe_sim_add_collider(sim, &ground, &id), SINGE_OK);
+    test_add_collider(sim, &ground);
 }
 
 #ifdef SINGE_THREADS_ONLY
@@ -63,7 +61,7 @@ enum { HEAP = 36, HEAP_STEPS = 100 };
 static SingeSim *heap(int threads, bool contact) {
     SingeSim *sim = new_sim(threads, contact);
     add_flat(sim, &(Flat){HEAP, {-0.1f, 0, 0.02f}, {0.2f, 0, 0}, {0, 0, 0.2f}}, 0.4f, 4e-3f, NULL);
-    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    test_ok(sim, singe_sim_commit(sim));
     add_ground(sim);
     return sim;
 }
@@ -95,7 +93,7 @@ TEST(thrown_sheets_do_not_cross) {
     add_flat(sim, &(Flat){14, {-0.05f, -0.03f, 1}, {0.1f, 0, 0.01f}, {0, 0.02f, 0.1f}}, 0.6f, 2e-3f,
              (float[3]){0, 6, 0});
     add_flat(sim, &(Flat){14, {0, 0.03f, 0.97f}, {0.08f, 0.06f, 0}, {0, 0, 0.1f}}, 0.6f, 2e-3f, (float[3]){0, -6, 0});
-    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    test_ok(sim, singe_sim_commit(sim));
     for (int frame = 0; frame < 60; frame++) {
         test_steps(sim, 2);
         assert_int_equal(crossings(sim), 0);
@@ -112,7 +110,7 @@ TEST(layers_keep_their_thickness) {
             &(Flat){
                 12, {0.003f * (float)k, 0.002f * (float)k, 1.2e-3f + 2e-3f * (float)k}, {0.05f, 0, 0}, {0, 0.05f, 0}},
             0.6f, 0, NULL);
-    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    test_ok(sim, singe_sim_commit(sim));
     add_ground(sim);
     test_steps(sim, 480);
     SingeView view = singe_sim_view(sim);
@@ -129,12 +127,11 @@ TEST(layers_keep_their_thickness) {
 /// How far the upper of two sheets has slid in 0.2 s; the lower one lies on the ground.
 static double slide(float friction) {
     SingeSimDef def = singe_default_sim();
-    SingeSim *sim;
     def.contact.enabled = true, def.contact.friction = friction, def.air_density = 0;
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_create(&def);
     add_flat(sim, &(Flat){20, {0, 0, 1.01e-3f}, {0.1f, 0, 0}, {0, 0.1f, 0}}, 0.6f, 0, NULL);
     add_flat(sim, &(Flat){8, {0.02f, 0.03f, 1.6e-3f}, {0.04f, 0, 0}, {0, 0.04f, 0}}, 0.6f, 0, (float[3]){0.2f, 0, 0});
-    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    test_ok(sim, singe_sim_commit(sim));
     add_ground(sim);
     SingeView view = singe_sim_view(sim);
     double before = 0, after = 0;
@@ -158,7 +155,7 @@ TEST(crossing_input_is_left_alone) {
     SingeSim *sim = new_sim(1, true);
     add_flat(sim, &(Flat){10, {0, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
     add_flat(sim, &(Flat){10, {0.0112f, 0.0253f, 0.98f}, {0.04f, 0, 0}, {0, 0, 0.05f}}, 0.6f, 0, NULL);
-    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    test_ok(sim, singe_sim_commit(sim));
     test_steps(sim, 1);
     assert_true(singe_sim_stats(sim).intersecting_cells > 8);
     test_steps(sim, 120);
@@ -167,57 +164,40 @@ TEST(crossing_input_is_left_alone) {
     singe_sim_destroy(sim);
 }
 
-/// Two cells that approach, each crossed by another cell: they still keep each other apart.
-TEST(cells_crossed_by_others_are_kept_apart) {
+/// Two cells that approach: each crossed by another cell, or both by a third. They still keep each other apart.
+static void crossed_cells_stay_apart(bool one_between, int intersecting) {
     const float side = 0.02f, speed = 0.5f;
     SingeSimDef def = singe_default_sim();
-    SingeSim *sim;
     def.contact.enabled = true, def.air_density = 0, def.gravity[2] = 0;
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_create(&def);
     for (int upper = 0; upper < 2; upper++) {
         float z = upper ? 0.01f : 0, x = upper ? 0.013f : 0.006f, velocity[3] = {0, 0, upper ? -speed : speed};
         add_flat(sim, &(Flat){1, {0, 0, z}, {side, 0, 0}, {0, side, 0}}, 0.6f, 0, velocity);
+        if (one_between) continue;
 
         // up to 1 mm through it, on the side of the other one
         float low = upper ? z - 1e-3f : z + 1e-3f - side;
         add_flat(sim, &(Flat){1, {x, 1e-3f, low}, {0, side - 2e-3f, 0}, {0, 0, side}}, 0.6f, 0, velocity);
     }
+    if (one_between)
+        add_flat(sim, &(Flat){1, {0.006f, 1e-3f, -5e-3f}, {0, side - 2e-3f, 0}, {0, 0, side}}, 0.6f, 0, NULL);
 
-    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    test_ok(sim, singe_sim_commit(sim));
     test_steps(sim, 1);
-    assert_int_equal(singe_sim_stats(sim).intersecting_cells, 4);
+    assert_int_equal(singe_sim_stats(sim).intersecting_cells, intersecting);
     test_steps(sim, 14); // unhindered they pass each other at the fifth, and are 19 mm beyond
     SingeView view = singe_sim_view(sim);
+    const uint32_t second = one_between ? 4 : 8;
     float lower = 0, upper = 0;
-    for (uint32_t v = 0; v < 4; v++) lower += view.position[v][2] / 4, upper += view.position[8 + v][2] / 4;
+    for (uint32_t v = 0; v < 4; v++) lower += view.position[v][2] / 4, upper += view.position[second + v][2] / 4;
     print_message("the upper cell is %.1f mm above the lower one\n", 1e3 * (double)(upper - lower));
     assert_true(upper > lower);
     singe_sim_destroy(sim);
 }
 
-/// Two cells that approach, both crossed by a third: each is left alone by it, not by the other.
-TEST(cells_crossed_by_one_cell_are_kept_apart) {
-    const float side = 0.02f, speed = 0.5f;
-    SingeSimDef def = singe_default_sim();
-    SingeSim *sim;
-    def.contact.enabled = true, def.air_density = 0, def.gravity[2] = 0;
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
-    for (int upper = 0; upper < 2; upper++) {
-        const float velocity[3] = {0, 0, upper ? -speed : speed};
-        add_flat(sim, &(Flat){1, {0, 0, upper ? 0.01f : 0}, {side, 0, 0}, {0, side, 0}}, 0.6f, 0, velocity);
-    }
-    add_flat(sim, &(Flat){1, {0.006f, 1e-3f, -5e-3f}, {0, side - 2e-3f, 0}, {0, 0, side}}, 0.6f, 0, NULL);
-    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
-    test_steps(sim, 1);
-    assert_int_equal(singe_sim_stats(sim).intersecting_cells, 3);
-    test_steps(sim, 14); // unhindered they pass each other at the fifth
-    SingeView view = singe_sim_view(sim);
-    float lower = 0, upper = 0;
-    for (uint32_t v = 0; v < 4; v++) lower += view.position[v][2] / 4, upper += view.position[4 + v][2] / 4;
-    print_message("the upper cell is %.1f mm above the lower one\n", 1e3 * (double)(upper - lower));
-    assert_true(upper > lower);
-    singe_sim_destroy(sim);
-}
+TEST(cells_crossed_by_others_are_kept_apart) { crossed_cells_stay_apart(false, 4); }
+
+TEST(cells_crossed_by_one_cell_are_kept_apart) { crossed_cells_stay_apart(true, 3); }
 
 TEST(coincident_sheets_are_left_alone) {
     SingeSim *sim = new_sim(1, true);
@@ -226,7 +206,7 @@ TEST(coincident_sheets_are_left_alone) {
 
     // and one that lies next to them
     add_flat(sim, &(Flat){10, {0.2f, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
-    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    test_ok(sim, singe_sim_commit(sim));
     test_steps(sim, 1);
     assert_int_equal(singe_sim_stats(sim).intersecting_cells, 300);
     test_steps(sim, 20);

@@ -246,8 +246,7 @@ static void scene_deform(SingeSim *sim) {
     wedge.vertices = corners[0];
     wedge.triangles = triangles[0];
 
-    SingeColliderId id;
-    test_ok(sim, singe_sim_add_collider(sim, &wedge, &id));
+    const SingeColliderId id = test_add_collider(sim, &wedge);
     test_ok(sim, singe_sim_set_collider_vertices(sim, id, corners[0], 1));
     test_steps(sim, 2);
 }

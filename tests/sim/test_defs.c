@@ -178,8 +178,7 @@ TEST(rubbish_beyond_an_older_def_is_not_read) {
     sheet.struct_size = OLDER(SingeSheetDef, drop_pieces_below);
     sheet.drop_pieces_below = NAN;
 
-    SingeSheetId sheet_id;
-    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &sheet_id));
+    SingeSheetId sheet_id = test_add_sheet(sim, &sheet);
     sheet.struct_size = OLDER(SingeSheetDef, material);
     memset(&sheet.material, 0xFF, sizeof sheet.material);
     test_mesh_move(&mesh, 1, 0, 0);
@@ -267,10 +266,9 @@ TEST(defs_are_copied) {
         SingePoseKey keys[2] = {test_key(0, 0, 0, 0), test_key(0.1f, 0.04f, 0, 0)};
         float grey[4] = {0, 1, 0.5f, 0.2f};
         SingeSourceDef def = singe_default_source();
-        SingeSourceId id;
 
         def.kind = SINGE_SOURCE_BALL, def.path_count = 2, def.path = keys;
-        test_ok(b, singe_sim_add_source(i ? b : a, &def, &id));
+        SingeSourceId id = test_add_source(i ? b : a, &def);
         def.kind = SINGE_SOURCE_TEXTURE, def.texture = (SingeTexture){2, 2, grey};
         test_ok(b, singe_sim_add_source(i ? b : a, &def, &id));
         if (i == 0) continue;
@@ -280,9 +278,7 @@ TEST(defs_are_copied) {
         memset(&def, 0xFF, sizeof def);
     }
 
-    test_steps(a, 10);
-    test_steps(b, 10);
-    test_assert_same(a, b);
+    test_steps_alike(a, b, 10);
     singe_sim_destroy(a);
     singe_sim_destroy(b);
 }

@@ -23,8 +23,7 @@ TEST(a_failed_step_changes_nothing) {
     SingeSourceDef def = singe_default_source();
     def.kind = SINGE_SOURCE_CALLBACK, def.callback = poison, def.callback_context = &particle;
 
-    SingeSourceId id;
-    test_ok(sim, singe_sim_add_source(sim, &def, &id));
+    SingeSourceId id = test_add_source(sim, &def);
     TestBytes before = test_save(sim);
     SingeTimers timers = singe_sim_timers(sim);
 
@@ -46,9 +45,7 @@ TEST(a_failed_step_changes_nothing) {
     test_ok(sim, singe_sim_remove_source(sim, id));
     test_ok(twin.sim, singe_sim_add_source(twin.sim, &def, &id)); // keeps the lists and generations alike
     test_ok(twin.sim, singe_sim_remove_source(twin.sim, id));
-    test_steps(sim, 30);
-    test_steps(twin.sim, 30);
-    test_assert_same(sim, twin.sim);
+    test_steps_alike(sim, twin.sim, 30);
     singe_sim_destroy(sim);
     singe_sim_destroy(twin.sim);
 }
@@ -77,9 +74,7 @@ TEST(a_failure_late_in_the_step_changes_nothing) {
     test_ok(copy, singe_sim_move_pin(copy, scene.points, 1, &still));
 
     test_assert_same(sim, copy);
-    test_steps(sim, 20);
-    test_steps(copy, 20);
-    test_assert_same(sim, copy);
+    test_steps_alike(sim, copy, 20);
     singe_sim_destroy(copy);
     singe_sim_destroy(sim);
 }

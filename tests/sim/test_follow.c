@@ -272,9 +272,7 @@ TEST(pins_follow_and_runs_resume) {
     SingeSim *resumed = test_load(NULL, &bytes);
     test_assert_same(sim, resumed);
 
-    test_steps(sim, 6);
-    test_steps(resumed, 6);
-    test_assert_same(sim, resumed);
+    test_steps_alike(sim, resumed, 6);
     round_trip(sim, pin, body, &block, 13, 20);
     round_trip(resumed, pin, body, &block, 13, 20);
     test_assert_same(sim, resumed);
@@ -338,9 +336,7 @@ TEST(bad_positions_are_refused) {
     SingeColliderDef open = block_def(&block, SINGE_COLLIDER_DEFORMING);
     open.triangle_count--;
     test_refused(sim, SINGE_ERROR_MESH, singe_sim_add_collider(sim, &open, &box));
-    test_steps(sim, 20);
-    test_steps(twin, 20);
-    test_assert_same(sim, twin);
+    test_steps_alike(sim, twin, 20);
     singe_sim_destroy(sim);
     singe_sim_destroy(twin);
 }

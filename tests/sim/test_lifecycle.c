@@ -8,8 +8,7 @@
 
 static SingeSim *create(void) {
     SingeSimDef def = singe_default_sim();
-    SingeSim *sim;
-    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSim *sim = test_create(&def);
     return sim;
 }
 
@@ -135,8 +134,7 @@ TEST(particles_are_numbered_as_documented) {
     SingeSheetDef a = test_sheet(&first), b = test_sheet(&second);
     b.velocity[0] = 2;
 
-    SingeSheetId id;
-    test_ok(sim, singe_sim_add_sheet(sim, &a, &id));
+    SingeSheetId id = test_add_sheet(sim, &a);
     test_ok(sim, singe_sim_add_sheet(sim, &b, &id));
     assert_int_equal(id.index, 1);
     test_ok(sim, singe_sim_commit(sim));
@@ -241,10 +239,9 @@ TEST(sheets_that_begin_inside_a_collider_are_logged) {
         SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.005f, 0.005f), NULL);
         SingeColliderDef plane = singe_default_collider();
         SingePoseKey key = {.position = {0, 0, deep ? 0.0041f : 0.0039f}, .rotation = {0, 0, 0, 1}};
-        SingeColliderId id;
 
         plane.path_count = 1, plane.path = &key, plane.offset = 1e-3f;
-        test_ok(sim, singe_sim_add_collider(sim, &plane, &id));
+        test_add_collider(sim, &plane);
         test_steps(sim, 2);
         assert_int_equal(heard.lines[SINGE_LOG_WARNING], deep);
 
@@ -265,18 +262,15 @@ TEST(pins_that_miss_their_sheet_are_logged) {
             TestMesh mesh = test_grid(8, 8, 0.005f, 0.005f);
             const SingeSheetDef sheet = test_sheet(&mesh);
             SingePinDef pin = singe_default_pin();
-            SingeSheetId id;
-            SingePinId pin_id;
-            SingeSim *sim;
-            assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
-            test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+            SingeSim *sim = test_create(&def);
+            const SingeSheetId id = test_add_sheet(sim, &sheet);
             pin.sheet = id;
             pin.point_count = 2;
             pin.points = points[misses];
             pin.radius = 0;
 
             if (late) test_ok(sim, singe_sim_commit(sim));
-            test_ok(sim, singe_sim_add_pin(sim, &pin, &pin_id));
+            test_add_pin(sim, &pin);
             if (!late) test_ok(sim, singe_sim_commit(sim));
             assert_int_equal(heard.lines[SINGE_LOG_WARNING], misses);
             if (misses)

@@ -16,9 +16,7 @@ static Scene quiet_scene(uint32_t cells) {
 static void assert_loads_the_same(SingeSim *sim) {
     SingeSim *loaded = test_reload(NULL, sim);
     test_assert_same(sim, loaded);
-    test_steps(sim, 15);
-    test_steps(loaded, 15);
-    test_assert_same(sim, loaded);
+    test_steps_alike(sim, loaded, 15);
     singe_sim_destroy(loaded);
 }
 
@@ -39,9 +37,7 @@ TEST(set_at_once_is_set_in_the_def) {
         if (k == 2) other.ambient_temperature = 330;
 
         test_ok(NULL, scene_build(&other, 8, &made));
-        test_steps(set.sim, 20);
-        test_steps(made.sim, 20);
-        test_assert_same(set.sim, made.sim);
+        test_steps_alike(set.sim, made.sim, 20);
         singe_sim_destroy(set.sim);
         singe_sim_destroy(made.sim);
     }
@@ -126,9 +122,7 @@ TEST(refused_numbers_change_nothing) {
     material.mass_min.field = &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "ours"};
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_material(sim, scene.sheets[0], &material, NULL));
 
-    test_steps(sim, 10);
-    test_steps(twin.sim, 10);
-    test_assert_same(sim, twin.sim);
+    test_steps_alike(sim, twin.sim, 10);
     singe_sim_destroy(sim);
     singe_sim_destroy(twin.sim);
 }
@@ -203,9 +197,7 @@ TEST(velocities_throw) {
     for (uint32_t i = 0; i < view.particle_count; i++) assert_true(fabsf(view.velocity[i][2] - 2) < 1e-5f);
 
     SingeSim *loaded = test_reload(NULL, sim);
-    test_steps(sim, 48);
-    test_steps(loaded, 48);
-    test_assert_same(sim, loaded);
+    test_steps_alike(sim, loaded, 48);
     for (uint32_t i = 0; i < view.vertex_count; i++) assert_true(fabsf(view.position[i][2] - 0.2f) < 0.01f);
 
     // a corner alone, and nothing else at first
@@ -227,9 +219,7 @@ TEST(the_same_material_changes_nothing) {
 
     test_ok(scene.sim, singe_sim_set_material(scene.sim, scene.sheets[0], &material, NULL));
     test_assert_same(scene.sim, twin.sim);
-    test_steps(scene.sim, 25);
-    test_steps(twin.sim, 25);
-    test_assert_same(scene.sim, twin.sim);
+    test_steps_alike(scene.sim, twin.sim, 25);
     singe_sim_destroy(scene.sim);
     singe_sim_destroy(twin.sim);
 }

@@ -51,9 +51,7 @@ TEST(bytes_are_the_same) {
     def.allocator = test_allocator(&hook);
     Scene b = scene_make(&def, 9);
 
-    test_steps(a.sim, 12);
-    test_steps(b.sim, 12);
-    test_assert_same(a.sim, b.sim);
+    test_steps_alike(a.sim, b.sim, 12);
 
     TestBytes first = test_save(a.sim);
     test_assert_saved(a.sim, &first);
@@ -95,10 +93,9 @@ TEST(handles_keep_their_values) {
     SingeSheetId sheet = scene.sheets[1];
     SingePinDef pin = singe_default_pin();
     const uint32_t vertex = 1;
-    SingePinId id;
 
     pin.sheet = sheet, pin.vertex_count = 1, pin.vertices = &vertex;
-    test_ok(sim, singe_sim_add_pin(sim, &pin, &id)); // into a free slot, which held nothing
+    const SingePinId id = test_add_pin(sim, &pin); // into a free slot, which held nothing
     assert_int_equal(id.index, scene.points.index);
     free(bytes.data);
     singe_sim_destroy(sim);
@@ -162,8 +159,7 @@ TEST(the_state_after_any_step_loads) {
     uint32_t refused = 0, loaded = 0;
     for (int k = 0; k < 4 * 3 * 3 * 3 * 3; k++) {
         SingeSimDef def = singe_default_sim();
-        SingeSim *sim;
-        test_ok(NULL, singe_sim_create(&def, &sim, NULL));
+        SingeSim *sim = test_create(&def);
 
         TestMesh mesh = test_grid(3, 3, 0.01f, 0.01f);
         SingeSheetDef sheet = test_sheet(&mesh);
@@ -455,9 +451,7 @@ TEST(hooks_are_only_hooks) {
     hooks.time_step = 0.001f, hooks.gravity[2] = 5, hooks.pace = 3, hooks.solver.substeps = 1, hooks.thread_count = 2;
     SingeSim *sim = test_reload(&hooks, scene.sim);
     test_ok(sim, singe_sim_set_source_callback(sim, scene.callback, scene_flux, &flux_strength));
-    test_steps(sim, 5);
-    test_steps(scene.sim, 5);
-    test_assert_same(sim, scene.sim);
+    test_steps_alike(sim, scene.sim, 5);
     singe_sim_destroy(sim);
     singe_sim_destroy(scene.sim);
 }

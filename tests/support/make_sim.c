@@ -135,6 +135,12 @@ void test_assert_same(SingeSim *a, SingeSim *b) {
     free(bytes.data);
 }
 
+void test_steps_alike(SingeSim *a, SingeSim *b, int count) {
+    test_steps(a, count);
+    test_steps(b, count);
+    test_assert_same(a, b);
+}
+
 TestBytes test_save(SingeSim *sim) {
     uint8_t *bytes;
     TestBytes copy;

@@ -67,6 +67,8 @@ SingeResult test_life(SingeSimDef def, SingeAllocator allocator);
 
 /// Fails unless all arrays, stats and saved bytes of two simulations are bitwise equal.
 void test_assert_same(SingeSim *a, SingeSim *b);
+/// Runs both for as many steps, and fails unless they are equal then.
+void test_steps_alike(SingeSim *a, SingeSim *b, int count);
 
 /// Saved bytes as a block from malloc.
 typedef struct TestBytes {
