@@ -253,7 +253,8 @@ void frame_free(Frame *frame) {
 SingeResult frame_take_surface(SingeSim *sim, Frame *frame, SingeError *error) {
     SingeResult result = singe_sim_surface(sim, &frame->surface);
     if (result) *error = *singe_sim_error(sim);
-    frame->time = singe_sim_stats(sim).time;
+    frame->stats = singe_sim_stats(sim);
+    frame->time = frame->stats.time;
     return result;
 }
 

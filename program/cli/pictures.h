@@ -44,6 +44,7 @@ typedef struct Frame {
     SingeSurface surface;
     Gas gas; ///< as in its file; empty if there is none
     double time;
+    SingeStats stats; ///< of a simulation
 } Frame;
 
 void frame_free(Frame *frame);

@@ -218,7 +218,7 @@ SingeResult run_begin_frame(Run *run, int frame, bool last, SingeError *error) {
     cost->triangles = run->record.triangles = run->frame.surface.triangle_count;
     cost->fine_triangles = run->record.fine_triangles = run->frame.surface.fine_triangle_count;
     if (!result) result = frame_take_gas(run->sim, &run->frame, error);
-    writing->stats = singe_sim_stats(run->sim);
+    writing->stats = run->frame.stats;
     run->totals->hottest = fmax(run->totals->hottest, (double)writing->stats.temperature_max);
     if (!result) result = tables_take_frame(&run->tables, run->sim, frame, error);
 
