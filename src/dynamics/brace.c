@@ -145,8 +145,9 @@ static void prepare_strands(void *task, int begin, int end) {
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
             const uint32_t *ends = springs->ends[k];
             const bool there = brace_is_there(pass->braces, pass->state->ablate, k);
-            set->weight[slot] = there ? dynamics_weight(weight, pass->plan->soft, ends[0], ends[1]) : 0;
-            set->length[slot] = brace_length(pass->braces, pass->plan, pass->shell, pass->state, pass->dynamics, k);
+            set->weight[slot] = there ? 0.5f * dynamics_weight(weight, pass->plan->soft, ends[0], ends[1]) : 0;
+            const float length = brace_length(pass->braces, pass->plan, pass->shell, pass->state, pass->dynamics, k);
+            set->target[slot] = length * length;
         }
     }
 }

@@ -147,7 +147,8 @@ static void gather_strands(void *task, int begin, int end) {
         size_t slot = set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
             bool moves = inverse_mass[springs->ends[k][0]] + inverse_mass[springs->ends[k][1]] > 0;
-            pull[k] = moves && set->weight[slot] > 0 ? set->pull[slot] * job->scale * set->length[slot] / rest[k] : 0;
+            pull[k] =
+                moves && set->weight[slot] > 0 ? set->pull[slot] * job->scale * sqrtf(set->target[slot]) / rest[k] : 0;
         }
     }
 }

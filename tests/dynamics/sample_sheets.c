@@ -120,5 +120,5 @@ float bench_weight(const Bench *bench, SingeColour colour, uint32_t spring) {
     const StrandSet *set = &bench->plan->strands.sets[colour];
     uint32_t s = 0;
     while (springs->strand_first[s + 1] <= spring) s++;
-    return set->weight[set->strand_slot[s] + (spring - springs->strand_first[s]) * STRAND_LANES];
+    return 2 * set->weight[set->strand_slot[s] + (spring - springs->strand_first[s]) * STRAND_LANES];
 }

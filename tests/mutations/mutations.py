@@ -78,8 +78,8 @@ MUTATIONS = [
     ("dynamics/plane_kernel.h", "max = lanes_all(plane->friction) * depth;",
      "max = lanes_all(0.5f * plane->friction) * depth;", "motion", "friction_holds_a_block_on_a_slope"),
     # eq 10 to 19: projection
-    ("dynamics/strand/strand_kernel.h", "Lanes e = (square - target) * lanes_all(0.5f);",
-     "Lanes e = (square - target) * lanes_all(0.45f);", "strand_project", "chains_match_a_dense_solver"),
+    ("dynamics/strand/strand_kernel.h", "Lanes e = square - target;",
+     "Lanes e = (square - target) * lanes_all(0.9f);", "strand_project", "chains_match_a_dense_solver"),
     ("dynamics/strand/strand_kernel.h", "mu = lanes_load(keep_at(group, k, KEEP_RIGHT)) + factor * mu;",
      "mu = lanes_load(keep_at(group, k, KEEP_RIGHT));", "strand_project", "chains_match_a_dense_solver"),
     ("dynamics/strand/strand_solver.c", "strand_project(plan, solver->order[i], pool, h, dynamics, substep->counters);",

@@ -44,7 +44,7 @@ enum { KEEP_RIGHT, KEEP_FACTOR, KEEP_CYCLIC };
 typedef struct Group {
     float *position;
     const uint32_t *node, *contiguous;
-    const float *length, *weight, *compliance; ///< compliance: NULL where it is the same everywhere
+    const float *target, *weight, *compliance; ///< compliance: NULL where it is the same everywhere
     uint32_t rows;
     size_t stride;                  ///< floats from one quadruple to the next where particles are contiguous
     float *keep, *first_contiguous; ///< first_contiguous: `position` seen from this part's first lane
@@ -76,16 +76,17 @@ static inline LaneNode group_node(const Group *group, uint32_t k) {
 
 static inline Row group_row(const Group *restrict group, uint32_t k, const LaneNode *a, const LaneNode *b) {
     size_t slot = (size_t)k * STRAND_LANES;
-    Lanes l = lanes_load(group->length + slot), weight = lanes_load(group->weight + slot);
+    Lanes target = lanes_load(group->target + slot), weight = lanes_load(group->weight + slot);
     Lanes dx = b->x - a->x, dy = b->y - a->y, dz = b->z - a->z;
-    Lanes square = dx * dx + dy * dy + dz * dz, target = l * l;
-    Lanes e = (square - target) * lanes_all(0.5f);
+    Lanes square = dx * dx + dy * dy + dz * dz;
+    Lanes e = square - target; // twice E, as `weight` is half of W
     // a spring crushed below sqrt(2) - 1 of its length has hardly a direction: its row asks for at most C = -l
-    Lanes crushed = target * lanes_all(0.17157288f);
-    if (__builtin_expect(lanes_any_less(square, crushed), 0))
-        e = lanes_where_less(square, crushed, -l * lanes_sqrt(square), e);
-    Lanes beyond = lanes_max(e - square * lanes_all(STRAND_COMPLIANT), lanes_all(0));
-    Lanes pull = group->softness * square + beyond * lanes_all(STRAND_YIELD);
+    if (__builtin_expect(lanes_any_less(e + square, lanes_all(0)), 0)) { // shorter than l/sqrt(2)
+        Lanes crushed = target * lanes_all(0.17157288f);
+        e = lanes_where_less(square, crushed, lanes_all(-2) * lanes_sqrt(target) * lanes_sqrt(square), e);
+    }
+    Lanes beyond = lanes_max(e - square * lanes_all(2 * STRAND_COMPLIANT), lanes_all(0));
+    Lanes pull = group->softness * square + beyond * lanes_all(0.5f * STRAND_YIELD);
     Lanes stiff = group->stiff;
     if (group->compliance) stiff = lanes_load(group->compliance + slot) * group->inverse_h2;
     return (Row){dx, dy, dz, weight * e, (a->w + b->w) * pull + stiff * square};
@@ -260,7 +261,7 @@ void STRAND_SOLVE(const StrandJob *job, uint32_t index, float *keep) {
         Group group = {.position = job->position,
                        .node = set->node + slot,
                        .contiguous = set->contiguous + part->row,
-                       .length = set->length + slot,
+                       .target = set->target + slot,
                        .weight = set->weight + slot,
                        .compliance = set->compliance_all < 0 ? set->compliance + slot : NULL,
                        .rows = part->rows,

@@ -48,8 +48,8 @@ typedef struct StrandSet {
     uint32_t *strand_slot;  ///< [strands] slot of the strand's first spring; spring k lies k rows further
     uint32_t *node;         ///< [row_count STRAND_LANES] four times the particle's number
     uint32_t *contiguous; ///< [row_count] node of column 0 where those of the other columns follow, or STRAND_GATHERED
-    float *length;        ///< [row_count STRAND_LANES] m, targets
-    float *weight;        ///< [row_count STRAND_LANES] W of eq 19, with char; 0 where there is no spring
+    float *target;        ///< [row_count STRAND_LANES] m2, squares of target lengths
+    float *weight;        ///< [row_count STRAND_LANES] half of W of eq 19, with char; 0 where there is no spring
     float *compliance;    ///< [row_count STRAND_LANES] m/N
     float *bend_limit;    ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
     _Atomic bool bends;   ///< some limit is, or has been, finite

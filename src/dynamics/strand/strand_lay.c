@@ -358,7 +358,7 @@ bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowher
 
     set->block = words;
     words += (64 - (uintptr_t)words % 64) % 64 / sizeof *words;
-    set->length = words;
+    set->target = words;
     set->weight = words + slots;
     set->compliance = words + 2 * slots;
     set->node = (uint32_t *)(void *)(words + 3 * slots);

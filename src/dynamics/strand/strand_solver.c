@@ -10,10 +10,10 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/// Operations of a row of the chain's solve and bytes it moves, counted in strand_kernel.h. The bytes: node, length,
+/// Operations of a row of the chain's solve and bytes it moves, counted in strand_kernel.h. The bytes: node, target,
 /// weight, compliance and position forward; node, position twice back. Rows whose particles are contiguous do without
 /// the nodes.
-enum { STRAND_FLOPS = 51, STRAND_BYTES = 4 * 4 + 16 + 4 + 2 * 16 };
+enum { STRAND_FLOPS = 49, STRAND_BYTES = 4 * 4 + 16 + 4 + 2 * 16 };
 
 /// Floats that one solve needs: STRAND_KEEP for each row and lane.
 static size_t keep_floats(const Strands *strands) {
@@ -132,10 +132,11 @@ static void prepare_runs(void *task, int begin, int end) {
             uint32_t a = springs->ends[k][0], b = springs->ends[k][1];
             bool here = flags[k] & SINGE_ALIVE;
             if (torn) here = here && patch_is_in_strand(job->plan, job->shell, job->colour, k, slot);
-            set->weight[slot] = here ? dynamics_weight(material, soft, a, b) : 0;
-            set->length[slot] = target[k];
+            set->weight[slot] = here ? 0.5f * dynamics_weight(material, soft, a, b) : 0;
+            set->target[slot] = target[k] * target[k];
             if (!crease || crease[k] == 0) continue;
-            set->length[slot] *= crease_factor(job->plan, job->shell, job->state, job->dynamics, k);
+            const float length = target[k] * crease_factor(job->plan, job->shell, job->state, job->dynamics, k);
+            set->target[slot] = length * length;
             set->creased[r] = 1;
         }
     }
