@@ -30,7 +30,8 @@ static const float LINE_ASH = 0.05f;    ///< strength of ash over that of char
 static const float LINE_CHAR = 0.25f;   ///< max strength of char over that of fresh sheet, in a sheet that must tear
 static const float LINE_WET = 0.1f;     ///< strength of soaked over that of dry sheet
 static const float EDGE_STRETCH = 1.4f;
-static const float WET_FROM = 0.1f, WET_TO = 0.6f; ///< water over the dry mass: air-dry, and soaked
+static const float EDGE_DOUBTFUL = 0.95f * 1.4f * 1.4f; ///< square of what may be EDGE_STRETCH
+static const float WET_FROM = 0.1f, WET_TO = 0.6f;      ///< water over the dry mass: air-dry, and soaked
 enum { LINE_PASSES = 12 };
 
 /// Share of a vertex that is ash.
@@ -91,6 +92,24 @@ static float edge_stretch(const Shell *shell, const State *state, SingeColour co
     return length / shell->springs[colour].rest[spring];
 }
 
+bool tear_is_stretched(const Shell *shell, const State *state, uint32_t vertex) {
+    const float(*x)[4] = (const float(*)[4])state->dynamics.position;
+    const float *blue = shell->springs[SINGE_BLUE].rest, *yellow = shell->springs[SINGE_YELLOW].rest;
+    for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
+        const uint32_t *corner = shell->cells[shell->fan[f]];
+        const CellSprings *springs = &shell->cell_springs[shell->fan[f]];
+        int i = 0;
+        while (corner[i] != vertex) i++;
+        const float rest[3] = {blue[springs->blue[i]], yellow[springs->yellow[i & 1]],
+                               blue[springs->blue[(i + 3) & 3]]};
+        for (int k = 0; k < 3; k++) {
+            const Float4 d = float4_load(x[corner[(i + k + 1) & 3]]) - float4_load(x[vertex]);
+            if (float4_dot(d, d) >= EDGE_DOUBTFUL * rest[k] * rest[k]) return true;
+        }
+    }
+    return false;
+}
+
 /// Whether a line force, by its square, is below the share of the strength of any corner that tears: of dry cells that
 /// have not burnt by their sheet's weakest vertex.
 static bool measure_is_far(const Measure *job, uint32_t cell, float square) {
@@ -113,21 +132,20 @@ static bool measure_is_stretched(const Measure *job, uint32_t cell) {
     const Shell *shell = job->shell;
     const CellSprings *springs = &shell->cell_springs[cell];
     const float *blue = shell->springs[SINGE_BLUE].rest, *yellow = shell->springs[SINGE_YELLOW].rest;
-    const float doubtful = 0.95f * EDGE_STRETCH * EDGE_STRETCH;
     Float4 x[4];
     for (int i = 0; i < 4; i++) x[i] = float4_load(job->state->dynamics.position[shell->cells[cell][i]]);
 
     for (int i = 0; i < 4; i++) {
         const Float4 d = x[(i + 1) & 3] - x[i];
         const float rest = blue[springs->blue[i]];
-        if (float4_dot(d, d) < doubtful * rest * rest) continue;
+        if (float4_dot(d, d) < EDGE_DOUBTFUL * rest * rest) continue;
         if (edge_stretch(shell, job->state, SINGE_BLUE, springs->blue[i]) > EDGE_STRETCH) return true;
     }
 
     for (int i = 0; i < 2; i++) {
         const Float4 d = x[i + 2] - x[i];
         const float rest = yellow[springs->yellow[i]];
-        if (float4_dot(d, d) < doubtful * rest * rest) continue;
+        if (float4_dot(d, d) < EDGE_DOUBTFUL * rest * rest) continue;
         if (edge_stretch(shell, job->state, SINGE_YELLOW, springs->yellow[i]) > EDGE_STRETCH) return true;
     }
 
@@ -211,7 +229,7 @@ static double measure_cells(void *task, int begin, int end) {
         const float keep = after < 0.5f * before ? 0 : job->keep;
         float4_store(held, along + keep * (held_first - along));
         float4_store(held + 2, rest + keep * (held_last - rest));
-        near += measure_is_near(job, c, held);
+        if (near == 0) near = measure_is_near(job, c, held); // one is enough
     }
 
     return near;

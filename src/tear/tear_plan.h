@@ -58,7 +58,10 @@ float tear_strength(const TearPlan *plan, const Shell *shell, const State *state
 /// where it keeps the share `weakened` of its strength when it must tear.
 float tear_strength_least(const Shell *shell, uint32_t sheet, float weakened, float ash);
 
-/// Computes the filtered line force of every cell (line_force.c). Returns the number of cells near their strength.
+/// Whether an edge or a diagonal at a vertex may be so long that the vertex tears, whatever its strength.
+bool tear_is_stretched(const Shell *shell, const State *state, uint32_t vertex);
+
+/// Computes the filtered line force of every cell (line_force.c). Not 0 if a cell is near its strength.
 double tear_measure(TearPlan *plan, const Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT],
                     Pool *pool, float h);
 

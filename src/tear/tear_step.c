@@ -262,19 +262,27 @@ typedef struct Ratios {
     const State *state;
 } Ratios;
 
-/// Whether a vertex cannot tear: no principal value of its cells' mean line force exceeds the largest of their norms,
-/// which is well below its strength even for a hinge, and below what lets a stretched edge tear it.
-static inline bool is_far_from_tearing(const Ratios *job, uint32_t vertex) {
+/// Whether the line forces of all cells at a vertex are below `limit` N/m by their norms, which no principal value of
+/// their mean exceeds.
+static inline bool carries_less(const Ratios *job, uint32_t vertex, float limit) {
     const Shell *shell = job->shell;
-    const float strength = tear_strength(job->plan, shell, job->state, vertex);
-    const float least = 0.9f * float_min(TEAR_HINGE * strength, job->plan->safe), square = least * least;
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
         const float *t = job->plan->smooth[0][shell->fan[k]];
         float norm = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
-        if (!(norm < square)) return false;
+        if (!(norm < limit * limit)) return false;
     }
 
     return true;
+}
+
+/// Whether a vertex cannot tear: what its cells carry is well below its strength even for a hinge, and below what lets a
+/// stretched edge tear it, or there is none.
+static inline bool is_far_from_tearing(const Ratios *job, uint32_t vertex) {
+    const TearPlan *plan = job->plan;
+    const float margin = 0.9f, hinge = margin * TEAR_HINGE;
+    if (carries_less(job, vertex, hinge * plan->safe_ash)) return true; // as the strength is at least that
+    if (!carries_less(job, vertex, hinge * tear_strength(plan, job->shell, job->state, vertex))) return false;
+    return carries_less(job, vertex, margin * plan->safe) || !tear_is_stretched(job->shell, job->state, vertex);
 }
 
 /// How close each vertex is to tearing; 0 if it would tear but can along none of its edges, or is far from it.
