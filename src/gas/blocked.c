@@ -4,6 +4,27 @@
 
 #include <string.h>
 
+/// Cells of a row that are looked at together: where a collider is farther from their middle than half of them are long,
+/// it has all of them or none.
+enum { BLOCKED_RUN = 8 };
+
+/// Marks cells [first, first + BLOCKED_RUN) of a row, up to `end`, whose centre is inside the collider.
+static void blocked_run(const GasPlan *plan, const Collider *collider, const Pose *pose, const int at[3], int end,
+                        uint8_t *solid) {
+    const float half = 0.5f * BLOCKED_RUN * plan->cell;
+    Float3 x = {plan->origin[0] + plan->cell * ((float)at[0] + 0.5f * BLOCKED_RUN),
+                plan->origin[1] + plan->cell * ((float)at[1] + 0.5f),
+                plan->origin[2] + plan->cell * ((float)at[2] + 0.5f)},
+           normal;
+    const float middle = collider_distance(collider, pose_unapply(pose, x), half, &normal);
+    if (middle >= half) return;
+
+    for (int i = at[0]; i < at[0] + BLOCKED_RUN && i < end; i++) {
+        x.x = plan->origin[0] + plan->cell * ((float)i + 0.5f);
+        solid[i] |= middle <= -half || collider_distance(collider, pose_unapply(pose, x), 0, &normal) < 0;
+    }
+}
+
 static void blocked_planes(void *context, int begin, int end) {
     const GasPass *pass = context;
     GasPlan *plan = pass->plan;
@@ -19,13 +40,8 @@ static void blocked_planes(void *context, int begin, int end) {
                 const Collider *collider = &pass->colliders->items[s];
                 if (collider->generation == 0) continue;
                 Pose pose = path_pose(&collider->path, pass->state->time);
-                for (int i = 0; i < grid->n[0]; i++) {
-                    Float3 x = {plan->origin[0] + plan->cell * ((float)i + 0.5f),
-                                plan->origin[1] + plan->cell * ((float)j + 0.5f),
-                                plan->origin[2] + plan->cell * ((float)k + 0.5f)},
-                           normal;
-                    plan->solid[c + (size_t)i] |= collider_distance(collider, pose_unapply(&pose, x), 0, &normal) < 0;
-                }
+                for (int i = 0; i < grid->n[0]; i += BLOCKED_RUN)
+                    blocked_run(plan, collider, &pose, (const int[3]){i, j, k}, grid->n[0], plan->solid + c);
             }
         }
 }
