@@ -94,6 +94,7 @@ struct DynamicsPlan {
     const Solver *solver;
     // per particle, refreshed at every step
     float *inverse_mass;   ///< 1/kg; 0 if pinned or gone
+    _Atomic bool held;     ///< some that are not gone have 0
     float (*normal)[4];    ///< unit; fourth: 1/m, k of the quadratic drag, dv/dt = -k |v_n| v_n
     float (*air)[4];       ///< m/s, the wind there; fourth: 1/s, damping
     float (*predicted)[4]; ///< m, x~ of eq 9

@@ -142,11 +142,12 @@ static void gather_strands(void *task, int begin, int end) {
     const StrandSet *set = &job->plan->strands.sets[job->colour];
     const float *inverse_mass = job->plan->inverse_mass, *rest = springs->rest;
     float *pull = job->plan->patches.pull[job->colour];
+    const bool held = job->plan->held;
 
     for (int s = begin; s < end; s++) {
         size_t slot = set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
-            bool moves = inverse_mass[springs->ends[k][0]] + inverse_mass[springs->ends[k][1]] > 0;
+            bool moves = !held || inverse_mass[springs->ends[k][0]] + inverse_mass[springs->ends[k][1]] > 0;
             pull[k] =
                 moves && set->weight[slot] > 0 ? set->pull[slot] * job->scale * sqrtf(set->target[slot]) / rest[k] : 0;
         }

@@ -62,6 +62,7 @@ static void prepare_particles(void *task, int begin, int end) {
     const Matter *matter = &shell->matter;
     const Float3 mean = float3_load(job->wind->velocity);
     const bool gusts = job->wind->gust > 0;
+    bool held = false;
 
     for (int i = begin; i < end; i++) {
         // inverse mass; weight, which falls with char
@@ -73,6 +74,7 @@ static void prepare_particles(void *task, int begin, int end) {
         float progress = shell_burn_progress(state->burn->mass[i], field_at(matter->mass_min, (uint32_t)i));
         plan->soft[i] = 1 + (field_at(matter->char_weight, (uint32_t)i) - 1) * progress;
         if (!alive) continue;
+        held |= plan->inverse_mass[i] == 0;
 
         // drag, and what it needs: normal and air
         float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
@@ -101,12 +103,14 @@ static void prepare_particles(void *task, int begin, int end) {
         if (state->gas->awake) air += float4_load(state->gas->air[i]);
         float4_store(plan->air[i], float4_with(air, damping));
     }
+    if (held) atomic_store_explicit(&plan->held, true, memory_order_relaxed);
 }
 
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, const SingeWindDef *wind,
                       const SourceList *sources, Pool *pool, DynamicsState *dynamics) {
     Prepare job = {plan, shell, state, wind, air_of(sources, state->time), dynamics};
     memset(plan->height_wait, 0, height_wait_count(shell));
+    plan->held = false;
     pool_for(pool, (int)shell->cell_count, POOL_GRAIN, prepare_cells, &job);
     pool_for(pool, (int)shell->particle_count, POOL_GRAIN, prepare_particles, &job);
     if (plan->solver->prepare) plan->solver->prepare(plan, shell, state, pool, dynamics);
