@@ -191,7 +191,8 @@ static const ArgOption clean_options[] = {
 };
 
 static bool clean_check(const ArgCommand *command, void *options) {
-    return ((CleanOptions *)options)->every || args_complain(command, "--keep-every says which frames remain");
+    return ((CleanOptions *)options)->every ||
+           args_complain(command, "--keep-every is required: it says which frames remain");
 }
 
 const ArgCommand clean_command = {

@@ -150,7 +150,7 @@ SingeResult server_open(View *view, Server **out, SingeError *error) {
         const int wanted = view->port;
         server_close(server);
         return refuse(error, SINGE_ERROR_FILE, "view", -1,
-                      wanted ? "port %d of the loopback is taken or not allowed; --port chooses another"
+                      wanted ? "port %d of this machine (loopback) is in use or not allowed; --port chooses another"
                              : "no port of the loopback can be opened",
                       wanted);
     }

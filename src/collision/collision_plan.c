@@ -352,28 +352,30 @@ bool collision_grow_outside(Memory *memory, CollisionPlan *plan, uint64_t wanted
 const char *collision_validate(const CollisionPlan *plan) {
     if (!plan->searched) return NULL;
 
-    if (plan->listed_count > plan->pair_count && plan->pair_count) return "a step's pairs begin with the search's";
-    if (plan->pair_count > plan->pair_capacity || plan->listed_count > plan->pair_capacity) return "pairs have room";
-    if (plan->pair_capacity > plan->sizes.pair_max) return "lists of pairs do not outgrow their limit";
+    if (plan->listed_count > plan->pair_count && plan->pair_count) return "the step has fewer pairs than its search";
+    if (plan->pair_count > plan->pair_capacity || plan->listed_count > plan->pair_capacity)
+        return "there are more pairs than room for them";
+    if (plan->pair_capacity > plan->sizes.pair_max) return "the list of pairs is larger than its limit";
 
     for (uint32_t k = 0; k < plan->listed_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];
         if (pair->a >= plan->cell_count || pair->b >= plan->cell_count || pair->a > pair->b)
-            return "a pair is of cells in order";
-        if (pair->bridge != SHELL_NONE && pair->bridge >= plan->cell_count) return "a bridge is a cell";
-        if (!(pair->distance >= 0)) return "distances are not negative";
+            return "a pair's cells are out of order or do not exist";
+        if (pair->bridge != SHELL_NONE && pair->bridge >= plan->cell_count) return "a pair's bridge is not a cell";
+        if (!(pair->distance >= 0)) return "a pair has a negative distance, or none";
     }
 
-    if (plan->repulsion_count > plan->repulsion_capacity) return "repulsions have room";
-    if (plan->repulsion_capacity > plan->sizes.repulsion_max) return "lists of repulsions do not outgrow their limit";
+    if (plan->repulsion_count > plan->repulsion_capacity) return "there are more repulsions than room for them";
+    if (plan->repulsion_capacity > plan->sizes.repulsion_max) return "the list of repulsions is larger than its limit";
 
     for (uint32_t k = 0; k < plan->repulsion_count; k++) {
         const Repulsion *repulsion = &plan->repulsions[k];
-        if (repulsion->a >= repulsion->b || repulsion->b >= plan->cell_count) return "a repulsion is of cells in order";
+        if (repulsion->a >= repulsion->b || repulsion->b >= plan->cell_count)
+            return "a repulsion's cells are out of order or do not exist";
         for (int c = 0; c < 2; c++) {
             const uint16_t *weight = repulsion->weight[c];
             if (weight[0] + weight[1] + weight[2] + weight[3] != REPULSION_ONE)
-                return "a repulsion's points are on its cells";
+                return "the weights of a repulsion's point do not add up";
         }
     }
 

@@ -178,11 +178,11 @@ SingeResult render_find_feet(const Fine *fine, bool by_uv, float reach, uint32_t
 
         if (far && by_uv && first)
             result = error_set(error, SINGE_ERROR_MESH, "render mesh", -1,
-                               "the middle of an edge has a uv that the sheet has not");
+                               "the middle of an edge has a uv that the sheet lacks");
         else if (far && by_uv)
             result =
                 error_set(error, SINGE_ERROR_MESH, "render mesh", worst,
-                          "%u of %u vertices have a uv that the sheet has not, such as vertex %u", far, count, worst);
+                          "%u of %u vertices have a uv that the sheet lacks, such as vertex %u", far, count, worst);
         else if (far && first)
             result = error_set(error, SINGE_ERROR_MESH, "render mesh", -1,
                                "the middle of an edge is farther from the sheet than its reach, %g m", (double)reach);

@@ -1,4 +1,4 @@
-"""In the gas that rises from it fire climbs faster than it creeps down, whatever the cells."""
+"""Fire climbs faster in its own rising gas than it creeps down, on cells of any size."""
 
 import json
 import os

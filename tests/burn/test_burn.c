@@ -146,7 +146,7 @@ TEST(exponents_follow_their_solutions) {
     }
 }
 
-/// However fast and whatever the exponent: what is left is a number from m_min on.
+/// However fast it burns and whatever the exponent, the mass that is left is a number and at least m_min.
 TEST(any_rate_leaves_a_mass) {
     const float exponents[] = {0, 0.01f, 0.5f, 1, 2, 3, 30, 300};
     for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++)
@@ -374,7 +374,7 @@ TEST(fibres_turn_shrinkage) {
     SingeMaterialDef even = plain_material();
     even.fibre_shrink = singe_param(1);
     BurningSheet *b = burning_sheet(2, 2, 0.01f, &even);
-    assert_null(b->shell.springs[SINGE_BLUE].grain); // no room taken where there is no direction
+    assert_null(b->shell.springs[SINGE_BLUE].grain); // no memory is taken where there is no direction
     burning_sheet_free(b);
 }
 

@@ -57,7 +57,7 @@ TEST(edges_glow_at_two_resistances_in_series) {
     }
 }
 
-/// Within a leaf little air comes, until the char has begun to go; fuel keeps it away; what is cold does not glow.
+/// Little air reaches the inside of a leaf until char has begun to go; fuel keeps air away; cold char does not glow.
 TEST(leaves_glow_slower_than_edges) {
     SingeMaterialDef material = charring();
     BurningSheet *b = leaf(6, &material, HOT);

@@ -1,4 +1,4 @@
-"""Mesh files that crash readers, or make them take all memory or time, by name: {name: (bytes, part of the message)}."""
+"""Mesh files that crash readers or exhaust memory or time: {name: (bytes, part of the message)}."""
 
 import base64
 import json
@@ -150,7 +150,7 @@ GOOD = {
     "a.obj": obj(4),
 }
 
-# the second is a part of the message, "" where it is assimp's own
+# the second is a part of the message; "" if assimp words it
 HOSTILE = {
     # nodes in nodes, and nodes in themselves
     "self.gltf": (gltf(nodes=[{"children": [0], "mesh": 0}]), ""),

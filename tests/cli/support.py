@@ -73,7 +73,7 @@ class Ply:
 
 
 def write_png(path, rows, channels=1):
-    """A picture of these rows of bytes, grey or of red, green and blue."""
+    """Writes rows of bytes as a PNG, grey or RGB."""
     header = struct.pack(">IIBBBBB", len(rows[0]) // channels, len(rows), 8, 0 if channels == 1 else 2, 0, 0, 0)
     pixels = zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))
     with open(path, "wb") as file:
@@ -83,7 +83,7 @@ def write_png(path, rows, channels=1):
 
 
 def at_most(kind, most):
-    """What limits a child process to so much of a resource, for its preexec_fn."""
+    """A preexec_fn that limits a resource of the child process."""
     return lambda: resource.setrlimit(kind, (most, most))
 
 
@@ -131,10 +131,10 @@ class Case(unittest.TestCase):
         return digests
 
     def wait_for(self, condition, process=None):
-        """Until it holds, or the process has ended."""
+        """Waits until the condition holds or the process has ended."""
         end = time.monotonic() + 60
         while not condition() and (process is None or process.poll() is None):
-            self.assertLess(time.monotonic(), end, "it does not come forward")
+            self.assertLess(time.monotonic(), end, "timed out")
             time.sleep(0.001)
 
     def table(self, *parts):
@@ -145,7 +145,7 @@ class Case(unittest.TestCase):
         return self.table(out, "stats.csv")
 
     def numbers(self, out):
-        """The stats without what a clock measured."""
+        """The stats without the columns that a clock measured."""
         return [{k: v for k, v in row.items() if not k.startswith("ms_")} for row in self.stats(out)]
 
     def record(self, out):

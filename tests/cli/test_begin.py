@@ -32,7 +32,7 @@ class Begin(Case):
         return ["run", self.scene, "-o", self.path("o"), "--set", "sheets.0.grid.cells=[30, 30]", *more]
 
     def test_a_first_frame_that_fails_leaves_the_earlier_run(self):
-        """Whichever of its files it is."""
+        """Whichever of its files cannot be written."""
         args = ["--exr"] if HAS_EXR else []
         self.run_scene("o", *args, preview=True)
         before = self.tree("o")
@@ -69,7 +69,7 @@ class Begin(Case):
         return run.returncode, shown.removesuffix(end).decode(errors="replace")
 
     def test_a_terminal_is_asked_before_an_earlier_run_goes(self):
-        """Only where there is something to lose, and a script never is."""
+        """It is asked only if there is something to lose; a script is never asked."""
         run = ["run", self.scene, "-o", self.path("o"), "--no-preview", "--set", "frames=2"]
         code, shown = self.on_a_terminal(None, *run)
         self.assertEqual((code, "[y/N]" in shown), (0, False), shown)
@@ -102,7 +102,7 @@ class Begin(Case):
                 self.assertEqual(self.tree("o"), before)
 
     def test_what_check_calls_good_begins(self):
-        """Extremes that the parts behind the simulation refused when it ran."""
+        """Extreme values, which check once accepted and parts behind the simulation refused during the run."""
         lines_of_all = ["frames: 2", "steps: 2", "preview: {size: [32, 32], samples: 1}", "gas: no",
                         "sheets: [{grid: {size: [0.1, 0.1], cells: [6, 6]}}]"]
         for number, extra in enumerate((

@@ -85,7 +85,7 @@ class Branch(Case):
         self.assertEqual(self.record("k")["from"]["frame"], 3)
 
     def test_each_change(self):
-        """Each thing that may change does, from the frame after on."""
+        """Each setting that may change takes effect from the next frame on."""
         self.whole("--set", "checkpoints.every=2")
         whole = self.plys("whole")
         frames = sorted(whole)
@@ -155,7 +155,7 @@ class Branch(Case):
                 self.assertIn(part, self.run_scene("no", "--set", f"pace={wrong}", expect=2)[1])
 
     def test_burn_by(self):
-        """So much has burnt by a frame, whether the fire would be faster or slower; then the pace is its own again."""
+        """The given share has burnt by the frame, whether the fire must hurry or wait; then the scene's pace applies."""
         self.whole("--frames", "40")
         own = float(self.stats("whole")[29]["burnt_fraction"])
         for goal in (0.3 * own,) if SANITIZED else (0.3 * own, 2 * own):

@@ -1,4 +1,4 @@
-// Parts of the command whose odd cases no run reaches.
+// Parts of the command: odd cases that no run reaches.
 
 #include "support/test.h"
 #include <stdlib.h>

@@ -16,7 +16,7 @@ if HAS_EXR:
 
 class Convert(Case):
     def files(self, out, name):
-        """All that a format has left: bytes by name."""
+        """All files that a format has written: {name: bytes}."""
         found = {}
         folder = self.path(out, name)
         for file in sorted(os.listdir(folder)):
@@ -45,7 +45,7 @@ class Convert(Case):
         self.assertEqual(self.plys("o"), self.plys("c"))
 
     def test_some_frames(self):
-        """The bytes of these frames, no other frames, and no root of frames that are not there."""
+        """Only these frames are written, with the same bytes, and no root file, which would name missing ones."""
         self.run_formats("o", "--frames", "5")
         self.run_scene("c", "--quiet", "--frames", "5")
         for name in FORMATS:
@@ -65,7 +65,7 @@ class Convert(Case):
             self.assertIn("--frames: not with", error)
 
     def test_progress_ends_once(self):
-        """Whatever is written, and however often a format reads the frames."""
+        """Whatever the format, and however often it reads the frames."""
         self.run_scene("o", "--quiet", "--set", "output.texture_size=64")
         for wanted in (["usd"], ["usd", "glb", "vtp"], ["vat"], ["usdz", "vat", "glb"]):
             with self.subTest(wanted):
@@ -74,7 +74,7 @@ class Convert(Case):
                 self.assertEqual(sum(a == b for a, b in ends), 1, err)
 
     def test_resume(self):
-        """A run that goes on, with a format more than it began with, leaves what one from the start does."""
+        """A run resumed with an additional format leaves the files of a run that had it from the start."""
         self.run_formats("o")
         self.run_scene("r", "--quiet", "--frames", "3")
         self.run_formats("r", "--resume")

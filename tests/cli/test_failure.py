@@ -38,7 +38,7 @@ class Failure(Case):
 
     @unittest.skipIf(SANITIZED, "a sanitizer needs files and memory of its own")
     def test_limits_of_a_process_are_named(self):
-        """Few open files and a small stack are no faults of the scene, and little memory is not none."""
+        """Low limits of open files and of the stack are not blamed on the scene, and low memory is given in MB."""
         def limited(kind, most, expect, *args):
             return self.singe("check", self.scene, *args, expect=expect, preexec_fn=at_most(kind, most))[1]
 
@@ -57,7 +57,7 @@ class Failure(Case):
         self.assertIn("stats.csv", self.run_scene("o", expect=1)[1])
 
     def limited(self, out, size, *args):
-        """A run whose files may have `size` bytes at most, as on a disk that fills up."""
+        """Runs with files limited to `size` bytes, as on a disk that fills up."""
         return self.singe("run", self.scene, "-o", self.path(out), "--no-preview", *args, expect=1,
                           preexec_fn=at_most(resource.RLIMIT_FSIZE, size))
 
@@ -71,12 +71,12 @@ class Failure(Case):
         self.assertEqual(record["result"], "failed")
         self.assertIn("tiny.0001.ply", record["error"]["message"])
         self.assertEqual(self.plys("o"), {})
-        # with space again the run can be made up
+        # once there is space again, the run can be completed
         self.run_scene("o", "--resume")
         self.assertEqual(self.plys("o"), self.plys("whole"))
 
     def test_no_space_for_a_line(self):
-        """Frames fit, the growing stats.csv does not: its last line is whole."""
+        """Frames fit, but stats.csv grows too large: its last line is complete."""
         self.scene = self.write_scene(frames=200, steps=1, cells=2, gas="no")
         self.run_scene("whole", "--quiet")
         largest = max(os.path.getsize(self.path("whole", "ply", n)) for n in self.plys("whole"))
@@ -99,7 +99,7 @@ class Failure(Case):
         self.assertEqual(self.numbers("o"), self.numbers("whole"))
 
     def test_full_disk(self):
-        """A real small file system where one may be mounted (root in its own mount name space)."""
+        """On a small file system, where one can be mounted (as root of a mount namespace of its own)."""
         folder = self.path("small")
         os.mkdir(folder)
         script = (f'mount -t tmpfs -o size=256k none "{folder}" || exit 77; '
@@ -125,7 +125,7 @@ class Failure(Case):
         self.assertEqual(len(self.plys("o")), 6)
 
     def test_a_limit_of_file_sizes_is_a_message(self):
-        """The signal that the system sends as well ends no command."""
+        """The error is reported; the signal that comes with it (SIGXFSZ) does not end the command."""
         limited = at_most(resource.RLIMIT_FSIZE, 0)
         self.run_scene("o", "--quiet")
         self.singe("clean", self.path("o"), "--keep-every", "2", preexec_fn=limited)  # its locks cannot name it

@@ -1,4 +1,4 @@
-"""A scene's parameters found again from what one run of it shows."""
+"""singe fit recovers the parameters of a scene from a run of it."""
 
 import os
 import re
@@ -79,7 +79,7 @@ class Fit(Case):
 
     @unittest.skipUnless(HAS_EXR, "built without EXR")
     def test_masks(self):
-        """From the textures that a run leaves; the search is over all of the range."""
+        """From the textures that a run writes; the search covers the whole range."""
         from exr import read
         self.truth("--set", "output.formats=[textures]", "--set", "output.texture_size=128")
         for frame in 10, 16:
@@ -167,7 +167,7 @@ class Fit(Case):
         self.assertIn("belongs to singe fit", self.singe("sweep", self.path("plan.yaml"), expect=2)[1])
 
     def test_what_a_row_lacks(self):
-        """A probe that the scene has not, masks of no frame: the fit fails and says so."""
+        """A probe that the scene lacks, or masks of frames that do not exist: the fit fails and says so."""
         self.truth()
         Path(self.path("curve.csv")).write_text("time,temperature\n0,300\n1,400\n")
         _, err = self.fit("scene: tiny.yaml\ntarget: {temperature: {file: curve.csv, probe: q}}\nevaluations: 1\n" + RANGE,

@@ -1,4 +1,4 @@
-"""The gas in a run's folder: drawn from its files, cleared away with the rest, refused when damaged."""
+"""The gas in a run's folder: drawn from its files, removed with the rest, refused when damaged."""
 
 import os
 import shutil
@@ -15,7 +15,7 @@ class Gas(Case):
         return self.path(out, "gas", "tiny.%04d.vdb" % frame)
 
     def put_gas(self, frame):
-        """A column of flame over the sheet, as if the run had left it."""
+        """A column of flame over the sheet, as if the run had written it."""
         os.makedirs(self.path("o", "gas"), exist_ok=True)
         subprocess.run([SAMPLE, self.vdb(frame), "37", "21", "40"], check=True, stdout=subprocess.DEVNULL)
 
@@ -27,7 +27,7 @@ class Gas(Case):
         return {name: self.read(os.path.join(folder, name)) for name in sorted(os.listdir(folder))}
 
     def test_run_writes_it(self):
-        """A file a frame, the same for any threads and after a resumption; none without gas."""
+        """One file a frame, the same for any number of threads and after a resumption; none without gas."""
         self.run_scene("o", "--quiet", "--threads", "1")
         files = self.vdbs("o")
         self.assertEqual(list(files), ["tiny.%04d.vdb" % i for i in range(1, 7)])
@@ -69,7 +69,7 @@ class Gas(Case):
         self.assertEqual(self.read(png), without)
 
     def test_left_overs(self):
-        """A new run clears away what an earlier one left, a resumed one what was half written; others' files stay."""
+        """A new run removes the files of an earlier one, a resumed run half-written files; other files stay."""
         self.run_scene("o", "--quiet", "--frames", "3")
         self.put_gas(5)
         for name in "tiny.0002.vdb.4711-0.tmp", "tiny.0002.vdb.bak", "other.0001.vdb":

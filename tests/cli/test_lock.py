@@ -11,7 +11,7 @@ from support import Case
 
 class Lock(Case):
     def begin(self, out, *args):
-        """A run that has begun, and goes on for long."""
+        """Starts a run that would take very long, and waits for its second frame."""
         scene = self.write_scene("long.yaml", frames=100000, cells=20)
         run = self.start("run", scene, "-o", self.path(out), "--no-preview", *args)
         self.addCleanup(run.stderr.close)
@@ -61,7 +61,7 @@ class Lock(Case):
         return mark and len(body) == 4 * properties * vertices + 13 * faces
 
     def test_a_cache_is_read_while_it_is_written(self):
-        """All that is there by its name is whole; what reads it stops at the last frame, and takes nothing from the run."""
+        """A file under its final name is complete. Readers stop at the last frame, and do not disturb the run."""
         run = self.begin("o")
         looked = 0
         for _ in range(300):
@@ -116,7 +116,7 @@ class Lock(Case):
         self.assertFalse([n for n in os.listdir(self.path("o")) if n.endswith(".lock")])
 
     def test_pictures_of_a_run_without(self):
-        """While a run draws none itself, its frames may be drawn."""
+        """`render` may draw the frames of a run that draws no pictures itself."""
         run = self.begin("o")
         self.singe("render", self.path("o"), "--frames", "1-2")
         self.assertEqual(len(os.listdir(self.path("o", "frames"))), 2)

@@ -1,4 +1,4 @@
-"""Materials on the command line: check, runs that need no material file any more, bench front on one's own."""
+"""Materials on the command line: check, runs that no longer need the material's file, bench front on a file."""
 
 import json
 import os
@@ -35,7 +35,7 @@ class Materials(Case):
                 self.assertEqual("on film" in out, "front" in line)
 
     def test_check_looks_for_a_front_for_so_long(self):
-        """Where heat hardly spreads, the front creeps: for 60,000 steps and iterations at most."""
+        """Where heat hardly spreads the front creeps; check gives up after 60,000 steps and iterations."""
         for diffusivity, line in (("1e-6", "a level front of "), ("1e-8", "measuring its burning speed would take too long")):
             with self.subTest(diffusivity):
                 material = "{thickening: 10, diffusivity: %s}" % diffusivity
@@ -55,7 +55,7 @@ class Materials(Case):
         self.assertIn("did you mean 'tissue'?", err)
 
     def test_a_run_keeps_its_material(self):
-        """A resolved scene needs the material's file no more; with a file that has changed it is another scene."""
+        """A resolved scene no longer needs the material's file; a file that has changed makes it another scene."""
         self.write_mine()
         self.write_scene_of("materials/mine.yaml")
         self.run_scene("o", "--quiet", "--frames", "3")

@@ -146,7 +146,7 @@ class Meshes(Case):
         self.assertEqual(split_counts, counts)
         self.assertEqual(whole, "25 vertices, 0 triangles, 16 quads, 0 polygons, 1 component")
         self.assertEqual(split, "30 vertices, 0 triangles, 16 quads, 0 polygons, 1 component, 5 vertices on seams")
-        # parts that lie farther apart than welding reaches stay apart
+        # parts farther apart than the welding distance stay separate
         for i, (v, island) in enumerate(number):
             x, y, z = place(v)
             rows[i] = struct.pack("<8f", x + 1e-3 * island, y, z, 0, 0, 1, x + island, y)

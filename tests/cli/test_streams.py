@@ -1,5 +1,5 @@
-"""Standard streams that are closed, full or gone: no file of the run becomes one of them, and results that are lost are
-a failure."""
+"""Standard streams that are closed, full or gone: no file of the run takes the place of one, and a result that cannot be
+printed is a failure."""
 
 import itertools
 import os
@@ -65,7 +65,7 @@ class Streams(Case):
                     self.assertEqual(self.code(*args, stdout=full), 1)
 
     def test_messages_that_cannot_be_written(self):
-        """They are lost, and change nothing."""
+        """Lost messages change nothing else."""
         with open("/dev/full", "w") as full:
             self.assertEqual(self.code("run", self.scene, "-o", self.path("o"), "--no-preview", stderr=full), 0)
             self.assertEqual(self.code("run", self.path("nothing.yaml"), stderr=full), 2)

@@ -182,7 +182,7 @@ class Usage(Case):
 
     @unittest.skipIf(SANITIZED, "measures pictures")
     def test_check_of_large_pictures(self):
-        """A picture that takes hours is timed with fewer samples."""
+        """A picture that would take hours is timed with fewer samples."""
         begun = time.monotonic()
         out, _ = self.singe("check", self.scene, "--set", "preview={size: [1024, 1024], samples: 4096}")
         self.assertLess(time.monotonic() - begun, 60)

@@ -297,7 +297,7 @@ class Verify(Case):
         self.finds("winding", turned, "run the same way along edge")
 
     def test_what_crosses_from_the_start(self):
-        """Triangles that cross in frame 1 are reported and are no fault; ones that cross later elsewhere are."""
+        """Triangles that cross in frame 1 are reported but are not faults; those that cross later elsewhere are."""
         def pierce(first):
             def change(s):
                 def place(t): return [s.vertices[t[0]]["rest_" + axis] for axis in "xyz"]
@@ -335,7 +335,7 @@ class Verify(Case):
         self.assertIn("tiny.0004.ply", err)
 
     def test_flaws_of_render_meshes(self):
-        """What check warns of is what verify counts: of a mesh that is no surface, and nothing of one that is mended."""
+        """verify counts what check warns of: flaws of a mesh that is not a surface, and none that were repaired."""
         corner = [(0.01 * x - 0.02, 0.01 * y - 0.02, 5e-4) for y in range(5) for x in range(5)] + [(0, 0, 4e-3)]
         faces = [face for y in range(4) for x in range(4) for a in [5 * y + x]
                  for face in ((a, a + 1, a + 6), (a, a + 6, a + 5))]
@@ -361,7 +361,7 @@ class Verify(Case):
                 self.assertRegex(out, rf"{counted}.* [1-9]" if counted else "no faults")
 
     def test_rounding(self):
-        """An edge of the size of its coordinates' last bits is as long as they are rounded to, and not stretched."""
+        """An edge as short as the last bits of its coordinates has a rounded length; that is not a stretched edge."""
         def sliver(s, bits, rest_bits=1):
             for x, rest, y in ((1, 1, 1), (1 + bits * 2**-23, 1 + rest_bits * 2**-23, 1), (1, 1, 1.01)):
                 s.vertices.append(Surface.vertex([x, y, 1]))
@@ -434,7 +434,7 @@ class Verify(Case):
         self.assertIn("tiny.0004.ply", self.singe("verify", self.path("o"), "--frames", "4-6", expect=2)[1])
 
     def test_rational(self):
-        """Soups on lattices, where much touches, and off them, with vertices shared and not."""
+        """Random triangles on a lattice, where many touch, and off it; with shared vertices and without."""
         os.remove(self.path("o", "stats.csv"))
         generator = random.Random(7)
         expected, touching = [], 0
@@ -467,7 +467,7 @@ class Verify(Case):
         self.assertGreater(touching, 5)
 
     def test_interrupted(self):
-        """Ctrl-C ends it after a frame, and what was not looked at is reported."""
+        """Ctrl-C ends it after a frame; it reports the frames that it did not check."""
         surface = Surface(self.frame(1))
         for number in range(7, 1200):
             surface.write(self.frame(number))

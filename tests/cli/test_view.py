@@ -184,7 +184,7 @@ class Cache(Case):
 
     def test_a_taken_port_and_wrong_words_are_errors(self):
         _, errors = self.singe("view", self.path("out"), "--port", str(self.view.port), expect=1)
-        self.assertIn("is taken", errors)
+        self.assertIn("is in use", errors)
         _, errors = self.singe("view", self.path("out"), "--set", "pace=2", expect=2)
         self.assertIn("is a cache", errors)
         self.singe("view", self.path("nothing.yaml"), expect=2)

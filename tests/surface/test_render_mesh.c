@@ -374,7 +374,7 @@ TEST(meshes_are_bound_by_uv) {
     for (uint32_t t = 0; t < s->triangle_count; t++) area += fabs(doubled_area(s, t)) / 2;
     assert_float_equal(area, 0.01, 1e-7);
 
-    // a uv that the sheet has not, no uv at all, and a sheet without
+    // a uv that the sheet lacks, no uv at all, and a sheet without
     render_mesh_free(&g->memory, g->mesh);
     g->mesh = NULL;
     g->draft->uv[2 * 40] = 1.5f;

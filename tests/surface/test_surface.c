@@ -178,7 +178,7 @@ TEST(random_levels_leave_no_cracks) {
         assert_true(expected > 1);
         assert_float_equal(area_of(s), expected, 1e-4);
         expect_no_cracks(s, 12, 9);
-        for (uint32_t v = 0; v < s->vertex_count; v++) // what is shared is there once
+        for (uint32_t v = 0; v < s->vertex_count; v++) // a shared vertex exists once
             for (uint32_t w = 0; w < v; w++) assert_true(memcmp(s->position[v], s->position[w], 12) != 0);
         drawing_free(d);
     }
@@ -203,7 +203,7 @@ TEST(levels_near_zero_leave_no_cracks) {
             assert_true(k == 0 || compare_edges(&edges[k - 1], &edges[k]) != 0);
         }
 
-        assert_true(area_of(s) > 0); // and no triangle without area
+        assert_true(area_of(s) > 0); // no triangle is without area
         free(edges);
         drawing_free(d);
     }
