@@ -10,9 +10,14 @@
 // beta = atan(2 t/s), and kappa is at most beta/s (with l/s times the chord of beta for the chord of beta l/s). Cells
 // of more than 8 t, which show no folds of paper, would be held nearly flat by that, and have no limit.
 //
-// Once a substep the excess is reduced by BEND_GAIN of itself, with momentum conserved:
+// Once a substep the excess is reduced by a share q of itself, with momentum conserved:
 //
-//   m = gain (|r| - B)/|r| r/(w_a + 4 w_b + w_c),   x_a -= w_a m,   x_b += 2 w_b m,   x_c -= w_c m
+//   m = q (|r| - B)/|r| r/(w_a + 4 w_b + w_c),   x_a -= w_a m,   x_b += 2 w_b m,   x_c -= w_c m
+//
+// A projection passes half of what it removes on to the next vertex. So a bend beyond the limit has the stiffness
+// q/(1 - q/2) m l^4/(6 h^2 s^2) per width, m a particle's mass and h the substep. With the same q folds along the
+// diagonals, across yellow strands, are held four times as stiffly as those along rows. With `solver.isotropic` q is 1
+// for blue strands and 0.4 for yellow ones, so that both are held alike; otherwise it is 1/2.
 //
 // Families of strands follow each other; strands of one family share no particle.
 #include "common/real.h"
@@ -25,7 +30,7 @@ static const float BEND_FRESH = 0.98f;
 /// Cells over thickness above which there is no limit.
 static const float BEND_COARSE = 8;
 
-bool curvature_create(Memory *memory, const Shell *shell, Strands *strands) {
+bool curvature_create(Memory *memory, const Shell *shell, bool isotropic, Strands *strands) {
     const Field limit = shell->matter.curvature_max;
     bool limited = false;
     for (uint32_t v = 0; v < shell->vertex_count && !limited; v++) limited = field_at(limit, v) > 0;
@@ -36,6 +41,7 @@ bool curvature_create(Memory *memory, const Shell *shell, Strands *strands) {
         size_t slots = (size_t)set->row_count * STRAND_LANES;
         if (!NEW(memory, set->bend_limit, slots)) return false;
 
+        set->bend_share = !isotropic ? 0.5f : i ? 0.4f : 1;
         for (size_t slot = 0; slot < slots; slot++) set->bend_limit[slot] = INFINITY;
     }
 

@@ -6,8 +6,8 @@ typedef struct Bend {
     Float4s a, b, c;
 } Bend;
 
-/// Straightens bends that are too sharp by their share BEND_GAIN; false if there are none.
-static inline bool bend_straighten(Bend *bend, Lanes max) {
+/// Straightens bends that are too sharp by their share; false if there are none.
+static inline bool bend_straighten(Bend *bend, Lanes max, float share) {
     // r as quadruples, so that it alone is turned into lanes
     const Float4s twice = float4s_add(&bend->b, &bend->b), half = float4s_sub(&bend->a, &twice);
     const Float4s off = float4s_add(&half, &bend->c);
@@ -17,7 +17,7 @@ static inline bool bend_straighten(Bend *bend, Lanes max) {
 
     LaneNode a = float4s_node(&bend->a), b = float4s_node(&bend->b), c = float4s_node(&bend->c);
     Lanes weight = lanes_max(a.w + lanes_all(4) * b.w + c.w, lanes_all(1e-20f));
-    Lanes factor = (lanes_all(1) - max / lanes_sqrt(square)) * lanes_all(BEND_GAIN) / weight;
+    Lanes factor = (lanes_all(1) - max / lanes_sqrt(square)) * lanes_all(share) / weight;
     factor = lanes_where_less(limit, square, factor, zero);
     // r = (c - b) - (b - a): a and c move by -w r factor, b by 2 w r factor
     Float4s after = float4s_correction(&bend->b, &bend->c, factor),
@@ -29,20 +29,20 @@ static inline bool bend_straighten(Bend *bend, Lanes max) {
     return true;
 }
 
-static inline void group_straighten(const Group *group, const float *limit, bool ring) {
+static inline void group_straighten(const Group *group, const float *limit, float share, bool ring) {
     Bend bend = {.b = group_float4s(group, 0), .c = group_float4s(group, 1)};
     for (uint32_t k = 1; k < group->rows; k++) {
         bend.a = bend.b;
         bend.b = bend.c;
         bend.c = group_float4s(group, k + 1);
-        if (!bend_straighten(&bend, lanes_load(limit + (size_t)k * STRAND_LANES))) continue;
+        if (!bend_straighten(&bend, lanes_load(limit + (size_t)k * STRAND_LANES), share)) continue;
         group_put(group, k - 1, &bend.a);
         group_put(group, k, &bend.b);
         group_put(group, k + 1, &bend.c);
     }
     if (!ring) return;
     bend = (Bend){group_float4s(group, group->rows - 1), group_float4s(group, 0), group_float4s(group, 1)};
-    if (!bend_straighten(&bend, lanes_load(limit))) return;
+    if (!bend_straighten(&bend, lanes_load(limit), share)) return;
     group_put(group, group->rows - 1, &bend.a);
     group_put(group, 0, &bend.b);
     group_put(group, 1, &bend.c);
@@ -64,6 +64,6 @@ void STRAND_BEND(const StrandSet *set, float *position, uint32_t index) {
                        .rows = part->rows,
                        .stride = part->width,
                        .first_contiguous = position + 4 * strand_column(part->width, lane)};
-        group_straighten(&group, set->bend_limit + slot, part->ring);
+        group_straighten(&group, set->bend_limit + slot, set->bend_share, part->ring);
     }
 }

@@ -154,7 +154,7 @@ void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h,
                     DynamicsCounters *counters);
 
 /// Room for the limits of bends, where a material has one (curvature.c). False when out of memory.
-bool curvature_create(Memory *memory, const Shell *shell, Strands *strands);
+bool curvature_create(Memory *memory, const Shell *shell, bool isotropic, Strands *strands);
 /// Once a step: the limits at the springs [from, to) of a strand, after its weights.
 void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour colour, uint32_t strand, uint32_t from,
                        uint32_t to, StrandSet *set);

@@ -121,6 +121,53 @@ TEST(gentle_bends_are_not_touched) {
     bench_close(&bench);
 }
 
+/// A vertex of a grid around the origin that is bent to a cylinder whose axis is at an angle to its columns.
+static void cylinder(const float *rest, double bend, double angle, double *x) {
+    const double c = cos(angle), s = sin(angle);
+    const double p = (double)rest[0] - 0.5 * NX * (double)cell, q = (double)rest[1] - 0.5 * NX * (double)cell;
+    const double u = sin((c * p + s * q) * bend) / bend, v = c * q - s * p;
+    x[0] = c * u - s * v, x[1] = s * u + c * v, x[2] = (1 - cos((c * p + s * q) * bend)) / bend;
+}
+
+/// What the limit resists a bend beyond it with: the work of a projection on the way to a sharper bend.
+static double resistance(double angle, bool isotropic) {
+    const double bend = 150;
+    double work = 0;
+    open_sheet(&bench, quads_grid(NX, NX, cell, cell, false), 100);
+    dynamics_plan_free(&bench.memory, &bench.shell, bench.plan);
+    bench.settings.solver.isotropic = isotropic;
+    assert_int_equal(dynamics_plan_create(&bench.memory, &bench.shell, &bench.settings, &bench.plan), SINGE_OK);
+    for (uint32_t v = 0; v < bench.shell.vertex_count; v++) {
+        double x[3];
+        cylinder(bench.shell.rest_position[v], bend, angle, x);
+        for (int k = 0; k < 3; k++) bench.state.dynamics.position[v][k] = (float)x[k];
+    }
+    bench_prepare(&bench);
+    float(*before)[4] = copy_positions(&bench);
+    curvature_project(bench.plan, bench.pool, &bench.state.dynamics);
+    for (uint32_t v = 0; v < bench.shell.vertex_count; v++) {
+        double x[3], more[3];
+        cylinder(bench.shell.rest_position[v], bend, angle, x);
+        cylinder(bench.shell.rest_position[v], 1.001 * bend, angle, more);
+        for (int k = 0; k < 3; k++)
+            work -= (double)bench.shell.matter.mass[v] * (more[k] - x[k]) *
+                    ((double)bench.state.dynamics.position[v][k] - (double)before[v][k]);
+    }
+    free(before);
+    bench_close(&bench);
+    return work;
+}
+
+/// Along the diagonals the limit is four times as stiff as along rows, with `isotropic` the same.
+TEST(isotropic_limits_hold_all_folds_alike) {
+    const double quarter = 0.785398163;
+    for (int isotropic = 0; isotropic < 2; isotropic++) {
+        const double ratio = resistance(quarter, isotropic) / resistance(0, isotropic);
+        print_message("isotropic %d: %.2f\n", isotropic, ratio);
+        assert_true(isotropic ? fabs(ratio - 1) < 0.2 : ratio > 3);
+    }
+}
+
 /// A limit beyond what cells of this size bear is that of the cells: beta, 45 degrees for these.
 TEST(coarse_cells_set_the_curvature_limit) {
     const float beta = atanf(2 * singe_default_material().thickness.value / cell);

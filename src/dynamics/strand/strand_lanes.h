@@ -17,9 +17,6 @@
 enum { STRAND_LANES = 16, STRAND_KEEP = 3, PREPARE_RUN = 16 };
 _Static_assert(STRAND_LANES % 16 == 0, "the widest kernel has 16 lanes");
 
-/// Share of a bend beyond the limit that a substep removes (curvature.c).
-#define BEND_GAIN 0.5f
-
 /// y of the constraint in strand_kernel.h.
 #define STRAND_YIELD 0.5f
 
@@ -52,6 +49,7 @@ typedef struct StrandSet {
     float *weight;        ///< [row_count STRAND_LANES] half of W of eq 19, with char; 0 where there is no spring
     float *compliance;    ///< [row_count STRAND_LANES] m/N
     float *bend_limit;    ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
+    float bend_share;     ///< of a bend beyond its limit that a substep removes
     _Atomic bool bends;   ///< some limit is, or has been, finite
     float *pull;          ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: not needed
     uint32_t run_count;   ///< of springs: PREPARE_RUN each, in the springs' order

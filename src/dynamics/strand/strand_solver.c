@@ -61,7 +61,7 @@ static bool strands_create(Memory *memory, const Shell *shell, DynamicsPlan *pla
     }
 
     if (!NEW(memory, strands->keep, keep_floats(strands) * (size_t)strands->room_count)) return false;
-    if (!curvature_create(memory, shell, strands)) return false;
+    if (!curvature_create(memory, shell, solver->isotropic, strands)) return false;
     if (!shell->creases) return true;
     if (!NEW(memory, plan->hinges, shell->springs[SINGE_GREEN].count)) return false;
 
