@@ -232,6 +232,7 @@ function advance(seconds: number, most: number): void {
 
 function tick(now: number): void {
     requestAnimationFrame(tick);
+    pixels.tick(now);
     const passed = (now - last) / 1000;
     controls.update();
     if (!busy && begun && !paused && !document.hidden) {
@@ -242,14 +243,14 @@ function tick(now: number): void {
     } else if (paused) {
         last = now;
     }
-    if (stale && pixels.free) draw();
-    else if (pixels.rests(now)) draw(true);
+    if (stale && pixels.free) draw(false, now);
+    else if (pixels.rests(now)) draw(true, now);
 }
 
 let made = 0; // steps
-/** Draws the newest frame. @param whole in all pixels */
-function draw(whole = false): void {
-    pixels.begin(performance.now(), whole);
+/** Draws the newest frame. @param whole in all pixels @param now the screen's frame, where it is drawn for one */
+function draw(whole = false, now = performance.now()): void {
+    pixels.begin(now, whole);
     stale = false;
     const wanted = pixels.fixed ?? Math.min(devicePixelRatio, 1.5) * pixels.share;
     if (wanted !== scale) {

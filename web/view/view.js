@@ -505,9 +505,9 @@ function fit() {
     if (w !== canvas.width || h !== canvas.height) { stage.resize(w, h); dirty = true; }
 }
 
-/** @param {boolean} whole in all pixels */
-function draw(whole) {
-    pixels.begin(performance.now(), whole);
+/** @param {boolean} whole in all pixels @param {number} now the screen's frame, where it is drawn for one */
+function draw(whole, now = performance.now()) {
+    pixels.begin(now, whole);
     fit();
     dirty = false;
     stage.draw(camera);
@@ -515,6 +515,7 @@ function draw(whole) {
 }
 
 function tick(now) {
+    pixels.tick(now);
     if (playing && room && shown === wanted && !busy) {
         const step = 1000 / room.fps;
         if (now - played >= step) {
@@ -526,7 +527,7 @@ function tick(now) {
     }
     const still = !dirty && pixels.rests(now);
     if ((dirty && pixels.free || still) && room && camera && stage.frame) {
-        draw(still);
+        draw(still, now);
         const mark = $("mark"), at = picked?.at ? stage.project(camera, picked.at) : null;
         mark.hidden = !at;
         if (at) { mark.style.left = `${at[0]}px`; mark.style.top = `${at[1]}px`; }
