@@ -223,9 +223,11 @@ static double look_range(void *task, int begin, int end) {
             const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
             const float(*positions[2])[4] = {(const float(*)[4])ccd->plan->start,
                                              (const float(*)[4])ccd->dynamics->position};
-            unsigned shared[2] = {0, 0};
-            for (int i = 0; i < 16; i++)
-                if (a[i >> 2] == b[i & 3]) shared[0] |= 1u << (i >> 2), shared[1] |= 1u << (i & 3);
+            unsigned same[4];
+            collision_same(a, b, same);
+            const unsigned shared[2] = {(same[0] != 0) | (same[1] != 0) << 1 | (same[2] != 0) << 2 |
+                                            (same[3] != 0) << 3,
+                                        same[0] | same[1] | same[2] | same[3]};
 
             bool parted =
                 shared[0] && pair->a != pair->b && !turns_far(ccd->plan, pair->a) && !turns_far(ccd->plan, pair->b);
