@@ -29,6 +29,13 @@ typedef struct Opening {
 
 // ---- how cells move
 
+/// Whether a cell is as CCD has left it: then it is measured already.
+static inline bool is_known(const CollisionPlan *plan, const uint32_t *corner, const float (*x)[4]) {
+    Float4Mask moved = {0};
+    for (int i = 0; i < 4; i++) moved |= float4_load(x[corner[i]]) != float4_load(plan->end[corner[i]]);
+    return plan->closed && !(float4_bits(moved) & 7); // the fourth components are inverse masses
+}
+
 static void measure_range(void *task, int begin, int end) {
     const Opening *job = task;
     CollisionPlan *plan = job->plan;
@@ -41,10 +48,7 @@ static void measure_range(void *task, int begin, int end) {
         for (int i = 0; i < 4; i++) speed[i] = float4_load(job->dynamics->velocity[corner[i]]);
         motion[COLLISION_VELOCITY] = collision_mean(speed);
 
-        // a cell that is as CCD has left it is measured already
-        Float4Mask moved = {0};
-        for (int i = 0; i < 4; i++) moved |= float4_load(x[corner[i]]) != float4_load(plan->end[corner[i]]);
-        bool known = plan->closed && !(float4_bits(moved) & 7); // the fourth components are inverse masses
+        const bool known = is_known(plan, corner, x);
         if (!known || job->searched) motion[COLLISION_DISPLACEMENT] = collision_displacement(plan, corner, x);
         if (known) continue;
 
@@ -341,6 +345,13 @@ SingeResult collision_open(Memory *memory, CollisionPlan *plan, const Shell *she
 
 // ---- for drawing
 
+static Float4 clearance_normals(const CollisionPlan *plan, const uint32_t *corner, uint32_t cell, const float (*x)[4]) {
+    if (is_known(plan, corner, x)) return plan->motion[cell][COLLISION_NORMAL];
+    Float4 node[5];
+    collision_nodes(corner, x, float4_load(x[corner[0]]), node);
+    return feature_normals(node);
+}
+
 void collision_clearance(const CollisionPlan *plan, const Shell *shell, const StateInput *state, float *room) {
     const float(*x)[4] = (const float(*)[4])state->dynamics->position;
     float looks = 0.25f * plan->cell_size; // two drawn surfaces leave their triangles by a tenth of a cell each
@@ -360,12 +371,14 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
         // measure the pair, unless it is connected and cannot collide
         if (pair->a != measured) {
             narrow_cell_set(plan, shell, pair->a, x, float4_load(x[a[0]]), &p);
-            normals = feature_normals(p.node);
+            normals = clearance_normals(plan, a, pair->a, x);
             measured = pair->a;
         }
 
+        if (pair->bridge != SHELL_NONE &&
+            feature_is_within(normals, clearance_normals(plan, b, pair->b, x), FEATURE_CONE))
+            continue;
         narrow_cell_set(plan, shell, pair->b, x, float4_load(x[a[0]]), &q);
-        if (pair->bridge != SHELL_NONE && feature_is_within(normals, feature_normals(q.node), FEATURE_CONE)) continue;
 
         float nearest;
         if (narrow_slabs_distance(&p, &q) > looks || !narrow_features(shell, pair, &p, &q, &far, found, &nearest))
