@@ -68,12 +68,14 @@ static inline bool height_lanes(const HeightLanes *job, uint32_t first, uint32_t
     if (!lanes_any_less(lanes_where_less(zero, alive, twice, ones), ones)) return true;
 
     // too low: project them
+    const Lanes there = lanes_where_less(zero, square, alive, zero);
+    const Lanes low = lanes_where_less(height_is_enough(above, square, enough), ones, there, zero);
+    if (!lanes_any_less(zero, low)) return false;
+
     LaneNode node[5];
     for (int i = 0; i < 5; i++) node[i] = float4s_node(&p[i]);
-    const Lanes high = height_is_enough(above, square, enough);
     Lanes weight = node[4].w + (node[0].w + node[1].w + node[2].w + node[3].w) / lanes_all(16);
-    weight = lanes_where_less(zero, square, lanes_where_less(zero, alive, weight, zero), zero);
-    weight = lanes_where_less(high, ones, weight, zero);
+    weight = lanes_where_less(zero, low, weight, zero);
     if (!lanes_any_less(zero, weight)) return false;
 
     const Lanes length = lanes_sqrt(square), missing = enough - above / length;
