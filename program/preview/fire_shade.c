@@ -61,9 +61,13 @@
 #define JOIN 0.5f         ///< of a full flame: what they join into where the creases of those eddies are
 #define JOIN_BEGINS 0.02f ///< m above the paper
 #define JOIN_FULL 0.08f
-#define FED_WHOLLY 0.3f    ///< what burns less gains and loses less
-#define SMOKE_SEEN_AS 5.0f ///< times its extinction: creases thin it to a fifth, and what lies between them is clear
-#define SMOKE_EDDY 0.028f
+#define FED_WHOLLY 0.3f     ///< what burns less gains and loses less
+#define SMOKE_SEEN_AS 15.0f ///< times its extinction, in the middle of a roll; what lies between rolls is clear
+#define SMOKE_EDDY 0.028f   ///< m across
+#define SMOKE_SMALL 0.53f   ///< of that
+#define SMOKE_FINE 0.22f
+#define SMOKE_BELOW 0.5f ///< of an eddy, from where a roll is shaded
+#define SMOKE_SHADE 1.6f ///< by as much as a cloud that hides all would be
 #define SMOKE_SPEED 0.5f ///< m/s, at which they rise
 
 #define FLAME_COOL 1200.0f ///< K
@@ -375,21 +379,32 @@ FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
     return point;
 }
 
-/// Smoke rises in folds: eddies of two sizes, up to twice as tall as wide and as large as the flames', move it and thin
-/// it, so that it curls. Taller ones drew curtains.
+/// How dense smoke is in the eddies of these noises: it lies in rolls, the creases of the larger ones, and wisps fray them.
+static inline float smoke_roll(Noise wide, Noise small, Noise fine) {
+    const float rolls = 0.9f - 2.2f * fabsf(0.35f * wide.d + 0.65f * small.d + 0.22f * fine.d);
+    return maxf(rolls + 0.5f * wide.b + 0.55f * fine.a, 0);
+}
+
+/// Smoke rises and rolls: eddies of three sizes, each of which the larger ones move, bend and thin it. Flames burn it, so
+/// it begins at their tips. What lies below or above in a roll shades what is here.
 Matter fire_smoke_at(const Fire *fire, Float3 p) {
     const float eddy = fire->scale * SMOKE_EDDY, warp = fire->scale * SMOKE_WARP;
     const float passed = (SMOKE_SPEED * fire->moment - p.z) / eddy;
     const Noise wide = eddies(fire, p, passed, eddy, 0.5f);
     Float3 moved = float3_mad(p, float3(wide.a, wide.b, wide.c), warp);
-    const Noise small = eddies(fire, moved, passed + 0.4f * wide.c, eddy / 1.8f, 0.7f);
-    moved = float3_mad(moved, float3(small.a, small.b, small.c), 0.5f * warp);
+    const float turned = passed + 0.6f * wide.c;
+    const Noise small = eddies(fire, moved, turned, SMOKE_SMALL * eddy, 0.7f);
+    const Noise below = eddies(fire, moved, turned + SMOKE_BELOW, SMOKE_SMALL * eddy, 0.7f);
+    moved = float3_mad(moved, float3(small.a, small.b, small.c), 0.4f * warp);
+    const Noise fine = eddies(fire, moved, turned + 0.5f * small.c, SMOKE_FINE * eddy, 1.5f);
     const FireCell cell = cell_at(fire, moved);
-    const float fold = maxf(1.08f - 2.1f * fabsf(0.5f * wide.d + 0.8f * small.d) + 0.3f * small.a, 0);
-    const float dense = cell.smoke * SMOKE_SEEN_AS * fold * fold * fold;
+    const float here = smoke_roll(wide, small, fine), under = smoke_roll(wide, below, fine);
+    const float dense = SMOKE_SEEN_AS * cell.smoke * here * here * (1 - stepf(0.05f, 0.4f, cell.flame));
 
-    // soot and tar scatter about a third, in all directions
-    Float3 lit = float3_mad(float3_scale(fire->daylight, 0.35f), float3(1, 0.58f, 0.26f), 0.45f * cell.glow);
+    // firelight comes from below, daylight from above; soot and tar scatter a part of both, in all directions
+    const float lower = expf(-SMOKE_SHADE * under), upper = expf(-SMOKE_SHADE * maxf(2 * here - under, 0));
+    Float3 lit =
+        float3_mad(float3_scale(fire->daylight, 0.7f * upper), float3(1, 0.45f, 0.14f), 2.2f * lower * cell.glow);
     return (Matter){float3_scale(lit, dense), dense};
 }
 

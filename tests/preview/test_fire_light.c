@@ -271,7 +271,50 @@ TEST(smoke_has_streaks) {
 
     print_message("across %.1f, up %.1f\n", (double)(across / 3200), (double)(up / 3200));
     assert_true(across > 1.1f * up && across < 1.4f * up); // 1.56: curtains
-    assert_true(across > 12 * 3200);                       // 9.6 in an even haze
+    assert_true(across > 18 * 3200);                       // 15.9 with two sizes of eddies: veils; 9.6 in an even haze
+}
+
+/// Smoke over a line of fire at night: the lower sides of its rolls are not darker than the upper ones, and its light is
+/// warm. It begins at the tips of the flames: what is within them is as without smoke.
+TEST(flames_light_smoke_from_below_and_burn_it) {
+    enum { FRAMES = 6, FLAMES = 30, TIPS = 50 }; // mm
+    static Line line;
+    static Burning paper;
+    static float fire[2][W * H][4];
+    float side[2] = {0, 0}, weight[2] = {1e-6f, 1e-6f}, red = 0, blue = 0, veil = 0, flame = 0;
+
+    burning_make(&paper);
+    PreviewDef def = aside(0);
+    for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
+    def.camera = (PreviewCamera){
+        .eye = {0, -1, H / 2000.0f}, .target = {0, 0, H / 2000.0f}, .up = {0, 0, 1}, .fov = 2 * atanf(H / 2000.0f)};
+    for (int k = 0; k < FRAMES; k++) {
+        for (int smokes = 0; smokes < 2; smokes++) {
+            line_make(&line, 0.003f);
+            for (int i = 0; i < COLUMN; i++) {
+                line.flame[i] *= i / (WIDE * DEEP) < 4;
+                line.smoke[i] = smokes && line.temperature[i] > 300 ? 3e-4f : 0;
+            }
+            PreviewLayers layers = {.fire = fire[smokes]};
+            draw_layers(&def, &paper.surface, &line.gas, 0.3 + k / 6.0, &layers);
+        }
+
+        for (int i = 3 * W; i < (H - 3) * W; i++) {
+            const float *bare = fire[0][i], *at = fire[1][i];
+            if (H - 1 - i / W < FLAMES) veil += fabsf(luminance(at) - luminance(bare)), flame += luminance(bare);
+            if (H - 1 - i / W < TIPS || bare[3] > 0.005f || at[3] < 0.02f) continue;
+            const float denser = fire[1][i - 3 * W][3] - fire[1][i + 3 * W][3]; // upwards
+            side[denser < 0] += luminance(at) / at[3] * fabsf(denser), weight[denser < 0] += fabsf(denser);
+            red += at[0], blue += at[2];
+        }
+    }
+
+    const float below = side[0] / weight[0], above = side[1] / weight[1];
+    print_message(
+        "smoke: lower sides %.3f, upper %.3f, red over blue %.1f; over flames it changes %.3f of their light\n",
+        (double)below, (double)above, (double)(red / blue), (double)(veil / flame));
+    assert_true(below > 0.9f * above && red > 6 * blue); // .68, 4.2
+    assert_true(veil < 0.02f * flame);                   // .029
 }
 
 /// The layer of the fire is what it adds to the picture and what it hides of it.

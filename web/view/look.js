@@ -297,8 +297,12 @@ const float EDDY_FILAMENT = 0.007;
 const float THREAD_WARP = 0.01;
 const float SWAY_WIDE = 0.1;
 const float SWAY_SLOPE = 0.35;
-const float SMOKE_SEEN_AS = 5.0;
+const float SMOKE_SEEN_AS = 15.0;
 const float SMOKE_EDDY = 0.028;
+const float SMOKE_SMALL = 0.53;
+const float SMOKE_FINE = 0.22;
+const float SMOKE_BELOW = 0.5;
+const float SMOKE_SHADE = 1.6;
 const float SMOKE_SPEED = 0.5;
 const float SOOT_DENSE = 195.0;
 const float BLUE_DENSE = 3.8;
@@ -413,17 +417,26 @@ void fire_between(FirePoint a, FirePoint b, float step_, inout Matter matter) {
     matter.light = float3_mad(matter.light, light, part);
     matter.dense += part * mix(a.opaque, b.opaque, from);
 }
+float smoke_roll(Noise wide, Noise small, Noise fine) {
+    float rolls = 0.9 - 2.2 * abs(0.35 * wide.d + 0.65 * small.d + 0.22 * fine.d);
+    return max(rolls + 0.5 * wide.b + 0.55 * fine.a, 0.0);
+}
 Matter fire_smoke_at(vec3 p) {
     float eddy = fireScale * SMOKE_EDDY, warp = fireScale * SMOKE_WARP;
     float passed = (SMOKE_SPEED * fireMoment - p.z) / eddy;
     Noise wide = eddies(p, passed, eddy, 0.5);
     vec3 moved = float3_mad(p, vec3(wide.a, wide.b, wide.c), warp);
-    Noise small = eddies(moved, passed + 0.4 * wide.c, eddy / 1.8, 0.7);
-    moved = float3_mad(moved, vec3(small.a, small.b, small.c), 0.5 * warp);
+    float turned = passed + 0.6 * wide.c;
+    Noise small = eddies(moved, turned, SMOKE_SMALL * eddy, 0.7);
+    Noise below = eddies(moved, turned + SMOKE_BELOW, SMOKE_SMALL * eddy, 0.7);
+    moved = float3_mad(moved, vec3(small.a, small.b, small.c), 0.4 * warp);
+    Noise fine = eddies(moved, turned + 0.5 * small.c, SMOKE_FINE * eddy, 1.5);
     FireCell cell = cell_at(moved);
-    float fold = max(1.08 - 2.1 * abs(0.5 * wide.d + 0.8 * small.d) + 0.3 * small.a, 0.0);
-    float dense = cell.smoke * SMOKE_SEEN_AS * fold * fold * fold;
-    vec3 lit = float3_mad(float3_scale(fireDaylight, 0.35), vec3(1.0, 0.58, 0.26), 0.45 * cell.glow);
+    float here = smoke_roll(wide, small, fine), under = smoke_roll(wide, below, fine);
+    float dense = SMOKE_SEEN_AS * cell.smoke * here * here * (1.0 - stepf(0.05, 0.4, cell.flame));
+    float lower = exp(-SMOKE_SHADE * under), upper = exp(-SMOKE_SHADE * max(2.0 * here - under, 0.0));
+    vec3 lit =
+        float3_mad(float3_scale(fireDaylight, 0.7 * upper), vec3(1.0, 0.45, 0.14), 2.2 * lower * cell.glow);
     return Matter(float3_scale(lit, dense), dense);
 }
 `;
