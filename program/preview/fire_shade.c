@@ -7,7 +7,8 @@
 // The widest eddies bend whole tongues and the streaks in them: they move the position first, by an amount that grows from
 // nothing at the paper and is known in each cell (fire.c). Others, half as wide, feed some tongues and starve others there:
 // where they have creases, tongues join into larger flames as they rise, and between them there are gaps; and some end
-// much lower than others.
+// much lower than others. A noise that is wider still, and moves along what burns, raises tongues here and lowers them
+// there: without it a straight front has a row of like teeth.
 //
 // A flame over paper is a thin shell of glowing soot around clear, hot vapour. With f the flame (fire.c), r the height
 // above the paper and N, n noises of the width of a tongue and of a streak, its edge lies where
@@ -61,6 +62,10 @@
 #define JOIN 0.5f         ///< of a full flame: what they join into where the creases of those eddies are
 #define JOIN_BEGINS 0.02f ///< m above the paper
 #define JOIN_FULL 0.08f
+#define GROUP_WIDE 0.075f ///< m along what burns, over which tongues are high or low together
+#define GROUP_RATE 2.0f   ///< 1/s
+#define GROUP 0.2f
+#define GROUP_UNLIKE 0.9f   ///< octaves
 #define FED_WHOLLY 0.3f     ///< what burns less gains and loses less
 #define SMOKE_SEEN_AS 15.0f ///< times its extinction, in the middle of a roll; what lies between rolls is clear
 #define SMOKE_EDDY 0.028f   ///< m across
@@ -87,6 +92,7 @@
 #define TAPER 0.55f             ///< what is added to it above a flame's height
 #define STAND_OFF 0.0006f       ///< m above the paper, below which nothing is visible
 #define SOOT_FULL 0.0075f       ///< m
+#define STREAK_FULL 0.005f      ///< m, of streaks
 #define FOOT_COOL 0.05f         ///< of the range of temperatures: soot begins orange
 #define FOOT_HOT 0.50f          ///< of that range: streaks in the foot are hot
 #define JOINED_HOT 0.15f
@@ -194,10 +200,15 @@ void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]) {
 float fire_feed(const Fire *fire, Float3 p, float height, float flame) {
     const float scale = fire->scale, passed = EDDY_RATE * (fire->moment / sqrtf(scale) - p.z / (scale * RISE_MOST));
     const Noise n = eddies(fire, p, passed, scale * LICK_WIDE, 0.9f);
-    const float more = LICK * n.c * stepf(0, LICK_FULL * scale, height), crease = maxf(0.7f - 2.4f * fabsf(n.a), -0.7f);
+    const float along = GROUP_RATE * fire->moment / sqrtf(scale) - 0.5f * p.z / (scale * GROUP_WIDE);
+    const float group = clampf(0.40f + 2 * eddies(fire, float3(p.x, p.y, 0), along, scale * GROUP_WIDE, 1).a, -1, 1);
+    const float more =
+        LICK * n.c * stepf(0, LICK_FULL * scale, height) + GROUP * group * stepf(0, 0.02f * scale, height);
+    const float crease = maxf(0.7f - 2.4f * fabsf(n.a), -0.7f);
     const float tall = maxf(height, 0) / (scale * FLAME_HEIGHT);
     float joined = JOIN * crease * stepf(JOIN_BEGINS * scale, JOIN_FULL * scale, height);
-    joined += TAPER * (expf(-tall * exp2f(-UNLIKE * n.d)) - expf(-tall)); // it ends lower or higher than others
+    joined += TAPER * (expf(-tall * exp2f(-UNLIKE * n.d - GROUP_UNLIKE * group)) -
+                       expf(-tall)); // it ends lower or higher than others
     return maxf(flame * (1 + more) + joined * minf(flame / FED_WHOLLY, 1), 0);
 }
 
@@ -225,12 +236,13 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
     const float foot = rise + 0.0012f * fine.d + 0.0016f * wide.d;
     float soot = stepf(0, SOOT_FULL, foot);
 
-    // in the foot it glows in streaks; between them what burns is seen
+    // in the foot it glows in streaks that begin at what burns; between them that is seen
     const float above = stepf(FOOT_CLEAR, FOOT_FULL, rise);
     const float narrow = mixf(0.7f * STREAK, 1.1f * STREAK, above);
     const float streak = 1 - stepf(narrow, 4 * narrow, fabsf(wide.c) + 0.5f * fabsf(fine.c));
     const float seam = mixf(FOOT_SEAM, FOOT_HAZE, stepf(FOOT_CLEAR, 2 * FOOT_CLEAR, rise));
     const float dense = mixf(seam, 1, maxf(streak, above));
+    soot = mixf(soot, stepf(0, STREAK_FULL, foot), streak);
 
     // threads are clear and hot, what is between them is denser and cooler
     const Float3 bent =

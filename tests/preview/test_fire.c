@@ -44,8 +44,8 @@ TEST(a_flame_has_a_blue_base_and_tongues) {
     assert_true(mean[0][2] > 0.002f && mean[0][2] > 1.3f * mean[0][0]);
     for (int row = 0; row < 4; row++) assert_true(mean[row][2] < 0.012f); // .029, and char under flames was violet
     assert_true(mean[2][0] < 0.1f * mean[20][0]);
-    assert_true(mean[3][0] > 0.05f * mean[20][0] &&
-                mean[4][0] > 0.12f * mean[20][0]); // .001 and .02: a gap above the paper
+    assert_true(mean[3][0] > 0.18f * mean[20][0] &&
+                mean[4][0] > 0.25f * mean[20][0]); // .14 and .18: tongues hung above the paper
     assert_true(mean[3][2] > 0.006f);              // .001: no blue seen
     assert_true(mean[8][0] > 0.15f * mean[20][0] && mean[12][0] > 0.25f * mean[20][0] && // clear between streaks
                 mean[20][0] > 3 * mean[20][2]);
@@ -138,7 +138,7 @@ TEST(tongues_lean) {
     assert_true(lean > 14.5f); // 12.6
 }
 
-/// Large eddies feed some tongues and starve others: the light of squares of 3 cm, above the first 3 cm, differs over places
+/// Large eddies feed some tongues and starve others, and stretches of the front burn high or low: the light of squares of 3 cm, above the first 3 cm, differs over places
 /// and moments. Without them a line of fire was as high everywhere.
 TEST(tongues_are_fed_unevenly) {
     enum { FRAMES = 8, LOW = 32, SIDE = 32, SQUARES = FRAMES * (W / SIDE) };
@@ -158,7 +158,7 @@ TEST(tongues_are_fed_unevenly) {
 
     const float varies = sqrtf(fmaxf(squares - sum * sum, 0)) / sum;
     print_message("the light of squares varies by %.2f of the mean\n", (double)varies);
-    assert_true(varies > 0.85f); // .66
+    assert_true(varies > 0.95f); // .86 where tongues differ one by one, .66 without eddies
 }
 
 /// Tongues thinner than a square of 4 x 4 pixels are drawn whole: a camera half a square aside sees the same. Where only

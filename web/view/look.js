@@ -314,6 +314,7 @@ const float EDGE = 0.42;
 const float TAPER = 0.55;
 const float STAND_OFF = 0.0006;
 const float SOOT_FULL = 0.0075;
+const float STREAK_FULL = 0.005;
 const float FOOT_COOL = 0.05;
 const float FOOT_HOT = 0.5;
 const float JOINED_HOT = 0.15;
@@ -377,6 +378,7 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     float streak = 1.0 - stepf(narrow, 4.0 * narrow, abs(wide.c) + 0.5 * abs(fine.c));
     float seam = mix(FOOT_SEAM, FOOT_HAZE, stepf(FOOT_CLEAR, 2.0 * FOOT_CLEAR, rise));
     float dense = mix(seam, 1.0, max(streak, above));
+    soot = mix(soot, stepf(0.0, STREAK_FULL, foot), streak);
     vec3 bent =
         float3_mad(p, vec3(wide.b + 0.2 * fine.b, wide.a + 0.2 * fine.a, 0.0), fireScale * THREAD_WARP);
     Noise thread = Noise(0.0, 0.0, 0.0, 0.0);
