@@ -45,8 +45,8 @@ class Front(unittest.TestCase):
                 self.assertLess(abs(row["change_pct"]), 5)
 
     def test_papers_burn_by_mass(self):
-        """Speed times grammage is that of office paper, but for what else differs: less ash, and steps that are
-        long for tissue."""
+        """Speed times grammage is nearly that of office paper: other papers have less ash, and for tissue the steps are
+        long."""
         usual = self.usual("still")
         office = usual["office-paper"]
         for name in "newsprint", "tissue":

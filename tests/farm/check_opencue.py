@@ -18,7 +18,7 @@ from check_openjd import begin, end
 from check_slurm import PLAN, SCENE
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# a host takes the session that the launch has written; the server gives it the layers and what they wait for
+# writes a session, which hosts take, and prints the job that the server would get: layers and their dependencies
 LAUNCH = """\
 import outline.cuerun
 from outline.backend import cue

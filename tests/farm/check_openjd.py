@@ -18,7 +18,7 @@ LOCKS = pathlib.Path(__file__).resolve().parents[1] / "locks"
 
 
 def begin(tool, lock):
-    """The program and the folder of the arguments; what the lock has is installed there unless the tool is."""
+    """The program and the folder of the arguments. Installs what the lock lists there if the tool is missing."""
     program, tools = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     if not (tools / "bin" / tool).exists():
         subprocess.run([sys.executable, "-m", "venv", tools], check=True)
@@ -28,7 +28,7 @@ def begin(tool, lock):
 
 
 def end(farm, plain, good, said):
-    """The exit status: whether a farm's folder has the meshes of a sweep without it, and a report, and the rest is good."""
+    """Exit status: 0 if the farm made the same meshes as a plain sweep, and a report, and `good` holds."""
     by_job, by_sweep = ({file.relative_to(folder): file.read_bytes() for file in folder.glob("rows/*/ply/*")}
                         for folder in (farm, plain))
     report = (farm / "report.csv").exists()

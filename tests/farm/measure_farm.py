@@ -60,7 +60,7 @@ def whole_row(program, out):
 
 
 def preempted_row(program, out, number, after):
-    """The time of a row that gets the signal twice, `after` seconds from its start and from that of its second part."""
+    """Seconds that a row takes if it is stopped twice, each time `after` seconds from where it started or went on."""
     shutil.rmtree(out, ignore_errors=True)
     begun = time.monotonic()
     for _ in range(2):

@@ -13,7 +13,7 @@
 
 static const IsolateLimits few = {64 << 20, 1};
 
-// what a case is answered
+// the answer and the error of a case
 static Bytes got;
 static SingeError why;
 
@@ -115,7 +115,7 @@ TEST(crashes_are_reported) {
         assert_message(&why, number);
     }
 
-    // a library that ends the process gives no got, whatever code it has
+    // a library that ends the process gives no answer, whatever its exit code
     for (int code = 0; code < 3; code++) {
         assert_int_equal(run(stop, &code, &got, &why), SINGE_ERROR_FORMAT);
         assert_message(&why, "stopped");
@@ -279,7 +279,7 @@ static SingeResult say_and_wait(void *context, IsolateAnswer *answer, SingeError
     return wait_long(context, answer, error);
 }
 
-// The pipe tells: its end is held by the child of the child alone.
+// Only the child of the child holds an end of the pipe, so the pipe closes when it is gone.
 TEST(the_child_ends_with_its_parent) {
     int ends[2];
     char byte;
