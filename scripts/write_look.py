@@ -27,7 +27,7 @@ PARTS = {
             "shade_paper.c": ["paper_noise", "ridge", "scorch_colour", "askew", "shade_paper_bend", "paper_cracks", "tilt",
                               "ash_amount", "near_border", "ash_on_char", "ash_lace", "ash_shade", "ember_air", "ember_seen",
                               "line_life", "ember_line", "sparks", "border_glow", "leaf_glow", "ember_shade", "is_hole",
-                              "scorch_amount", "char_shade"],
+                              "flocks_of", "print_seen", "scorch_amount", "char_shade"],
             "lighting.c": ["light_mirrored"],
         },
     },

@@ -350,24 +350,31 @@ static Float3 printed(const Preview *preview, const PaperState *state, bool back
                           0.45f * footprint * texture->texels_per_metre);
 }
 
+/// Uneven density of the fibres: flocks that are hardly seen but against the light. Scattered often, it comes through warmer.
+static float flocks_of(const PaperState *state, Point *point) {
+    const float flocks = paper_noise(askew(state->rest), 3.6f, point->footprint, 5);
+    point->through = float3_scale(float3(1.18f, 0.98f, 0.70f), 1 - 0.15f * flocks);
+    return flocks;
+}
+
+/// What is seen of print on both sides. Of that on the far one so much is, T^2 / (1 - R^2) with the reflectance R of a stack;
+/// what comes through has lost the share of both.
+static Float3 print_seen(Float3 near, Float3 far, Point *point) {
+    const Float3 seen = float3_mix(float3(1, 1, 1), far, minf(3 * point->transmission * point->transmission, 0.95f));
+    point->through = float3_mul(point->through, float3(far.x / seen.x, far.y / seen.y, far.z / seen.z));
+    return float3_mul(near, seen);
+}
+
 static void fresh(const Preview *preview, const PaperState *state, Point *point) {
     const bool known = state->sheet >= 0 && (uint32_t)state->sheet < preview->def.sheet_count;
     Float3 white = float3(0.86f, 0.852f, 0.832f), print = printed(preview, state, point->back, point->footprint);
     if (known && preview->def.colours) white = float3_mul(white, float3_load(preview->def.colours[state->sheet]));
 
-    // uneven density of the fibres: flocks that are hardly seen but against the light
-    const float flocks = paper_noise(askew(state->rest), 3.6f, point->footprint, 5);
+    const float flocks = flocks_of(state, point);
     const float passed = point->transmission = paper_transmittance(preview, state->sheet);
-
-    // scattered often, what comes through is warmer, and has lost the print's share on whichever side
-    point->through = float3_scale(float3(1.18f, 0.98f, 0.70f), 1 - 0.15f * flocks);
     const Float3 far = printed(preview, state, !point->back, point->footprint);
-    if (!cloth_weave(preview, state->sheet)) {
-        // of print on the far side so much is seen, T^2 / (1 - R^2) with the reflectance R of a stack, and all of it through
-        Float3 seen = float3_mix(float3(1, 1, 1), far, minf(3 * passed * passed, 0.95f));
-        point->through = float3_mul(point->through, float3(far.x / seen.x, far.y / seen.y, far.z / seen.z));
-        print = float3_mul(print, seen);
-    } else if (point->back && !(known && preview->def.backs && preview->def.backs[state->sheet])) print = far; // dyed
+    if (!cloth_weave(preview, state->sheet)) print = print_seen(print, far, point);
+    else if (point->back && !(known && preview->def.backs && preview->def.backs[state->sheet])) print = far; // dyed
     point->albedo = float3_scale(float3_mul(white, print), 1 + 0.02f * flocks);
 
     // Wet: a film of water throws a share p of the light that leaves the fibres back to them, so that an albedo a becomes

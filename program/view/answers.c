@@ -5,7 +5,7 @@
 //   run/1/room                light, camera, ground, sheets
 //   run/1/frame/12            a frame, as preview_pack writes it
 //   run/1/solid/12/0          the triangles of a frame's shape
-//   run/1/picture/0           what is printed on a sheet: width and height, then RGB
+//   run/1/picture/0           what is printed on a sheet, of so many, and then on its back: width and height, then RGB
 //   run/1/cells               the sheets' cells at rest: counts of vertices and cells, positions, four corners each
 //   run/1/vertex/12/345       a vertex of the input in a frame
 //   run/1/stats.csv, events.csv, probes.csv, run.json
@@ -194,8 +194,10 @@ static Answer answer_room(const Exhibit *shown) {
 
     for (uint32_t i = 0; i < def.sheet_count; i++) {
         static const float white[3] = {1, 1, 1};
-        fprintf(out, "%s{\"picture\": %s, \"transmittance\": %.9g", i ? ", " : "",
-                def.pictures && def.pictures[i] ? "true" : "false",
+        const bool cloth = def.looks && def.looks[i].weave > 0;
+        fprintf(out, "%s{\"picture\": %s, \"back\": %s, \"cloth\": %s, \"transmittance\": %.9g", i ? ", " : "",
+                def.pictures && def.pictures[i] ? "true" : "false", def.backs && def.backs[i] ? "true" : "false",
+                cloth ? "true" : "false",
                 def.transmittances ? (double)def.transmittances[i] : (double)PREVIEW_TRANSMITTANCE);
         put_numbers(out, "colour", def.colours ? def.colours[i] : white, 3);
         fputs("}", out);
@@ -260,11 +262,14 @@ static Answer answer_solid(Exhibit *shown, int number, int wanted) {
     return answer_nothing();
 }
 
-static Answer answer_picture(const Exhibit *shown, int sheet) {
+static Answer answer_picture(const Exhibit *shown, int number) {
     PreviewDef def;
     scene_preview(shown->job.scene, &shown->job.assets, &def);
-    if ((uint32_t)sheet >= def.sheet_count || !def.pictures || !def.pictures[sheet]) return answer_nothing();
-    const Image *image = def.pictures[sheet];
+    const bool front = (uint32_t)number < def.sheet_count;
+    const uint32_t sheet = front ? (uint32_t)number : (uint32_t)number - def.sheet_count;
+    const Image *const *images = front ? def.pictures : def.backs;
+    const Image *image = images && sheet < def.sheet_count ? images[sheet] : NULL;
+    if (!image) return answer_nothing();
     return answer_pair((uint32_t)image->width, (uint32_t)image->height, image->rgb,
                        3 * (size_t)image->width * (size_t)image->height, NULL, 0);
 }

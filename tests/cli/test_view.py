@@ -10,7 +10,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from support import SANITIZED, SINGE, Case
+from support import SANITIZED, SINGE, Case, write_png
 
 PATIENCE = 60 if SANITIZED else 20
 
@@ -61,6 +61,24 @@ class View:
     def memory(self):
         with open(f"/proc/{self.process.pid}/status") as file:
             return next(int(line.split()[1]) for line in file if line.startswith("VmRSS"))
+
+
+class Sides(Case):
+    def test_pictures_of_both_sides(self):
+        """Of two sheets, one printed on both sides, and one of cotton."""
+        for name, grey in (("front", 10), ("back", 200)):
+            write_png(self.path(name + ".png"), [[grey] * 3] * 2)
+        sheets = [{"name": "a", "picture": self.path("front.png"), "back": self.path("back.png")}, {"name": "b", "material": "cotton"}]
+        grid = {"grid": {"size": [0.02, 0.02], "cells": [3, 3]}}
+        Path(self.scene).write_text(json.dumps({"frames": 1, "steps": 1, "sheets": [{**grid, **one} for one in sheets]}))
+        self.run_scene("sides")
+        view = View(self, self.path("sides"))
+        room = json.loads(view.ask("run/1/room")[1])
+        self.assertEqual([[one[key] for key in ("picture", "back", "cloth")] for one in room["sheets"]], [[True, True, False], [False, False, True]])
+        pictures = [view.ask(f"run/1/picture/{number}") for number in range(5)]
+        self.assertEqual([status for status, _ in pictures], [200, 404, 200, 404, 404])
+        for number, grey in ((0, 10), (2, 200)):
+            self.assertEqual(pictures[number][1], struct.pack("<2I", 3, 2) + bytes([grey] * 18))
 
 
 class Cache(Case):

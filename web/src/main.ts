@@ -11,7 +11,7 @@ import { Print } from "./print.js";
 import { CONTEXT, Renderer } from "./renderer.js";
 import { placed } from "./shape.js";
 import { FireSound } from "./sound.js";
-import { PLACES, placeOf, type Place, type Point } from "./places.js";
+import { PLACES, placeOf, type Place, type Point, type Sides } from "./places.js";
 import { fromLink, MATERIALS, RANGES, standardOf, TIME_STEP, toLink, toYaml, type Settings, type Slider } from "./scene.js";
 
 const TOOLS = ["match", "breath", "hand", "pin", "pen"] as const; // in the order of their keys
@@ -148,15 +148,18 @@ function resize(): void {
 
 function printNow(picture: HTMLImageElement | ImageBitmap | null): void {
     print.set(picture, shape ? MESH_SIZE : placeOf(settings.place).sheets[0]!.size);
-    renderer.print(print.canvas);
+    renderer.print(print.canvas, sides());
     stale = true;
 }
+
+function sides(): Sides { return shape || settings.material === "cotton" ? "through" : placeOf(settings.place).back ? "both" : "front"; }
 
 /** The pen goes on to what is under a place of the screen. */
 function write(x: number, y: number, pressure: number): void {
     const hit = pick(x, y);
     if (!hit?.uv) return;
-    print.to(...hit.uv, pressure);
+    const [u, v] = hit.uv;
+    print.to(hit.back && sides() === "both" ? 1 - u : u, v, pressure);
     renderer.reprint();
     stale = true;
 }
@@ -186,6 +189,7 @@ function printOwn(): void {
 function restart(): void {
     busy = true;
     marked = [];
+    renderer.setSides(sides());
     send({ kind: "begin", settings: shape ? { ...settings, place: "table" } : settings, shape, strokes: linkedStrokes, pins: linkedPins });
 }
 
@@ -278,7 +282,7 @@ function rayAt(x: number, y: number): void {
     caster.setFromCamera(new Vector2((2 * x) / innerWidth - 1, 1 - (2 * y) / innerHeight), renderer.camera);
 }
 
-interface Hit { at: Point; rest: Point | null; uv?: [number, number] }
+interface Hit { at: Point; rest: Point | null; uv?: [number, number]; back?: boolean }
 
 /** The sheet under a place of the screen, or else the table. */
 function pick(x: number, y: number): Hit | null {
@@ -295,7 +299,9 @@ function pick(x: number, y: number): Hit | null {
                 nearest = distance;
                 const share = Triangle.getBarycoord(at, a, b, c, new Vector3()) ?? new Vector3(1, 0, 0);
                 const here = (r: number) => share.x * vertices[i + r]! + share.y * vertices[j + r]! + share.z * vertices[k + r]!;
-                found = { at: at.toArray() as Point, rest: [here(6), here(7), here(8)], uv: [here(9), here(10)] };
+                const [p, q] = [j, k].map((to) => [vertices[to + 9]! - vertices[i + 9]!, vertices[to + 10]! - vertices[i + 10]!] as const);
+                const turn = (p![0] * q![1] - p![1] * q![0]) * b.sub(a).cross(c.sub(a)).dot(direction);
+                found = { at: at.toArray() as Point, rest: [here(6), here(7), here(8)], uv: [here(9), here(10)], back: turn > 0 };
             }
         }
         if (found) return found;
@@ -329,6 +335,7 @@ function beginUse(hit: Hit | null): void {
         return;
     }
     if ((tool === "hand" || tool === "pen") && !hit.rest) return say(`The ${tool} needs paper under it`);
+    if (tool === "pen" && hit.back && sides() === "front") return say("The pen writes on the other side");
     mark();
     applying = true;
     if (tool === "pen") return print.begin();

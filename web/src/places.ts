@@ -6,6 +6,9 @@ export type Point = [number, number, number];
 /** A rectangle of cells: m; degrees about x, then y, then z; m. `fine` cells take the place of one of the letter's. */
 export interface Sheet { size: [number, number]; fine: number; rotate: Point; translate: Point }
 
+/** Where a picture is seen: on the front alone, on the back as well, readable, or, of cloth, through and through. */
+export type Sides = "front" | "both" | "through";
+
 export interface Where {
     label: string;
     sheets: Sheet[];
@@ -13,6 +16,8 @@ export interface Where {
     mesh?: { quads: Quads; file: string };
     /** of the examples, printed on every sheet */
     picture: string | null;
+    /** is it printed on the back as well? */
+    back?: boolean;
     /** other settings than the letter's */
     sets: { material?: string; thickness?: number; pace?: number; wind?: number };
     change?: Material;
@@ -128,7 +133,7 @@ export const PLACES = {
     },
     torus: {
         label: "A torus (figure 11)", mesh: { quads: torus(64, 28), file: "scripts/make_torus.py --around 64 --across 28 torus.obj" },
-        sheets: one([0.284, 0.284], [9, -5, 20], [0, 0, 0.075]), picture: "newspaper.jpg", sets: { thickness: 0.002, pace: 4.5 },
+        sheets: one([0.284, 0.284], [9, -5, 20], [0, 0, 0.075]), picture: "newspaper.jpg", back: true, sets: { thickness: 0.002, pace: 4.5 },
         change: { damping: 2, ...UNEVEN }, contact: true, pins: [], match: { at: [0.1, -0.11, 0.03], start: 0.2, end: 1.6 },
         upright: false, view: { at: [0, -0.005, 0.026], from: [0.14, -0.5, 0.25] }, key: [0.1, 0, 0.1],
     },

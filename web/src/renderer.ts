@@ -8,7 +8,7 @@ import {
 } from "three";
 import { ATTRIBUTES, FLOATS } from "./fields.js";
 import type { Frame } from "./messages.js";
-import { BALL, placeOf, type Place, type Point, type Where } from "./places.js";
+import { BALL, placeOf, type Place, type Point, type Sides, type Where } from "./places.js";
 import { AIRBORNE_FLOATS, AIRBORNE_LIMIT } from "../view/airborne.js";
 import { glowBytes, noiseBytes, sliceBytes } from "../view/tables.js";
 import * as glsl from "../view/shaders.js";
@@ -51,6 +51,7 @@ export class Renderer {
     private full = new Mesh(new PlaneGeometry(2, 2));
     private fullCamera = new OrthographicCamera(-1, 1, 1, -1, 0, 1);
     private passes: Record<"fire" | "bright" | "blur" | "film", RawShaderMaterial>;
+    private blank = white();
     private buffer: InterleavedBuffer | null = null;
     private fireMap: Data3DTexture | null = null;
     private match: Mesh[];
@@ -80,7 +81,7 @@ export class Renderer {
             fireLights: { value: Array.from({ length: 6 }, () => new Vector4()) }, fireColour: { value: new Vector3(1, 0.46, 0.13) },
         };
 
-        const paperUniforms = { ...this.shared, printMap: { value: white() }, transmittance: { value: FULL_PAPER }, tint: { value: new Vector3(1, 1, 1) } };
+        const paperUniforms = { ...this.shared, printMap: { value: white() }, backMap: { value: this.blank }, dyed: { value: 0 }, transmittance: { value: FULL_PAPER }, tint: { value: new Vector3(1, 1, 1) } };
         const paper = material(glsl.PAPER_VERTEX, glsl.paper(glsl.LAMP), paperUniforms);
         paper.side = DoubleSide;
         this.paper = new Mesh(new BufferGeometry(), paper);
@@ -153,13 +154,20 @@ export class Renderer {
         for (const { uniforms } of [this.passes.film, this.airborne.material]) (uniforms.resolution!.value as Vector2).set(w, h);
     }
 
-    /** What is printed on the sheet. */
-    print(picture: HTMLCanvasElement): void {
+    /** What is printed on the sheet, and where it is seen. */
+    print(picture: HTMLCanvasElement, sides: Sides): void {
         const uniforms = this.paper.material.uniforms, old = uniforms.printMap!.value as Texture, texture = new CanvasTexture(picture);
         texture.colorSpace = SRGBColorSpace;
         texture.anisotropy = 8;
         uniforms.printMap!.value = texture;
         old.dispose();
+        this.setSides(sides);
+    }
+
+    setSides(sides: Sides): void {
+        const uniforms = this.paper.material.uniforms;
+        uniforms.backMap!.value = sides === "both" ? uniforms.printMap!.value : this.blank;
+        uniforms.dyed!.value = sides === "through" ? 1 : 0;
     }
 
     /** The print has changed. */

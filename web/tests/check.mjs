@@ -252,6 +252,33 @@ const CASES = {
         await file("short.glb", "model/gltf-binary", glb.subarray(0, glb.length >> 1));
         await told("short.glb: ");
     },
+    async "what is printed is on the front: paper is white behind, and cotton is dyed"() {
+        const [x, y] = [480, 250], green = () => page.evaluate(([x, y]) => {
+            const view = document.querySelector("#view"), copy = Object.assign(document.createElement("canvas"), { width: 960, height: 600 }).getContext("2d");
+            copy.drawImage(view, 0, 0, 960, 600);
+            return copy.getImageData(x, y, 1, 1).data[1];
+        }, [x, y]);
+        const black = Buffer.from(await page.evaluate(() => {
+            const canvas = document.createElement("canvas");
+            canvas.getContext("2d").fillRect(0, 0, canvas.width, canvas.height);
+            return canvas.toDataURL("image/png").split(",")[1];
+        }), "base64");
+        for (const [material, least, most] of [["office-paper", 10, 60], ["cotton", 0, 6]]) {
+            await open(`${QUICK}&place=hung&material=${material}`);
+            await page.setInputFiles("#file", { name: "black.png", mimeType: "image/png", buffer: black });
+            await page.waitForFunction(() => /is printed/.test(document.querySelector("#hint").textContent));
+            await step(1 / 24);
+            const front = await green();
+            await page.mouse.move(x - 150, y);
+            await page.mouse.down({ button: "right" });
+            await page.mouse.move(x + 150, y, { steps: 4 }); // a half turn
+            await page.mouse.up({ button: "right" });
+            await step(1 / 24);
+            const back = await green();
+            await picture(`back-${material}`);
+            assert.ok(back >= least && back <= most, `${material}: green is ${front} of 255 in front, ${back} behind`);
+        }
+    },
     async "each export is opened by its validator"() {
         await open(QUICK);
         await use("match", [0, 0, 0], [0.02, 0, 0], 0.6);

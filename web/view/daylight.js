@@ -23,20 +23,20 @@ vec3 skyLight(vec3 n) {
     return max(sum, vec3(0.0));
 }
 vec3 mirrored(vec3 d) { return skyLight(d); }
-const vec3 THROUGH = vec3(1.18, 0.98, 0.70); // scattered often, light is warmer
-vec3 shaded(vec3 albedo, float through, float gloss, float power, vec3 p, vec3 n, vec3 v, float seen) {
+vec3 shaded(vec3 albedo, vec3 through, float gloss, float power, vec3 p, vec3 n, vec3 v, float seen) {
     float facing = dot(n, sunTo);
-    vec3 sum = sunLight * seen * (max(facing, 0.0) + through * THROUGH * max(-facing, 0.0)), high = vec3(0.0);
+    vec3 sum = sunLight * seen * (max(facing, 0.0) + through * max(-facing, 0.0)), high = vec3(0.0);
     sum += skyLight(n);
-    if (through > 0.0) sum += through * THROUGH * skyLight(-n);
+    bool thin = through.g > 0.0;
+    if (thin) sum += through * skyLight(-n);
     if (gloss > 0.0) high = sunLight * seen * pow(max(dot(n, normalize(sunTo + v)), 0.0), power) + 0.4 * skyLight(reflect(-v, n));
     // sheets are wrapped, as flames have an extent; what lies below them is not, in place of the shadow that sheets cast
-    float wrap = through > 0.0 ? 0.2 : 0.0;
+    float wrap = thin ? 0.2 : 0.0;
     for (int k = 0; k < lampCount; k++) {
         vec3 f = lampPlace[k].xyz - p, light = lampStrength[k].rgb;
         float r2 = dot(f, f), d2 = r2 + lampPlace[k].w, c = dot(n, f) * inversesqrt(d2);
         float before = max((c + wrap) / (1.0 + wrap), 0.0);
-        sum += light * ((before + THROUGH * max(-through * c - before, 0.0)) / d2);
+        sum += light * ((before + max(-through * c - before, 0.0)) / d2);
         if (gloss > 0.0) high += light * (pow(max(dot(n, normalize(f * inversesqrt(r2) + v)), 0.0), power) / d2);
     }
     return albedo * sum + gloss * high;
@@ -83,7 +83,7 @@ void main() {
         n = normalize(vec3(0.02 * patches, 0.02 * rough, 1.0));
     }
     float seen = lampSeen(p + vec3(0.0, 0.0, 0.0006));
-    vec3 c = shaded(groundColour * max(value, 0.1), 0.0, stone > 0.5 ? 0.04 : 0.008, 26.0, p, n, view, seen);
+    vec3 c = shaded(groundColour * max(value, 0.1), vec3(0.0), stone > 0.5 ? 0.04 : 0.008, 26.0, p, n, view, seen);
     ${FADE}
     colour = vec4(c, 1.0);
 }`;
@@ -113,7 +113,7 @@ void main() {
         tilt = 0.03 * vec2(sweep, grain);
     }
     albedo *= 1.0 - 0.5 * exp(-max(p.z - floorHeight, 0.0) / 0.03);
-    vec3 c = shaded(albedo, 0.0, 0.0, 1.0, p, normalize(face + tilt.x * wallAlong + vec3(0.0, 0.0, tilt.y)), view, lampSeen(p + 0.0006 * face));
+    vec3 c = shaded(albedo, vec3(0.0), 0.0, 1.0, p, normalize(face + tilt.x * wallAlong + vec3(0.0, 0.0, tilt.y)), view, lampSeen(p + 0.0006 * face));
     ${FADE}
     colour = vec4(c, 1.0);
 }`;
@@ -128,5 +128,5 @@ void main() {
     if (dot(n, view) < 0.0) n = -n;
     float seen = lampSeen(vPosition + 0.0015 * n), hot = kelvin > 800.0 ? 1.0 : 0.0, scale = noise4(vPosition * 120.0).r;
     vec3 glow = hot * blackbody_glow(kelvin + 60.0 * scale) * 3.0 * (0.6 + 0.4 * dot(n, view));
-    colour = vec4(shaded(albedo * (1.0 - 0.55 * hot), 0.0, 0.06, 40.0, vPosition, n, view, seen) + glow, 1.0);
+    colour = vec4(shaded(albedo * (1.0 - 0.55 * hot), vec3(0.0), 0.06, 40.0, vPosition, n, view, seen) + glow, 1.0);
 }`;

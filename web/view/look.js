@@ -241,6 +241,16 @@ bool is_hole(PaperState state, Bent bent, float footprint) {
     if (burnt > 0.0 && state.rim > 1.0 - burnt * clamp(bite, 0.0, 0.85)) return true;
     return bent.burn > 0.7 && ash_amount(bent) * stepf(0.72, 0.95, ash_lace(bent, footprint)) > 0.5;
 }
+float flocks_of(PaperState state, inout Point point) {
+    float flocks = paper_noise(askew(state.rest), 3.6, point.footprint, 5.0);
+    point.through = float3_scale(vec3(1.18, 0.98, 0.70), 1.0 - 0.15 * flocks);
+    return flocks;
+}
+vec3 print_seen(vec3 near, vec3 far, inout Point point) {
+    vec3 seen = mix(vec3(1.0, 1.0, 1.0), far, min(3.0 * point.transmission * point.transmission, 0.95));
+    point.through = float3_mul(point.through, vec3(far.x / seen.x, far.y / seen.y, far.z / seen.z));
+    return float3_mul(near, seen);
+}
 float scorch_amount(PaperState state, Bent bent, float footprint) {
     float by_burn = 1.0 - exp(-7.5 * max(bent.burn, 0.0));
     float steep = state.heat_gradient / max(max(state.peak, state.temperature) - 293.0, 1.0);

@@ -60,20 +60,18 @@ float lampSeen(vec3 p) {
     return lightSeen(s - vec3(0.0, 0.0, 0.0006), 0.0042);
 }
 
-const vec3 THROUGH = vec3(1.18, 0.98, 0.70); // scattered often, light is warmer
-
 /** What a surface sends to v: light on a side with this normal, and that on its back times what comes through, and highlights, Blinn and Phong. */
-vec3 shaded(vec3 albedo, float through, float gloss, float power, vec3 p, vec3 n, vec3 v, float seen) {
+vec3 shaded(vec3 albedo, vec3 through, float gloss, float power, vec3 p, vec3 n, vec3 v, float seen) {
     vec3 to = lampAt - p, sum = nightColour * (0.6 + 0.4 * n.z), matte = vec3(0.0);
     float d2 = dot(to, to), shiny = 0.0;
     vec3 l = to * inversesqrt(d2), h = l + v;
     float lamp = seen * smoothstep(0.62, 0.97, dot(-l, lampAhead)) / d2, facing = dot(n, l), mid = max(dot(n, h), 0.0);
-    sum += lampColour * (lamp * (max(facing, 0.0) + through * THROUGH * max(-facing, 0.0)));
+    sum += lampColour * (lamp * (max(facing, 0.0) + through * max(-facing, 0.0)));
     vec3 high = lampColour * (lamp * pow(mid * mid / dot(h, h), 0.5 * power));
     for (int k = 0; k < 6; k++) {
         vec3 f = fireLights[k].xyz - p;
         float near = inversesqrt(dot(f, f) + 0.0012), w = fireLights[k].w * near * near, side = dot(n, f) * near;
-        matte += w * (max(side, 0.0) + 0.12 + through * THROUGH * max(-side, 0.0));
+        matte += w * (max(side, 0.0) + 0.12 + through * max(-side, 0.0));
         h = f * near + v;
         mid = max(dot(n, h), 0.0);
         if (mid > 0.0) shiny += w * pow(mid * mid / dot(h, h), 0.5 * power);
@@ -112,12 +110,11 @@ in vec3 vPosition, vNormal, vRest;
 in vec2 vUv;
 in vec3 vLeaf;
 in vec4 vHeat, vLook;
-uniform sampler2D printMap;
-uniform float time;
-uniform float transmittance;
+uniform sampler2D printMap, backMap;
+uniform float time, transmittance, dyed; // dyed: of cloth, 1; with a picture of its own on its back 0.5; of paper 0
 uniform vec3 tint;
 out vec4 colour;
-struct Point { vec3 position, normal, view, albedo, glow; float footprint, transmission, gloss, shininess, mirror; };
+struct Point { vec3 position, normal, view, albedo, glow, through; float footprint, transmission, gloss, shininess, mirror; };
 float seconds() { return time; }
 /** Lines, where the preview has walls between cells: they take 27 looks. */
 float noise_walls(vec3 p, float seed) {
@@ -129,7 +126,7 @@ void main() {
     // at a border, a pixel's middle may lie outside the triangle, where fields go on beyond what they can be
     vec4 heat = max(vHeat, 0.0), look = max(vLook, 0.0);
     PaperState state = PaperState(vRest, heat.x, heat.y, min(look.x, 1.0), heat.z, look.y, vLeaf.z, min(look.z, 1.0), max(vLeaf.x, 0.0), heat.w, max(vLeaf.y, 0.0), look.w, 0.0, 0.0);
-    Point point = Point(vPosition, normalize(vNormal), normalize(eye - vPosition), vec3(0.0), vec3(0.0), max(length(dFdx(vPosition)), length(dFdy(vPosition))), transmittance, 0.015, 14.0, 0.0);
+    Point point = Point(vPosition, normalize(vNormal), normalize(eye - vPosition), vec3(0.0), vec3(0.0), vec3(0.0), max(length(dFdx(vPosition)), length(dFdy(vPosition))), transmittance, 0.015, 14.0, 0.0);
 #ifdef SHADOW
     if (state.burn > PAPER_WHOLE && is_hole(state, shade_paper_bend(state, point.footprint), point.footprint)) discard;
     colour = vec4(0.0);
@@ -140,7 +137,12 @@ void main() {
     if (state.burn > PAPER_WHOLE && is_hole(state, bent, point.footprint)) discard;
     if (dot(point.normal, point.view) < 0.0) point.normal = -point.normal;
 
-    vec3 fresh = vec3(0.86, 0.852, 0.832) * tint * texture(printMap, vUv, -0.7).rgb * (1.0 + 0.018 * paper_noise(askew(state.rest), 2.4, point.footprint, 5.0));
+    vec2 right = dFdx(vUv), up = dFdy(vUv);
+    bool back = right.x * up.y < right.y * up.x; // where pictures are mirrored; that on the back runs to the left
+    vec3 print = texture(printMap, vUv, -0.7).rgb, other = dyed == 1.0 ? print : texture(backMap, vec2(1.0 - vUv.x, vUv.y), -0.7).rgb;
+    float flocks = flocks_of(state, point);
+    print = dyed > 0.0 ? (back ? other : print) : print_seen(back ? other : print, back ? print : other, point);
+    vec3 fresh = vec3(0.86, 0.852, 0.832) * tint * print * (1.0 + 0.02 * flocks);
     point.albedo = fresh;
     if (burnt) {
         float scorch = scorch_amount(state, bent, point.footprint), ink = stepf(0.3, 0.75, 1.0 - clamp(dot(fresh, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0));
@@ -151,7 +153,7 @@ void main() {
     }
 
     float seen = lampSeen(vPosition + 0.0008 * point.normal);
-    vec3 c = shaded(point.albedo, point.transmission, point.gloss, point.shininess, vPosition, point.normal, point.view, seen) + point.glow;
+    vec3 c = shaded(point.albedo, point.transmission * point.through, point.gloss, point.shininess, vPosition, point.normal, point.view, seen) + point.glow;
     colour = vec4(c + light_mirrored(point) * mirrored(reflect(-point.view, point.normal)), 1.0);
 #endif
 }`;
@@ -238,7 +240,7 @@ void main() {
     vec3 albedo = ${colour} * vec3(1.0 + 0.22 * red, 1.0 - 0.10 * red, 1.0 - 0.42 * red) * max(value, 0.04);
     vec3 n = normalize(vec3(0.004 * wear, 0.012 * (blotch + fibre), 1.0));
     float polish = (0.46 - 0.16 * late + 0.20 * wear + 0.16 * fibre) * (1.0 - 0.8 * joint) * (1.0 - 0.6 * pores), open = lampSeen(p + vec3(0.0, 0.0, 0.0006));
-    vec3 c = shaded(albedo, 0.0, 0.10 * polish, 26.0, p, n, view, open);
+    vec3 c = shaded(albedo, vec3(0.0), 0.10 * polish, 26.0, p, n, view, open);
     ${fade}
     colour = vec4(c, 1.0);
 }`;
@@ -251,7 +253,7 @@ out vec4 colour;
 void main() {
     vec3 n = normalize(vNormal), view = normalize(eye - vPosition);
     float seen = lampSeen(vPosition + 0.0015 * n), grain = 1.0 + 0.12 * noise4(vPosition * vec3(900.0, 900.0, 900.0)).r;
-    colour = vec4(shaded(albedo * grain, 0.0, gloss, 40.0, vPosition, n, view, seen) + emission, 1.0);
+    colour = vec4(shaded(albedo * grain, vec3(0.0), gloss, 40.0, vPosition, n, view, seen) + emission, 1.0);
 }`;
 
 /** Sparks and flakes (airborne.js), four corners each: a spark is a streak at least some pixels wide, a flake a plate. */
@@ -308,7 +310,7 @@ void main() {
     float rim = 1.0 - stepf(0.0, 0.28, inside), pale = clamp(vWhat.z + 0.25 * rim + 0.3 * noise4(vec3(2.3 * vAt, seed.y)).b, 0.0, 1.0);
     vec3 albedo = mix(vec3(0.014), vec3(0.30, 0.30, 0.29), pale * pale);
     vec3 glow = blackbody_glow(vWhat.y) * 1.6 * stepf(800.0, 950.0, vWhat.y) * stepf(-0.1, 0.5, noise4(vec3(4.0 * vAt, seed.y)).a);
-    colour = vec4(shaded(albedo, 0.25, 0.0, 1.0, vPosition, n, view, lampSeen(vPosition)) + glow, 0.96) * vec4(vec3(0.96), 1.0);
+    colour = vec4(shaded(albedo, vec3(0.25), 0.0, 1.0, vPosition, n, view, lampSeen(vPosition)) + glow, 0.96) * vec4(vec3(0.96), 1.0);
 }`;
 
 export const FULL_VERTEX = /* glsl */ `

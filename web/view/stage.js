@@ -90,17 +90,18 @@ export class Stage extends Card {
 
     // ---- a run and its frames
 
-    /** @param room what the server says of light, ground and sheets */
+    /** @param room what the server says of light, ground and sheets @param pictures of all sheets, then of their backs */
     setRoom(room, pictures) {
         const { gl } = this;
-        for (const { texture } of this.pictures) if (texture !== this.white) gl.deleteTexture(texture);
+        for (const one of this.pictures) for (const texture of [one.texture, one.back]) if (texture !== this.white) gl.deleteTexture(texture);
         for (const { array } of this.solids.values()) gl.deleteVertexArray(array);
         this.solids.clear();
         this.room = room;
         this.frame = null;
         this.cells = null;
+        const made = (picture) => (picture ? this.texture2d(picture.width, picture.height, gl.SRGB8_ALPHA8, gl.RGBA, gl.UNSIGNED_BYTE, picture.rgba, true) : this.white);
         this.pictures = room.sheets.map((sheet, i) => ({
-            ...sheet, texture: pictures[i] ? this.texture2d(pictures[i].width, pictures[i].height, gl.SRGB8_ALPHA8, gl.RGBA, gl.UNSIGNED_BYTE, pictures[i].rgba, true) : this.white,
+            ...sheet, texture: made(pictures[i]), back: made(pictures[i + room.sheets.length]), dyed: sheet.cloth ? (sheet.back ? 0.5 : 1) : 0,
         }));
     }
 
@@ -306,8 +307,8 @@ export class Stage extends Card {
     drawSheets(program, shared) {
         const { gl, sheets } = this, layer = LAYERS[this.layer === "gas" ? "char" : this.layer];
         for (const { sheet, first, count } of sheets.runs) {
-            const look = this.pictures[sheet] ?? { texture: this.white, colour: [1, 1, 1], transmittance: 0.19 };
-            const more = program !== "field" ? { printMap: look.texture, tint: look.colour, transmittance: look.transmittance }
+            const look = this.pictures[sheet] ?? { texture: this.white, back: this.white, colour: [1, 1, 1], transmittance: 0.19, dyed: 0 };
+            const more = program !== "field" ? { printMap: look.texture, backMap: look.back, tint: look.colour, transmittance: look.transmittance, dyed: look.dyed }
                 : { colours: this.ramps[this.layer === "gas" ? "char" : this.layer], range: [layer.index, layer.low, layer.high] };
             this.use(this.programs[program], { ...shared, ...more });
             gl.bindVertexArray(sheets.array);

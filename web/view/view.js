@@ -89,8 +89,8 @@ async function beginRun(number) {
     shown = 0;
     room = await ofRun("room");
     record = await ofRun("run.json").catch(() => null);
-    const pictures = await Promise.all(room.sheets.map(async ({ picture }, i) => {
-        if (!picture) return null;
+    const pictures = await Promise.all(["picture", "back"].flatMap((side) => room.sheets.map((sheet) => sheet[side])).map(async (there, i) => {
+        if (!there) return null;
         const buffer = await ofRun(`picture/${i}`, "arrayBuffer"), [width, height] = new Uint32Array(buffer, 0, 2);
         const rgb = new Uint8Array(buffer, 8), rgba = new Uint8Array(4 * width * height);
         for (let y = 0; y < height; y++)
