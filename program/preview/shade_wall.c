@@ -10,15 +10,17 @@
 #define BRICK_HIGH 0.075f  ///< m, with a joint
 #define BRICK_JOINT 0.010f ///< m
 
-/// Noise of the face, its slope added to the tilt.
+/// Noise of the face, its slope added to the tilt. Those of odd and even seeds are turned by 45 degrees against each other, or
+/// the squares of their lattices would show as blocks where light grazes the wall.
 static float rough(float u, float v, float metres, float height, uint32_t seed, float footprint, Table *table) {
     const float shown = visible(metres, footprint), e = 0.25f;
     if (shown <= 0) return 0;
-    u /= metres;
-    v /= metres;
-    const float n = noise2(u, v, seed);
-    table->tilt[0] -= shown * height * (noise2(u + e, v, seed) - n) / e;
-    table->tilt[1] -= shown * height * (noise2(u, v + e, seed) - n) / e;
+    const float c = seed & 1 ? 0.966f : 0.5f, s = seed & 1 ? 0.259f : 0.866f;
+    const float x = (c * u - s * v) / metres, y = (c * v + s * u) / metres;
+    const float n = noise2(x, y, seed), step = shown * height / e;
+    const float dx = step * (noise2(x + e, y, seed) - n), dy = step * (noise2(x, y + e, seed) - n);
+    table->tilt[0] -= c * dx + s * dy;
+    table->tilt[1] -= c * dy - s * dx;
     return shown * n;
 }
 
@@ -27,7 +29,8 @@ static void plaster(float u, float v, uint32_t seed, float footprint, Table *tab
     const float bend = 0.05f * noise2(u * 5, v * 5, seed + 2);
     const float sweep = rough(u + bend, 2.6f * v + bend, 0.09f, 0.020f, seed + 3, footprint, table);
     const float hand = rough(u, v, 0.022f, 0.016f, seed + 4, footprint, table);
-    const float grain = rough(u, v, 0.0035f, 0.05f, seed + 5, footprint, table);
+    const float grain = rough(u, v, 0.0037f, 0.035f, seed + 5, footprint, table) +
+                        rough(u, v, 0.0033f, 0.037f, seed + 10, footprint, table);
     float value = 0.94f + 0.08f * patch + 0.07f * cloud + 0.05f * sweep + 0.04f * hand + 0.05f * grain;
 
     // a crack follows where two slow noises are equal, and only in places

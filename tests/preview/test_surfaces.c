@@ -236,3 +236,31 @@ TEST(mortar_is_lighter_than_bricks) {
     print_message("mortar over bricks: %.2f\n", (double)(row[0] / row[1]));
     assert_true(row[0] > 1.15f * row[1]);
 }
+
+/// Grazing light shows no axes in plaster: how much more of its changes goes along two lines at right angles than along those
+/// between them. The squares of its noise's lattice were seen as blocks.
+TEST(plaster_is_not_in_blocks) {
+    enum { PLACES = 32 };
+    static uint8_t rgb[BYTES];
+    float axes[2] = {0, 0}, all = 0;
+    for (int k = 0; k < PLACES; k++) {
+        PreviewDef def = small();
+        const float at = 0.3f * (float)k;
+        def.camera = (PreviewCamera){.eye = {at, 0, 0.45f}, .target = {at, 1, 0.45f}, .up = {0, 0, 1}, .fov = 0.1f};
+        def.wall = PREVIEW_WALL_PLASTER, def.wall_distance = 0.4f, def.samples = 4;
+        // along an axis and between two by turns: light itself has a direction
+        def.sun_direction[0] = k % 2 ? 0.7f : 1, def.sun_direction[1] = -0.2f, def.sun_direction[2] = k % 2 ? 0.7f : 0;
+        memset(def.sky_colour, 0, sizeof def.sky_colour);
+        draw(&def, &nothing, 0, rgb);
+        for (int y = 1; y + 1 < H; y++)
+            for (int x = 1; x + 1 < W; x++) {
+                const float g = (float)pixel(rgb, x + 1, y)[1] - (float)pixel(rgb, x - 1, y)[1];
+                const float h = (float)pixel(rgb, x, y + 1)[1] - (float)pixel(rgb, x, y - 1)[1];
+                const float square = g * g + h * h, angle = 4 * atan2f(h, g);
+                axes[0] += square * cosf(angle), axes[1] += square * sinf(angle), all += square;
+            }
+    }
+    const float most = hypotf(axes[0], axes[1]) / all;
+    print_message("plaster: %.3f along its axes\n", (double)most);
+    assert_true(most < 0.15f); // was 0.32
+}
