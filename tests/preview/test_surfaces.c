@@ -215,8 +215,15 @@ TEST(a_glowing_ball_wears_scale) {
             sum += green, squares += green * green;
         }
     const float mean = sum / count, varies = sqrtf(squares / count - mean * mean) / mean;
-    print_message("a glowing ball of %.0f varies by %.2f\n", (double)mean, (double)varies);
-    assert_true(varies > 0.26f); // was 0.21
+    // air that rises cools its lower half
+    float half[2] = {0, 0};
+    def.camera = (PreviewCamera){.eye = {0, -0.5f, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}, .fov = 0.09f};
+    draw(&def, &nothing, 0, rgb);
+    for (int y = H / 2 - 20; y < H / 2 + 20; y++)
+        for (int x = W / 2 - 18; x < W / 2 + 18; x++) half[y >= H / 2] += (float)pixel(rgb, x, y)[1];
+    print_message("a glowing ball of %.0f varies by %.2f; upper half over lower %.2f\n", (double)mean, (double)varies,
+                  (double)(half[0] / half[1]));
+    assert_true(varies > 0.26f && half[0] > 1.3f * half[1]); // were 0.21,
 }
 
 /// Mortar is lighter than bricks: rows of pixels along a joint, over those along the middles of bricks. It was a dark line.
