@@ -4,15 +4,14 @@
 // that they stay where they are while it burns. Where a pixel no longer resolves them, they fade, and what is left is the
 // unevenness of bundles of 2, 4, 8, ... threads.
 //
-// Threads give way one by one. A thread's fate is the sum of noise over bundles of 1 to 16 threads, each an octave: so
-// single threads, and tufts of them, stand out at a burnt edge, and holes in burnt cloth are slits along threads, of many
-// sizes. There is a hole where neither thread is left.
+// Threads give way one by one. A thread's fate is its own noise, and that of bundles of 2 to 16 threads of both families:
+// so single threads, and tufts of them, stand out at a burnt edge, and holes in burnt cloth are slits along threads, of
+// many sizes. There is a hole where neither thread is left.
 
 #include "preview/shape_look.h"
 
-enum { OCTAVES = 5 };
 #define FRAY 10.0f ///< threads, mean depth to which a burnt edge loses them
-#define FATE_MOST 1.0f
+#define FATE_MOST 0.8f
 #define LONG 16.0f     ///< how much longer than wide the patches are in which a bundle has one fate
 #define CLOSED 0.5f    ///< half a thread's width over the pitch, of whole cloth
 #define SHRUNKEN 0.36f ///< the same of char
@@ -79,29 +78,31 @@ void cloth_frame(const PreviewScene *scene, uint32_t triangle, Point *point) {
 
 static float resolved(float threads, float wide) { return clampf(1.6f - 0.8f * wide / threads, 0, 1); }
 
-/// How much sooner than others a thread gives way there, about -1 to 1. `wide`: a pixel's size in threads.
-static float thread_fate(int thread, float along, float wide, uint32_t seed) {
-    float sum = 0, size = 1, weight = 0.45f;
-    for (uint32_t octave = 0; octave < OCTAVES; octave++, size *= 2, weight *= 1.12f) {
+/// How much sooner than others threads give way there, about -1 to 1, in bundles of 2 to 16 of both families at once: what each
+/// family loses alone would end along the other's threads, in stairs of squares.
+static float bundle_fate(const float at[2], float wide) {
+    float sum = 0, size = 2, weight = 0.36f;
+    for (uint32_t octave = 1; octave <= 4; octave++, size *= 2, weight *= 1.12f) {
         const float shown = resolved(size, wide);
         if (shown <= 0) continue;
-        const float bundle = octave ? ((float)thread + 0.5f) / size : (float)thread;
-        sum += shown * weight * noise2(bundle, along / (LONG * size), seed + 7 * octave);
+        sum += shown * weight *
+               (noise2(at[0] / size, at[1] / (LONG * size), 71 + 7 * octave) +
+                noise2(at[1] / size, at[0] / (LONG * size), 171 + 7 * octave));
     }
-    return clampf(sum, -FATE_MOST, FATE_MOST);
+    return sum;
 }
 
-/// How far burnt cloth has fallen to pieces there, about -1 to 1: rips along both families, of sizes in octaves.
+/// How far burnt cloth has fallen to pieces there, about -1 to 1: rips of sizes in octaves, here along one family of threads and
+/// there along the other.
 static float cloth_damage(float x, float y, float wide) {
-    const float aspect = 4.5f;
-    float sum = 0, weight = 0.6f;
-    for (uint32_t octave = 0; octave < 4; octave++) {
-        const float size = 36 / (float)(1 << octave) / (1 + 0.4f * (float)octave), shown = resolved(size, wide);
+    const float aspect = 5, lean = 0.7f * noise2(x / 90, y / 90, 150);
+    float sum = -0.34f, weight = 0.6f, size = 56;
+    for (uint32_t octave = 0; octave < 4; octave++, size *= 0.4f, weight *= 0.85f) {
+        const float shown = resolved(size, wide);
         if (shown <= 0) break;
         const float warp = noise2(x / size, y / (aspect * size), 151 + octave);
         const float weft = noise2(x / (aspect * size), y / size, 161 + octave);
-        sum += shown * weight * (maxf(warp, weft) + 0.4f * minf(warp, weft)); // slits along either, no round holes
-        weight *= 0.8f;
+        sum += shown * weight * maxf(warp + lean, weft - lean);
     }
     return sum;
 }
@@ -114,16 +115,21 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
     *cloth = (Cloth){.shown = clampf(1.9f - 3.6f * wide, 0, 1), .burnt = burnt};
     if (cloth->shown + burnt <= 0) return;
 
-    // burnt threads lie unevenly, and their ends bend aside
+    // burnt threads lie unevenly and in waves, and their ends bend aside
     float at[2] = {x, y};
-    if (burnt > 0 && cloth->shown > 0) {
-        const float aside = cloth->shown * (0.5f * burnt + 2 * loose);
-        at[0] += aside * noise2(0.13f * x, 0.08f * y, 61);
-        at[1] += aside * noise2(0.08f * x, 0.13f * y, 62);
+    if (burnt > 0) {
+        const float aside = cloth->shown * (0.5f * burnt + 2 * loose), wave = 5 * burnt;
+        at[0] += wave * noise2(0.021f * x, 0.013f * y, 63);
+        at[1] += wave * noise2(0.013f * x, 0.021f * y, 64);
+        if (aside > 0) at[0] += aside * noise2(0.13f * x, 0.08f * y, 61);
+        if (aside > 0) at[1] += aside * noise2(0.08f * x, 0.13f * y, 62);
     }
 
-    const float damage = burnt > 0 ? cloth_damage(at[0], at[1], wide) : 0, worn = 1.1f - 0.5f * stepf(0.45f, 1, burn);
-    const float reach = FRAY * (0.4f + 1.7f * FATE_MOST + 2.1f * maxf(damage, 0)) + 3;
+    // far from where it could give way?
+    const float damage = burnt > 0 ? cloth_damage(at[0], at[1], wide) : 0;
+    const float worn = 0.9f - 0.4f * stepf(0.45f, 0.9f, burn);
+    const bool firm = burnt <= 0 || (edge >= CLOTH_EDGE && damage + 0.5f * FATE_MOST + 0.25f < worn);
+    const float fates = firm ? 0 : bundle_fate(at, wide);
     int thread[2];
     for (int k = 0; k < 2; k++) {
         float within, along = at[1 - k];
@@ -138,13 +144,13 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
         cloth->across[k] = (within - 0.5f) / half;
         cloth->tone[k] = own - 0.5f;
         cloth->gone[k] = fabsf(cloth->across[k]) > 1;
-        if (burnt <= 0) continue;
+        if (firm) continue;
 
-        // far from where it could give way?
-        const float doubt = 0.5f * FATE_MOST + 0.5f * cloth->tone[k];
-        if (edge > reach && damage + doubt < worn) continue;
-        const float fate = thread_fate(thread[k], along, wide, seed);
-        const float bite = burnt * FRAY * (1 - 0.75f * hot) * maxf(0.4f + 1.7f * fate + 2.1f * maxf(damage, -0.1f), 0);
+        float fate = fates;
+        if (wide < 2) fate += 0.45f * resolved(1, wide) * noise2((float)thread[k], along / LONG, seed);
+        fate = clampf(fate, -FATE_MOST, FATE_MOST);
+        const float bite = minf(
+            burnt * FRAY * (1 - 0.75f * hot) * maxf(0.4f + 1.7f * fate + 2.1f * maxf(damage, -0.1f), 0), CLOTH_EDGE);
         cloth->gone[k] = cloth->gone[k] || edge < bite || damage + 0.5f * fate + 0.5f * cloth->tone[k] > worn;
         cloth->end[k] = 1 - stepf(0, 3, edge - bite);
     }

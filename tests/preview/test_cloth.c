@@ -97,6 +97,9 @@ TEST(char_of_cloth_shows_its_bundles) {
     assert_true(varies > 0.28f); // 0.23: flat
 }
 
+static const float A4[12] = {-0.105f, -0.1485f, 0, 0.105f, -0.1485f, 0, 0.105f, 0.1485f, 0, -0.105f, 0.1485f, 0};
+static const float A4_UV[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+
 /// What is left of a burnt sheet, seen from straight above.
 typedef struct Remains {
     int covered, border; ///< pixels, and sides of pixels between what is covered and what is not
@@ -105,10 +108,8 @@ typedef struct Remains {
 static Remains burn_sheet(float weave) {
     enum { WIDE = 240, HIGH = 240 };
     static float coverage[HIGH * WIDE];
-    const float corners[12] = {-0.105f, -0.1485f, 0, 0.105f, -0.1485f, 0, 0.105f, 0.1485f, 0, -0.105f, 0.1485f, 0};
-    const float uv[8] = {0, 0, 1, 0, 1, 1, 0, 1};
     const PreviewLook look = {.weave = weave};
-    const PreviewStart start = {4, 1, corners, QUAD, uv, NULL};
+    const PreviewStart start = {4, 1, A4, QUAD, A4_UV, NULL};
     SingeSurface sheet;
     assert_true(synthetic_make(SYNTHETIC_COLD, 84, 0.04f, &sheet));
 
@@ -142,4 +143,107 @@ TEST(burnt_cloth_frays_into_threads) {
     assert_true(paper.border > 100);
     assert_true(cloth.border > 1.5f * (float)paper.border); // 1.46 where holes in burnt cloth were round
     assert_true(cloth.covered < paper.covered && cloth.covered > 0.75f * (float)paper.covered);
+}
+
+enum { SEEN = 240, SIDE = 40, GRID = SIDE * SIDE };
+static struct Char {
+    float position[GRID][3], normal[GRID][3], uv[GRID][2], temperature[GRID], peak[GRID], burn[GRID], rate[GRID];
+    int32_t sheet[GRID];
+    uint32_t triangles[2 * GRID][3];
+    SingeSurface surface;
+} burnt;
+
+/// A flat sheet of char of A4's size, whose vertices triangles share.
+static void char_make(float burn) {
+    burnt.surface = (SingeSurface){.vertex_count = GRID,
+                                   .position = burnt.position,
+                                   .normal = burnt.normal,
+                                   .uv = burnt.uv,
+                                   .rest_position = burnt.position,
+                                   .temperature = burnt.temperature,
+                                   .temperature_peak = burnt.peak,
+                                   .burn = burnt.burn,
+                                   .burn_rate = burnt.rate,
+                                   .sheet = burnt.sheet,
+                                   .triangles = burnt.triangles};
+    for (uint32_t i = 0; i < GRID; i++) {
+        const float u = (float)(i % SIDE) / (SIDE - 1), v = (float)(i / SIDE) / (SIDE - 1);
+        burnt.position[i][0] = 0.21f * (u - 0.5f), burnt.position[i][1] = 0.297f * (v - 0.5f);
+        burnt.normal[i][2] = 1, burnt.uv[i][0] = u, burnt.uv[i][1] = v;
+        burnt.temperature[i] = 293, burnt.peak[i] = 900, burnt.burn[i] = burn;
+        if (i % SIDE == SIDE - 1 || i / SIDE == SIDE - 1) continue;
+        const uint32_t cell[6] = {i, i + 1, i + SIDE + 1, i, i + SIDE + 1, i + SIDE};
+        memcpy(burnt.triangles[burnt.surface.triangle_count], cell, sizeof cell);
+        burnt.surface.triangle_count += 2;
+    }
+}
+
+static bool bare[SEEN * SEEN]; ///< pixels that show no cloth
+
+/// Pixels of the hole at a pixel, which is filled.
+static int hole_fill(int pixel) {
+    static int stack[SEEN * SEEN];
+    int size = 0, count = 0;
+    bare[pixel] = false;
+    for (stack[count++] = pixel; count > 0;) {
+        const int at = stack[--count], x = at % SEEN;
+        const int near[4] = {at - SEEN, at + SEEN, x > 0 ? at - 1 : -1, x + 1 < SEEN ? at + 1 : -1};
+        size++;
+        for (int k = 0; k < 4; k++) {
+            if (near[k] < 0 || near[k] >= SEEN * SEEN || !bare[near[k]]) continue;
+            bare[near[k]] = false;
+            stack[count++] = near[k];
+        }
+    }
+    return size;
+}
+
+/// Burnt cloth of threads of 0.4 mm, in pixels of 0.8 mm, into `bare`.
+static void draw_holes(const SingeSurface *surface) {
+    static float coverage[SEEN * SEEN];
+    const PreviewLook look = {.weave = 4e-4f};
+    const PreviewStart start = {4, 1, A4, QUAD, A4_UV, NULL};
+    PreviewDef def = above();
+    def.width = def.height = SEEN, def.samples = 4, def.camera.fov = 0.376f; // 19 cm
+    def.looks = &look, def.starts = &start, def.sheet_count = 1, def.ground_height = -INFINITY;
+    const PreviewLayers layers = {.coverage = coverage};
+    draw_layers(&def, surface, NULL, 30, &layers);
+    for (int i = 0; i < SEEN * SEEN; i++) bare[i] = coverage[i] < 0.5f;
+}
+
+TEST(holes_in_burnt_cloth_are_of_many_sizes) {
+    char_make(0.7f);
+    draw_holes(&burnt.surface);
+    int small = 0, large = 0, total = 0; // 2 mm2 and less, 2 cm2 and more
+    for (int i = 0; i < SEEN * SEEN; i++) {
+        const int size = bare[i] ? hole_fill(i) : 0;
+        total += size, small += size > 0 && size <= 3, large += size > 300;
+    }
+    const double share = 100.0 * total / (SEEN * SEEN);
+    print_message("holes: %.1f %%, %d small, %d large\n", share, small, large);
+    assert_true(share > 8 && share < 25);  // 3.4
+    assert_true(small > 180 && large > 2); // 115 and none
+}
+
+/// What each family of threads loses alone ends along the other's threads, in stairs. All of this sheet is as loose as a border,
+/// as its triangles share no vertices.
+TEST(burnt_borders_of_cloth_have_no_stairs) {
+    enum { LONG = 8 };
+    SingeSurface sheet;
+    assert_true(synthetic_make(SYNTHETIC_COLD, 84, 0.001f, &sheet));
+    for (uint32_t i = 0; i < sheet.vertex_count; i++) sheet.burn[i] = 0.7f;
+    draw_holes(&sheet);
+    synthetic_free(&sheet);
+    int border = 0, straight = 0;
+    for (int axis = 0; axis < 2; axis++)
+        for (int y = 0; y + 1 < SEEN; y++)
+            for (int x = 0, run = 0; x < SEEN; x++) {
+                const int at = axis ? x * SEEN + y : y * SEEN + x, other = at + (axis ? 1 : SEEN);
+                const bool side = bare[at] != bare[other];
+                border += side, run = side ? run + 1 : 0;
+                straight += run == LONG ? LONG : run > LONG;
+            }
+    const double share = 100.0 * straight / border;
+    print_message("sides of %d pixels and more are %.1f %% of a border of %d\n", LONG, share, border);
+    assert_true(border > 5000 && share < 8); // 14
 }
