@@ -99,6 +99,20 @@ const CASES = {
         assert.ok(lit[0] > (await colour(page))[0] + 1, "the flames are switched off");
         await click(page, "#fire");
     },
+    async "stone lies in slabs with dark joints"(page) {
+        const dark = await page.evaluate(() => {
+            const { stage } = globalThis.view, { room, gl, canvas } = stage, [width, height] = [canvas.width, canvas.height], kept = { ...room }, bytes = new Uint8Array(4 * 240 * 240);
+            Object.assign(room, { width: 240, height: 240, ground: 1, ground_height: 0, ground_colour: [0.4, 0.4, 0.4], exposure: 1, sun: [0, 0, 0], ambient: room.ambient.map((_, i) => (i < 3 ? 1 : 0)), wall_distance: null });
+            stage.resize(240, 240);
+            stage.draw({ eye: [3, 0, 1.1], target: [3, 0, 0], up: [0, 1, 0], fov: 0.9 }); // 1 m of it from above, far from what burns
+            gl.readPixels(0, 0, 240, 240, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+            Object.assign(room, kept);
+            stage.resize(width, height);
+            const greens = bytes.filter((_, i) => i % 4 === 1), middle = greens.slice().sort()[greens.length >> 1];
+            return [greens.filter((green) => green < 0.7 * middle).length / greens.length, middle];
+        });
+        assert.ok(dark[0] > 0.004 && dark[0] < 0.04, `${dark[0]} of the stone is much darker than ${dark[1]} of 255`);
+    },
     async "dragging turns the view, and the camera comes home"(page) {
         const eye = () => page.evaluate(() => globalThis.view.camera.eye), home = await eye();
         await page.drag([500, 300], [620, 280]);

@@ -1,4 +1,5 @@
 // GLSL of the scene's own light, and of what stands in it: sheets, ground, wall and shapes.
+import { LOOK } from "./look.js";
 import * as glsl from "./shaders.js";
 
 export const LIGHTS = 16; // lamps at most
@@ -74,16 +75,20 @@ out vec4 colour;
 uniform vec3 groundColour, background;
 uniform float reach, stone;
 void main() {
-    vec3 p = vPosition, view = normalize(eye - p);
-    float cloud = noise4(p * 7.0).r, patches = noise4(p * 26.0).g, rough = noise4(p * 110.0).b, value = 1.0;
-    vec3 n = vec3(0.0, 0.0, 1.0);
-    if (stone > 0.5) {
-        float line = abs(noise4(vec3((p.x + 0.03 * cloud) * 7.5 + 3.0, p.y * 2.6, 0.5)).r);
-        value = 0.95 + 0.30 * cloud + 0.22 * patches + 0.13 * rough + 1.1 * (1.0 - smoothstep(0.004, 0.025, line)) * smoothstep(-0.45, 0.25, patches);
-        n = normalize(vec3(0.02 * patches, 0.02 * rough, 1.0));
+    vec3 p = vPosition, view = normalize(eye - p), n = vec3(0.0, 0.0, 1.0), tone = vec3(1.0);
+    if (stone > 0.5) { // after shade_ground.c, without its gravel and pits
+        vec2 q = mat2(0.921, 0.389, -0.389, 0.921) * p.xy, side = ${LOOK.SLAB} * (0.5 - abs(fract(q / ${LOOK.SLAB} + vec2(0.31, 0.72)) - 0.5));
+        float size = max(length(dFdx(p)), length(dFdy(p))), wide = noise4(vec3(q * 2.3, 0.5)).r, cloud = noise4(vec3(q.x * 7.0 + wide, q.y * 7.0, 2.5)).g, patches = noise4(vec3(q * 26.0, 3.5)).b;
+        vec2 rough = noise4(vec3(q * 110.0, 4.5)).ra * clamp(1.5 - size / 0.010, 0.0, 1.0), grain = noise4(vec3(q * 625.0, 5.5)).gb * clamp(1.5 - size / 0.0018, 0.0, 1.0);
+        float edge = min(side.x, side.y) - 0.0022 - 0.0016 * max(noise4(vec3(q * 70.0, 6.5)).r, 0.0), soft = max(0.0008, 0.6 * size);
+        float joint = (1.0 - smoothstep(-soft, soft, edge)) * min(1.0, 0.0045 / size), bend = 0.03 * noise4(vec3(q * 9.0, 7.5)).r;
+        float crack = smoothstep(0.1, 0.5, noise4(vec3(q * 3.0, 9.5)).g) * min(1.0, 0.001 / size) * (1.0 - smoothstep(0.001, 0.004 + 2.5 * size, abs(noise4(vec3((q + bend) * vec2(4.5, 2.6), 8.5)).b)));
+        float value = 0.93 + 0.16 * wide + 0.15 * cloud + 0.09 * patches + 0.07 * rough.x + 0.08 * grain.x, warm = 0.5 * cloud - 0.3 * patches;
+        tone = vec3(1.03 + 0.05 * warm, 1.0, 0.95 - 0.06 * warm) * max(value * (1.0 - 0.8 * joint) * (1.0 - 0.45 * crack), 0.03);
+        n = normalize(vec3(0.03 * (rough + grain), 1.0));
     }
     float seen = lampSeen(p + vec3(0.0, 0.0, 0.0006));
-    vec3 c = shaded(groundColour * max(value, 0.1), vec3(0.0), stone > 0.5 ? 0.04 : 0.008, 26.0, p, n, view, seen);
+    vec3 c = shaded(groundColour * tone, vec3(0.0), stone > 0.5 ? 0.04 : 0.008, 26.0, p, n, view, seen);
     ${FADE}
     colour = vec4(c, 1.0);
 }`;
