@@ -28,7 +28,14 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 FRAMES = 16
 RIGHT = {8: -0.373, 12: -0.486, 16: -0.299}  # frame: height, m
 SETTINGS = {"Bullet": ((10, 10), (20, 40)), "MuJoCo": ((10, 50), (40, 50))}  # steps a frame, iterations
-BEGIN, END = "<!-- bench_peers: begin -->", "<!-- bench_peers: end -->"
+
+
+def write_table(name, lines):
+    """Puts a table into docs/performance.md, between the comments of its name."""
+    path = Path(ROOT, "docs", "performance.md")
+    begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
+    before, rest = path.read_text(encoding="utf-8").split(begin)
+    path.write_text(before + "\n\n".join([begin, "\n".join(lines), end]) + rest.split(end)[1], encoding="utf-8")
 
 
 def measure(cells, raw):
@@ -123,10 +130,7 @@ def main():
               for name, ms, most, p99, mean, off in rows]
     print("\n".join(lines + missing))
     if options.table:
-        path = os.path.join(ROOT, "docs", "performance.md")
-        text = Path(path).read_text(encoding="utf-8")
-        before, rest = text.split(BEGIN)
-        Path(path).write_text(before + BEGIN + "\n\n" + "\n".join(lines) + "\n\n" + END + rest.split(END)[1], encoding="utf-8")
+        write_table("bench_peers", lines)
     return 0
 
 
