@@ -67,7 +67,7 @@
 #define GROUP 0.2f
 #define GROUP_UNLIKE 0.9f   ///< octaves
 #define FED_WHOLLY 0.3f     ///< what burns less gains and loses less
-#define SMOKE_SEEN_AS 15.0f ///< times its extinction, in the middle of a roll; what lies between rolls is clear
+#define SMOKE_SEEN_AS 9.0f ///< times its extinction, in the middle of a roll; what lies between rolls is clear
 #define SMOKE_EDDY 0.028f   ///< m across
 #define SMOKE_SMALL 0.53f   ///< of that
 #define SMOKE_FINE 0.22f
