@@ -65,11 +65,11 @@
 #define GROUP_WIDE 0.075f ///< m along what burns, over which tongues are high or low together
 #define GROUP_RATE 2.0f   ///< 1/s
 #define GROUP 0.2f
-#define GROUP_UNLIKE 0.9f   ///< octaves
-#define FED_WHOLLY 0.3f     ///< what burns less gains and loses less
+#define GROUP_UNLIKE 0.9f  ///< octaves
+#define FED_WHOLLY 0.3f    ///< what burns less gains and loses less
 #define SMOKE_SEEN_AS 9.0f ///< times its extinction, in the middle of a roll; what lies between rolls is clear
-#define SMOKE_EDDY 0.028f   ///< m across
-#define SMOKE_SMALL 0.53f   ///< of that
+#define SMOKE_EDDY 0.028f  ///< m across
+#define SMOKE_SMALL 0.53f  ///< of that
 #define SMOKE_FINE 0.22f
 #define SMOKE_BELOW 0.5f ///< of an eddy, from where a roll is shaded
 #define SMOKE_SHADE 1.6f ///< by as much as a cloud that hides all would be
