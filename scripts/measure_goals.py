@@ -16,6 +16,8 @@ import tempfile
 
 from bench_peers import ROOT, write_table
 
+LOOSE, TIGHT = "drop --steps 3 --substeps 10", "drop --steps 3 --substeps 16"
+
 # name, arguments of `singe bench`, column, runs, unit, goal
 ROWS = [
     ("swing, 100 x 100 cells, a frame", "swing --cells 100 --thickness 1", "cpu_ms", 3, "ms", 9),
@@ -27,6 +29,11 @@ ROWS = [
     ("step of 1,000,000 springs, one thread", "step --springs 1000000", "step_ms", 2, "ms", 25),
     ("step of 1,000,000 springs, two threads", "step --springs 1000000 --threads 2", "step_ms", 2, "ms", 14),
     ("heap, 100,000 springs, two threads, a step", "heap --cells 100 --threads 2", "step_ms", 1, "ms", 3.5),
+    ("drop on a sphere, 100 x 100 cells, loose, a frame", LOOSE, "frame_ms", 3, "ms", 60),
+    ("the same, p99 of its strain", LOOSE, "strain_pct_p99", 1, "%", 8.3),
+    ("the same, tighter, a frame", TIGHT, "frame_ms", 3, "ms", 75),
+    ("the same, p99 of its strain", TIGHT, "strain_pct_p99", 1, "%", 2.8),
+    ("the same, most memory", TIGHT, "max_mb", 1, "MB", 42),
     ("memory of 1,000,000 springs, each", "memory --springs 1000000", "bytes_spring", 1, "bytes", 250),
 ]
 LETTER = ("letter, 100 frames, one thread, no pictures", "s of the processor", 20)

@@ -76,6 +76,7 @@ int options_cells(double springs);
 
 /// As asked for, or 3: fewer than the default, so that a step's cost compares with that of earlier versions.
 int options_substeps(const BenchOptions *options);
+int options_steps(const BenchOptions *options); ///< of a frame
 
 // ---- command lines
 
@@ -125,5 +126,5 @@ typedef SingeResult BenchFn(const BenchOptions *options, BenchTable *table, Sing
 
 // What each measures: the table in bench_command.c.
 BenchFn bench_swing, bench_hang_and_shrink, bench_tear, bench_dynamics, bench_step, bench_surface, bench_heap,
-    bench_collapse, bench_stack, bench_wind, bench_memory, bench_front, bench_spread, bench_output, bench_preview,
-    bench_compare, bench_stability, bench_fold, bench_isotropy, bench_plate, bench_spectrum;
+    bench_collapse, bench_stack, bench_drop, bench_wind, bench_memory, bench_front, bench_spread, bench_output,
+    bench_preview, bench_compare, bench_stability, bench_fold, bench_isotropy, bench_plate, bench_spectrum;

@@ -123,6 +123,7 @@ int options_cells(double springs) {
     return cells < 2 ? 2 : (int)cells;
 }
 
+int options_steps(const BenchOptions *options) { return options->steps ? options->steps : 20; }
 int options_substeps(const BenchOptions *options) { return options->substeps ? options->substeps : 3; }
 
 BenchList bench_list(const BenchList *asked, int count, const double *defaults) {

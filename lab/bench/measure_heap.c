@@ -10,7 +10,7 @@
 #include "bench/timing.h"
 #include "analysis/numbers.h"
 
-enum { STEPS = 20, ROOM = 4096 };
+enum { ROOM = 4096 };
 static const float side = 1;                    // m
 static const float sphere = 0.12f, lift = 0.3f; // m
 static const float ball = 0.1f;                 // m, radius of the closed mesh
@@ -102,6 +102,7 @@ static SingeResult add_ball(SingeSim *sim, int cells_a_side) {
 static SingeResult heap_build(const BenchOptions *options, int cells, bool closed, SingeSim **sim, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     def.thread_count = options->threads;
+    def.time_step = (float)(1 / (24.0 * options_steps(options)));
     def.contact.enabled = true;
     if (!closed) def.contact.thickness = 1e-3f; // of a cloth
     def.solver.substeps = options_substeps(options);
@@ -140,7 +141,7 @@ static SingeResult heap_measure(const BenchOptions *options, int cells, bool clo
     SingeResult result = SINGE_OK;
     for (int f = 0; f < frames && !result; f++) {
         double begun = machine_clock();
-        for (int step = 0; step < STEPS && !result; step++) result = singe_sim_step(sim);
+        for (int step = 0; step < options_steps(options) && !result; step++) result = singe_sim_step(sim);
         frame_ms[f] = 1e3 * (machine_clock() - begun);
     }
 
