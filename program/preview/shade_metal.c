@@ -65,41 +65,39 @@ void shape_metal(const Place *place, Point *point) {
 // ---- heat
 
 // What glows is drawn as bright as lets its colours differ: a glow is wide, so a film that is set for what it lights would
-// show it as a white disc. Its scale is cooler than the metal, which shows in cracks and where scale has come off. Air
-// that rises along it cools it most below.
+// show it as a white disc. It glows evenly, cooler at its limb, below, where air that rises cools it most, and towards the
+// end of a rod by which it is held, that of its +z. A few thin flakes of scale lie on it, cooler than the metal; elsewhere scale has come off.
 
 #define SHAPE_GAIN 0.147f
-#define SHAPE_MIDDLE 150.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
-#define SHAPE_LIMB 190.0f   ///< K, by which the limb is cooler than the middle
-#define SHAPE_BELOW 130.0f  ///< K, by which what faces down is cooler than the middle
-#define SCALE_COOLER 215.0f ///< K, scale over metal
+#define SHAPE_MIDDLE 125.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
+#define SHAPE_LIMB 240.0f   ///< K, by which the limb is cooler than the middle
+#define SHAPE_BELOW 165.0f  ///< K, by which what faces down is cooler than the middle
+#define SHAPE_HELD 330.0f   ///< K, by which a rod is cooler where it is held
+#define SCALE_COOLER 120.0f ///< K, scale over metal
 
 void shape_glow(const Preview *preview, const Place *place, Point *point) {
+    const PreviewShape *shape = place->shape;
     const float unit = 3.5f / maxf(place->size, 1e-6f);
     const Float3 p = float3_scale(place->p, unit);
     const Float3 aslant =
         float3(0.8f * p.x + 0.6f * p.y, 0.64f * p.y - 0.48f * p.x + 0.6f * p.z, 0.8f * p.z + 0.36f * p.x - 0.48f * p.y);
-    const float small = noise3(float3_scale(aslant, 5.3f), 43), middle = noise3(float3_scale(p, 1.7f), 42);
-    const float broad = noise3(float3_scale(p, 0.5f), 41);
-    const float fine = visible(0.2f / unit, point->footprint) * noise3(float3_scale(p, 19), 44);
-    const float lies = 1.3f * broad + 0.6f * middle + 0.25f * small + 0.12f * fine; // scale lies where it is high
-    const float scale = stepf(-0.12f, 0.16f, lies), rim = scale * (1 - stepf(0.0f, 0.18f, lies));
-    const float wall = noise_walls(float3_mad(float3_scale(p, 0.9f), float3(small, middle, broad), 0.22f), 45);
-    const float crack = scale * (1 - stepf(0.02f, 0.07f + 0.4f * unit * point->footprint, wall));
+    const float middle = noise3(float3_scale(aslant, 1.4f), 42), broad = noise3(float3_scale(p, 0.45f), 41);
+    const float small = noise3(float3_scale(aslant, 3.7f), 43);
+    const float fine = visible(0.12f / unit, point->footprint) * noise3(float3_scale(p, 8), 44);
+    const float lies = middle + 0.45f * small + 0.25f * fine; // scale lies where it is high
+    const float scale = stepf(0.46f, 0.62f, lies);
 
     const float facing = clampf(float3_dot(point->normal, point->view), 0, 1), aside = 1 - facing;
-    const float cool = scale * (1 - 0.4f * crack) * (0.85f + 0.8f * middle + 0.5f * small) + 0.25f * rim -
-                       0.22f * (1 - scale) * (1 + small);
-    const float temperature = place->shape->temperature * (1 + 0.012f * broad) - SCALE_COOLER * cool -
+    const bool rod = shape->kind == SINGE_COLLIDER_CAPSULE;
+    const float end = rod ? maxf(0.5f + place->p.z / (shape->height + 2 * shape->radius), 0) : 0;
+    const float temperature = shape->temperature * (1 + 0.02f * broad + 0.008f * middle) - SCALE_COOLER * scale -
                               SHAPE_LIMB * aside * sqrtf(aside) + SHAPE_BELOW * minf(point->normal.z, 0.2f) +
-                              SHAPE_MIDDLE * facing * facing;
+                              SHAPE_MIDDLE * facing * facing - SHAPE_HELD * end * end;
     Float3 glow = blackbody_glow(preview->blackbody, temperature);
-    point->glow = float3_scale(glow, SHAPE_GAIN * (0.45f + 0.55f * facing) * (1 + 0.15f * fine));
+    point->glow = float3_scale(glow, SHAPE_GAIN * (0.45f + 0.55f * facing));
     point->albedo = float3_scale(float3(0.045f, 0.042f, 0.040f), 0.6f + 0.4f * scale);
     point->gloss = 0;
     point->mirror = 0.15f;
-    point->shine = float3_scale(float3(0.05f, 0.05f, 0.05f), 1 - 0.6f * rim);
+    point->shine = float3(0.05f, 0.05f, 0.05f);
     point->rough[0] = point->rough[1] = 0.42f;
-    const Float3 q = float3_scale(p, 1.7f);
-    shape_lean(place, float3_scale(noise3_gradient(q, middle, 42), 0.10f * scale), point);
 }
