@@ -34,8 +34,8 @@ PARTS = {
     },
     "FLAME": {
         "calls": ["Noise noise_at(vec3 q);", "FireCell cell_at(vec3 p);"],
-        "structs": {"fire.h": ["FireCell", "FirePoint", "Matter"], "fire_shade.c": ["Noise"]},
-        "functions": {"fire_shade.c": ["eddies_passed", "eddies", "fire_sway", "shade_flame", "fire_between", "smoke_roll", "fire_smoke_at"]},
+        "structs": {"fire.h": ["FireCell", "FirePoint", "Matter", "Smoke"], "fire_shade.c": ["Noise"]},
+        "functions": {"fire_shade.c": ["eddies_passed", "eddies", "fire_sway", "shade_flame", "fire_between", "fire_smoke_at", "fold_sum", "fire_smoke_between"]},
     },
 }
 TYPES = {"Float3": "vec3", "uint32_t": "float", "int32_t": "float", "int": "float"}

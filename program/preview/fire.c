@@ -12,7 +12,8 @@
 // and elsewhere found by following the velocity back, layer by layer from below: r(x) = (r(x - v dt) + dz) times the
 // share that was burning there; it distinguishes the clear base, the bright centre and the torn tip. Cells below what
 // burns have its flame and a negative height: so both are linear at the paper, where flames begin. Smoke is its
-// extinction, 8.7 m2/g times its density (Mulholland & Croarkin 2000, for the soot of flames).
+// extinction, 8.7 m2/g times its density (Mulholland & Croarkin 2000, for the soot of flames), where the gas is cold: in hot
+// gas soot still burns and vapours have not condensed.
 
 #include "preview/internal.h"
 
@@ -25,7 +26,8 @@
 #define ROOT_WIDE 0.6f     ///< cells aside, from which on a flame draws together
 #define ROOT_LEAN 0.4f
 #define FIRE_PASSING 0.75f ///< share of the gas over burning paper that came from flames below
-#define SMOKE_SEEN 0.08f   ///< 1/m
+#define SMOKE_COLD 450.0f  ///< K: what is colder is all smoke
+#define SMOKE_HOT 650.0f   ///< K: what is hotter is none yet
 
 static size_t fire_at(const Fire *fire, int x, int y, int z) {
     return (size_t)x + (size_t)fire->size[0] * ((size_t)y + (size_t)fire->size[1] * (size_t)z);
@@ -197,7 +199,7 @@ static void mark_all(Fire *fire) {
             for (int x = 1; x < fire->size[0] - 1; x++) {
                 const int position[3] = {x, y, z};
                 float seen[3] = {(float)x, (float)y, (float)z};
-                if (fire->cells[fire_at(fire, x, y, z)].smoke > SMOKE_SEEN)
+                if (fire->cells[fire_at(fire, x, y, z)].smoke > SMOKE_THIN)
                     mark_bricks(fire, seen, 1 + 1.5f * fire->scale * SMOKE_WARP / fire->cell, FIRE_SMOKE);
 
                 // the max of the spline in the cell's box: the largest of its Bezier points, which are the means of
@@ -320,7 +322,7 @@ static SingeResult check_gas(const SingeGas *gas, SingeError *error) {
     float sum = 0; // of zeros, unless something is not finite
     for (size_t i = 0; good && i < (size_t)n[0] * n[1] * n[2]; i++)
         sum += 0 * gas->smoke[i] + 0 * gas->flame[i] + 0 * gas->velocity[i][0] + 0 * gas->velocity[i][1] +
-               0 * gas->velocity[i][2];
+               0 * gas->velocity[i][2] + (gas->temperature ? 0 * gas->temperature[i] : 0);
     if (good && sum == 0) return SINGE_OK;
     return preview_fail(error, SINGE_ERROR_ARGUMENT, -1,
                         "gas: size, cell, origin or a value is out of range, or an array is missing");
@@ -381,7 +383,8 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
                 const float up = maxf(gas->velocity[from][2], 0.1f);
                 fire->source[to][2] = flame > FLAME_LOW ? minf(logf(flame / FLAME_LOW) / range, 1) : 0;
                 fire->source[to][3] = up;
-                fire->cells[to].smoke = smoke > 0 ? GAS_EXTINCTION * smoke : 0;
+                const float cold = gas->temperature ? 1 - stepf(SMOKE_COLD, SMOKE_HOT, gas->temperature[from]) : 1;
+                fire->cells[to].smoke = smoke > 0 ? cold * GAS_EXTINCTION * smoke : 0;
                 for (int c = 0; c < 2; c++) fire->source[to][c] = clampf(gas->velocity[from][c] / up, -1, 1);
             }
 
@@ -402,7 +405,7 @@ void fire_light_smoke(Preview *preview) {
             for (int x = 0; x < fire->size[0]; x++) {
                 FireCell *cell = &fire->cells[fire_at(fire, x, y, z)];
                 cell->glow = 0;
-                if (cell->smoke <= SMOKE_SEEN) continue;
+                if (cell->smoke <= 0.4f * SMOKE_THIN) continue; // it may be seen in the cells beside it
                 Float3 p = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);
                 for (int k = 0; k < preview->scene.light_count; k++) {
                     Float3 to = float3_sub(float3(lights->x[k], lights->y[k], lights->z[k]), p);

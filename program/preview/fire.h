@@ -31,6 +31,14 @@ typedef struct Matter {
     float dense; ///< 1/m, extinction
 } Matter;
 
+/// The smoke at a position. Its folds are thinner than the places where it is looked up are apart, so each of these knows
+/// how far it is from a fold.
+typedef struct Smoke {
+    Float3 light; ///< radiance that it scatters, per unit of extinction
+    float dense;  ///< 1/m, extinction in the middle of a fold
+    float fold;   ///< 0 there
+} Smoke;
+
 /// The steps of a ray from `from` to `distance`: after a step, `light` has been added and `clear` is the transmittance.
 typedef struct FireView {
     int count, run_count;
@@ -44,7 +52,7 @@ typedef struct FireView {
 /// Where four rays at twice that distance see nearly the same, there are none between them.
 enum { FIRE_TILE = 32, FIRE_ACROSS = FIRE_TILE / 2 + 1, FIRE_COARSE = FIRE_TILE / 4 };
 
-/// Smoke is softer still: it is known at places of a few of the rays, `length` apart, and linear between them.
+/// Smoke is known at places of a few of the rays, `length` apart, and linear between them.
 enum { SMOKE_ACROSS = FIRE_TILE / 4 + 1, SMOKE_PLACES = 192 };
 
 typedef struct FireTile {
@@ -54,7 +62,7 @@ typedef struct FireTile {
     int apart;                              ///< rays from one with smoke to the next; 0: each looks for itself
     int first;                              ///< number of the place nearest to the eye
     float length;                           ///< m
-    Matter smoke[SMOKE_ACROSS * SMOKE_ACROSS][SMOKE_PLACES];
+    Smoke smoke[SMOKE_ACROSS * SMOKE_ACROSS][SMOKE_PLACES];
     bool smoke_known[SMOKE_ACROSS * SMOKE_ACROSS][SMOKE_PLACES];
     bool fine[FIRE_COARSE * FIRE_COARSE]; ///< whether squares of 4 x 4 pixels have rays at all their corners of 2 x 2
     bool empty;                           ///< no ray meets anything
@@ -95,6 +103,7 @@ typedef struct Fire {
 #define FIRE_WARP_WIDE 0.0055f
 #define FIRE_WARP_FINE 0.0018f
 #define SMOKE_WARP 0.0234f
+#define SMOKE_THIN 0.2f ///< 1/m, extinction from which on smoke is seen
 
 enum { FIRE_FLAME = 1, FIRE_SMOKE = 2 };
 
@@ -145,7 +154,10 @@ FirePoint fire_at_point(const Fire *fire, Float3 p, float blur);
 
 /// Adds the mean of the flame over a step between two points.
 void fire_between(const FirePoint *a, const FirePoint *b, float step, Matter *matter);
-Matter fire_smoke_at(const Fire *fire, Float3 p);
+Smoke fire_smoke_at(const Fire *fire, Float3 p);
+
+/// The mean of the smoke between two places. blur: m, over which the picture resolves nothing.
+Matter fire_smoke_between(const Fire *fire, const Smoke *a, const Smoke *b, float blur);
 
 // fire_march.c
 /// Fills a tile whose upper left pixel is (x, y).

@@ -14,22 +14,25 @@
 #define FIRE_SOFT 6.0f     ///< pixels, over which the edges of flames begin: rays are two apart, depths rough
 #define FIRE_EVEN 0.020f   ///< difference of light, as l / (1 + l), that may be interpolated
 
-/// Smoke has no detail as fine as a flame's steps: it is looked up at multiples of a length, and linear between them.
+/// Smoke is looked up at multiples of a length, and linear between them.
 typedef struct SmokeLine {
     FireTile *tile; ///< where smoke is shared with other rays; NULL: nowhere
     int ray;
     float length, first; ///< m; number of the place of the nearer of `ends`
-    Matter ends[2];
+    Smoke ends[2];
+    float pixel; ///< its size, per m from the eye
+    float at;    ///< m, where `here` is
+    Smoke here;
 } SmokeLine;
 
-static Matter matter_mix(const Matter *a, const Matter *b, float part) {
-    return (Matter){float3_mix(a->light, b->light, part), mixf(a->dense, b->dense, part)};
+static Smoke smoke_mix(const Smoke *a, const Smoke *b, float part) {
+    return (Smoke){float3_mix(a->light, b->light, part), mixf(a->dense, b->dense, part), mixf(a->fold, b->fold, part)};
 }
 
 /// The smoke of a place of one of the rays that have it.
-static const Matter *smoke_shared(const Fire *fire, Float3 eye, FireTile *tile, int column, int row, int place) {
+static const Smoke *smoke_shared(const Fire *fire, Float3 eye, FireTile *tile, int column, int row, int place) {
     const int line = row * SMOKE_ACROSS + column;
-    Matter *smoke = &tile->smoke[line][place];
+    Smoke *smoke = &tile->smoke[line][place];
     if (tile->smoke_known[line][place]) return smoke;
     tile->smoke_known[line][place] = true;
     const Float3 ray = tile->rays[tile->apart * (row * FIRE_ACROSS + column)];
@@ -38,22 +41,23 @@ static const Matter *smoke_shared(const Fire *fire, Float3 eye, FireTile *tile, 
 }
 
 /// The smoke of a place of a ray, from the four around it.
-static Matter smoke_place(const Fire *fire, Float3 eye, Float3 d, float number, const SmokeLine *line) {
+static Smoke smoke_place(const Fire *fire, Float3 eye, Float3 d, float number, const SmokeLine *line) {
     FireTile *tile = line->tile;
     const float from = tile ? number - (float)tile->first : -1;
     if (!(from >= 0 && from < SMOKE_PLACES)) return fire_smoke_at(fire, float3_mad(eye, d, number * line->length));
     const int x = line->ray % FIRE_ACROSS, y = line->ray / FIRE_ACROSS, apart = tile->apart, place = (int)from;
     const int column = x / apart, row = y / apart, right = column + (x % apart > 0), down = row + (y % apart > 0);
     const float u = (float)(x % apart) / (float)apart, v = (float)(y % apart) / (float)apart;
-    const Matter upper = matter_mix(smoke_shared(fire, eye, tile, column, row, place),
-                                    smoke_shared(fire, eye, tile, right, row, place), u);
+    const Smoke upper = smoke_mix(smoke_shared(fire, eye, tile, column, row, place),
+                                  smoke_shared(fire, eye, tile, right, row, place), u);
     if (down == row) return upper;
-    const Matter lower = matter_mix(smoke_shared(fire, eye, tile, column, down, place),
-                                    smoke_shared(fire, eye, tile, right, down, place), u);
-    return matter_mix(&upper, &lower, v);
+    const Smoke lower = smoke_mix(smoke_shared(fire, eye, tile, column, down, place),
+                                  smoke_shared(fire, eye, tile, right, down, place), u);
+    return smoke_mix(&upper, &lower, v);
 }
 
-static Matter smoke_along(const Fire *fire, Float3 eye, Float3 d, float t, SmokeLine *line) {
+/// The smoke at t, on a ray along which t grows.
+static Smoke smoke_at(const Fire *fire, Float3 eye, Float3 d, float t, SmokeLine *line) {
     const float first = floorf(t / line->length);
     if (first != line->first) {
         line->ends[0] = first == line->first + 1 ? line->ends[1] : smoke_place(fire, eye, d, first, line);
@@ -61,7 +65,16 @@ static Matter smoke_along(const Fire *fire, Float3 eye, Float3 d, float t, Smoke
         line->first = first;
     }
 
-    return matter_mix(&line->ends[0], &line->ends[1], t / line->length - first);
+    return smoke_mix(&line->ends[0], &line->ends[1], t / line->length - first);
+}
+
+/// Its mean over a step.
+static Matter smoke_along(const Fire *fire, Float3 eye, Float3 d, float from, float to, SmokeLine *line) {
+    if (line->at != from) line->here = smoke_at(fire, eye, d, from, line);
+    const Smoke there = smoke_at(fire, eye, d, to, line);
+    const Matter m = fire_smoke_between(fire, &line->here, &there, line->pixel * to);
+    line->here = there, line->at = to;
+    return m;
 }
 
 // ---- where flames are
@@ -127,7 +140,11 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile
     bool known = false; // whether `here` is the point at t
     FirePoint here;
     const float blur = FIRE_SOFT * preview->camera.pixel;
-    SmokeLine line = {.length = maxf(minf(fire->cell, SMOKE_STEP), min), .first = -2, .ray = number};
+    SmokeLine line = {.length = maxf(minf(fire->cell, SMOKE_STEP), min),
+                      .first = -2,
+                      .ray = number,
+                      .pixel = preview->camera.pixel,
+                      .at = -1};
     if (tile && tile->apart && line.length == tile->length) line.tile = tile;
     float leave = -1;
     int in_brick = 0, near = 0;
@@ -167,7 +184,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile
         bool seek = dark && flame;
         const float away = here.depth > FIRE_OUTSIDE ? 2 * fine : 3 * fine;
         float length = dark ? away : fabsf(here.depth) < FIRE_NEAR * fine ? FIRE_SHORT * fine : fine;
-        float step = maxf(flame ? length : fire->cell, min);
+        float step = maxf(flame ? length : line.length, min);
         float next = minf(maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step), until);
         step = next - t;
         const FirePoint there = flame ? fire_at_point(fire, float3_mad(eye, d, next), blur * next) : outside;
@@ -175,7 +192,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile
         if (seek && !dark) continue; // the same distance again in short steps
         if (maxf(here.depth, there.depth) > FIRE_OUTSIDE) view_extend(view, t, next);
         Matter m = {{0, 0, 0}, 0};
-        if (what & FIRE_SMOKE) m = smoke_along(fire, eye, d, t + 0.5f * step, &line);
+        if (what & FIRE_SMOKE) m = smoke_along(fire, eye, d, t, next, &line);
         fire_between(&here, &there, step, &m);
         here = there;
 

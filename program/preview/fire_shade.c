@@ -65,15 +65,21 @@
 #define GROUP_WIDE 0.075f ///< m along what burns, over which tongues are high or low together
 #define GROUP_RATE 2.0f   ///< 1/s
 #define GROUP 0.2f
-#define GROUP_UNLIKE 0.9f  ///< octaves
-#define FED_WHOLLY 0.3f    ///< what burns less gains and loses less
-#define SMOKE_SEEN_AS 9.0f ///< times its extinction, in the middle of a roll; what lies between rolls is clear
-#define SMOKE_EDDY 0.028f  ///< m across
-#define SMOKE_SMALL 0.53f  ///< of that
-#define SMOKE_FINE 0.22f
-#define SMOKE_BELOW 0.5f ///< of an eddy, from where a roll is shaded
-#define SMOKE_SHADE 1.6f ///< by as much as a cloud that hides all would be
-#define SMOKE_SPEED 0.5f ///< m/s, at which they rise
+#define GROUP_UNLIKE 0.9f   ///< octaves
+#define FED_WHOLLY 0.3f     ///< what burns less gains and loses less
+#define SMOKE_SEEN_AS 40.0f ///< times its extinction, in the middle of a fold; what lies between folds is clear
+#define SMOKE_FULL 0.9f     ///< 1/m, from which on it is wholly
+#define SMOKE_FILLS 0.03f   ///< m: dense smoke has less clear air
+#define SMOKE_EDDY 0.032f   ///< m across
+#define SMOKE_SMALL 0.53f   ///< of that
+#define SMOKE_BEND 0.5f     ///< by small eddies, of that by wide ones
+#define SMOKE_FOLD 0.055f   ///< width of a fold's sharp side, of the noise whose zeros folds are
+#define SMOKE_SOFT 2.0f     ///< times as wide is the other one
+#define SMOKE_GREY 0.09f    ///< light of flames, of which smoke is half as warm as they are
+#define SMOKE_FAR 0.15f     ///< light of flames, from which on smoke is amid them and less of it is left
+#define SMOKE_NEAR 0.6f     ///< none
+#define SMOKE_SLOW 0.4f     ///< m/s, at which wide eddies rise
+#define SMOKE_SPEED 0.5f    ///< m/s, small ones
 
 #define FLAME_COOL 1200.0f ///< K
 #define FLAME_HOT 2000.0f
@@ -391,33 +397,50 @@ FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
     return point;
 }
 
-/// How dense smoke is in the eddies of these noises: it lies in rolls, the creases of the larger ones, and wisps fray them.
-static inline float smoke_roll(Noise wide, Noise small, Noise fine) {
-    const float rolls = 0.9f - 2.2f * fabsf(0.35f * wide.d + 0.65f * small.d + 0.22f * fine.d);
-    return maxf(rolls + 0.5f * wide.b + 0.55f * fine.a, 0);
+/// Smoke lies in thin folds, where a noise is 0, in some of the wide eddies and not in others: between them the air is
+/// clear. Wide eddies rise slower than small ones, so that folds bend and curl as they pass. Flames burn smoke, so it
+/// begins at their tips. Firelight comes from below and is less warm where it is faint, daylight comes from above.
+Smoke fire_smoke_at(const Fire *fire, Float3 p) {
+    const float eddy = fire->scale * SMOKE_EDDY, small = SMOKE_SMALL * eddy,
+                bend = SMOKE_BEND * fire->scale * SMOKE_WARP;
+    const Noise wide = eddies(fire, p, (SMOKE_SLOW * fire->moment - p.z) / eddy, eddy, 0.65f);
+    Float3 moved = float3_mad(p, float3(wide.a, wide.b, wide.c), fire->scale * SMOKE_WARP);
+    const FireCell cell = cell_at(fire, moved);
+    const float passed = (SMOKE_SPEED * fire->moment - moved.z) / eddy;
+    const Noise curl = eddies(fire, moved, passed, small, 0.7f);
+    moved = float3_mad(moved, float3(curl.a, curl.b, curl.c), bend);
+    const float turned = passed - bend * curl.c / eddy;
+    const float here = eddies(fire, moved, turned, small, 0.8f).d,
+                below = eddies(fire, moved, turned + 0.25f, small, 0.8f).d;
+
+    const float fold = 0.35f * wide.d + 0.65f * here, up = 2 * (here - below);
+    const float down = clampf(up - 12 * fold * up, -1, 1); // what faces down, or is below the middle of a fold
+    const float near = cell.glow / (cell.glow + SMOKE_GREY);
+    const Float3 glow = float3_scale(float3_mix(float3(0.78f, 0.8f, 0.83f), float3(1, 0.45f, 0.14f), near), cell.glow);
+    Smoke smoke;
+    smoke.light = float3_mad(float3_scale(fire->daylight, 0.33f - 0.2f * down), glow, 1.1f + 1.1f * down);
+    smoke.dense = SMOKE_SEEN_AS * cell.smoke * stepf(SMOKE_THIN, SMOKE_FULL, cell.smoke) *
+                  stepf(-0.2f, 0.35f, wide.d + SMOKE_FILLS * cell.smoke) * (1 - stepf(0.05f, 0.4f, cell.flame)) *
+                  (1 - stepf(SMOKE_FAR, SMOKE_NEAR, cell.glow));
+    smoke.fold = fold;
+    return smoke;
 }
 
-/// Smoke rises and rolls: eddies of three sizes, each of which the larger ones move, bend and thin it. Flames burn it, so
-/// it begins at their tips. What lies below or above in a roll shades what is here.
-Matter fire_smoke_at(const Fire *fire, Float3 p) {
-    const float eddy = fire->scale * SMOKE_EDDY, warp = fire->scale * SMOKE_WARP;
-    const float passed = (SMOKE_SPEED * fire->moment - p.z) / eddy;
-    const Noise wide = eddies(fire, p, passed, eddy, 0.5f);
-    Float3 moved = float3_mad(p, float3(wide.a, wide.b, wide.c), warp);
-    const float turned = passed + 0.6f * wide.c;
-    const Noise small = eddies(fire, moved, turned, SMOKE_SMALL * eddy, 0.7f);
-    const Noise below = eddies(fire, moved, turned + SMOKE_BELOW, SMOKE_SMALL * eddy, 0.7f);
-    moved = float3_mad(moved, float3(small.a, small.b, small.c), 0.4f * warp);
-    const Noise fine = eddies(fire, moved, turned + 0.5f * small.c, SMOKE_FINE * eddy, 1.5f);
-    const FireCell cell = cell_at(fire, moved);
-    const float here = smoke_roll(wide, small, fine), under = smoke_roll(wide, below, fine);
-    const float dense = SMOKE_SEEN_AS * cell.smoke * here * here * (1 - stepf(0.05f, 0.4f, cell.flame));
+/// The integral of a fold's profile, up to x of its width: (1 + x)^2 before its edge, and behind it the softer
+/// (1 - x/SOFT)^2.
+static inline float fold_sum(float x) {
+    const float edge = clampf(1 + x, 0, 1), left = clampf(1 - x / SMOKE_SOFT, 0, 1);
+    return (edge * edge * edge + (x > 0 ? SMOKE_SOFT * (1 - left * left * left) : 0)) / 3;
+}
 
-    // firelight comes from below, daylight from above; soot and tar scatter a part of both, in all directions
-    const float lower = expf(-SMOKE_SHADE * under), upper = expf(-SMOKE_SHADE * maxf(2 * here - under, 0));
-    Float3 lit =
-        float3_mad(float3_scale(fire->daylight, 0.7f * upper), float3(1, 0.45f, 0.14f), 2.2f * lower * cell.glow);
-    return (Matter){float3_scale(lit, dense), dense};
+Matter fire_smoke_between(const Fire *fire, const Smoke *a, const Smoke *b, float blur) {
+    float dense = 0.5f * (a->dense + b->dense);
+    if (dense <= 0) return (Matter){float3(0, 0, 0), 0};
+    const float width = SMOKE_FOLD + 1.2f * blur / (fire->scale * SMOKE_EDDY), first = a->fold / width;
+    float apart = b->fold / width - first;
+    apart = fabsf(apart) > 0.02f ? apart : 0.02f;
+    dense *= SMOKE_FOLD / width * (fold_sum(first + apart) - fold_sum(first)) / apart;
+    return (Matter){float3_scale(float3_mix(a->light, b->light, 0.5f), dense), dense};
 }
 
 // ---- for programs that draw the cells themselves
@@ -450,7 +473,8 @@ SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, doub
                 const FirePoint point = fire_at_point(fire, p, 0);
                 Matter burning = {{0, 0, 0}, 0};
                 fire_between(&point, &point, side, &burning);
-                smoke[i] = fire_smoke_at(fire, p).dense;
+                const Smoke at = fire_smoke_at(fire, p);
+                smoke[i] = fire_smoke_between(fire, &at, &at, 0.5f * side).dense;
                 flame[i] = float3_luminance(burning.light) / bright;
             }
 

@@ -178,8 +178,8 @@ SINGE_NODISCARD SingeResult preview_set_camera(Preview *preview, const PreviewCa
 SINGE_NODISCARD SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uint32_t count,
                                                SingeError *error);
 
-/// Replaces the gas (it changes from frame to frame); flame, smoke and velocity are used, and copied as needed. NULL or
-/// size 0: none.
+/// Replaces the gas (it changes from frame to frame); flame, smoke, velocity and temperature, which may be NULL, are used,
+/// and copied as needed. NULL or size 0: none.
 SINGE_NODISCARD SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *error);
 
 enum { PREVIEW_BAKE_MAX = 4 };

@@ -293,6 +293,7 @@ const float FIRE_SWAY = 0.018;
 const float FIRE_WARP_WIDE = 0.0055;
 const float FIRE_WARP_FINE = 0.0018;
 const float SMOKE_WARP = 0.0234;
+const float SMOKE_THIN = 0.2;
 const float FIRE_OUTSIDE = -0.006;
 const float BASE_SPEED = 0.25;
 const float BUOYANCY = 3.0;
@@ -307,12 +308,18 @@ const float EDDY_FILAMENT = 0.007;
 const float THREAD_WARP = 0.01;
 const float SWAY_WIDE = 0.1;
 const float SWAY_SLOPE = 0.35;
-const float SMOKE_SEEN_AS = 9.0;
-const float SMOKE_EDDY = 0.028;
+const float SMOKE_SEEN_AS = 40.0;
+const float SMOKE_FULL = 0.9;
+const float SMOKE_FILLS = 0.03;
+const float SMOKE_EDDY = 0.032;
 const float SMOKE_SMALL = 0.53;
-const float SMOKE_FINE = 0.22;
-const float SMOKE_BELOW = 0.5;
-const float SMOKE_SHADE = 1.6;
+const float SMOKE_BEND = 0.5;
+const float SMOKE_FOLD = 0.055;
+const float SMOKE_SOFT = 2.0;
+const float SMOKE_GREY = 0.09;
+const float SMOKE_FAR = 0.15;
+const float SMOKE_NEAR = 0.6;
+const float SMOKE_SLOW = 0.4;
 const float SMOKE_SPEED = 0.5;
 const float SOOT_DENSE = 195.0;
 const float BLUE_DENSE = 3.8;
@@ -342,6 +349,7 @@ const float FIRE_SOFT = 6.0;
 struct FireCell { float flame; float rise; float smoke; float glow; };
 struct FirePoint { vec3 soot; vec3 root; float depth; float profile; float shell; float opaque; };
 struct Matter { vec3 light; float dense; };
+struct Smoke { vec3 light; float dense; float fold; };
 struct Noise { float a; float b; float c; float d; };
 Noise noise_at(vec3 q);
 FireCell cell_at(vec3 p);
@@ -429,26 +437,41 @@ void fire_between(FirePoint a, FirePoint b, float step_, inout Matter matter) {
     matter.light = float3_mad(matter.light, light, part);
     matter.dense += part * mix(a.opaque, b.opaque, from);
 }
-float smoke_roll(Noise wide, Noise small, Noise fine) {
-    float rolls = 0.9 - 2.2 * abs(0.35 * wide.d + 0.65 * small.d + 0.22 * fine.d);
-    return max(rolls + 0.5 * wide.b + 0.55 * fine.a, 0.0);
-}
-Matter fire_smoke_at(vec3 p) {
-    float eddy = fireScale * SMOKE_EDDY, warp = fireScale * SMOKE_WARP;
-    float passed = (SMOKE_SPEED * fireMoment - p.z) / eddy;
-    Noise wide = eddies(p, passed, eddy, 0.5);
-    vec3 moved = float3_mad(p, vec3(wide.a, wide.b, wide.c), warp);
-    float turned = passed + 0.6 * wide.c;
-    Noise small = eddies(moved, turned, SMOKE_SMALL * eddy, 0.7);
-    Noise below = eddies(moved, turned + SMOKE_BELOW, SMOKE_SMALL * eddy, 0.7);
-    moved = float3_mad(moved, vec3(small.a, small.b, small.c), 0.4 * warp);
-    Noise fine = eddies(moved, turned + 0.5 * small.c, SMOKE_FINE * eddy, 1.5);
+Smoke fire_smoke_at(vec3 p) {
+    float eddy = fireScale * SMOKE_EDDY, small = SMOKE_SMALL * eddy,
+                bend = SMOKE_BEND * fireScale * SMOKE_WARP;
+    Noise wide = eddies(p, (SMOKE_SLOW * fireMoment - p.z) / eddy, eddy, 0.65);
+    vec3 moved = float3_mad(p, vec3(wide.a, wide.b, wide.c), fireScale * SMOKE_WARP);
     FireCell cell = cell_at(moved);
-    float here = smoke_roll(wide, small, fine), under = smoke_roll(wide, below, fine);
-    float dense = SMOKE_SEEN_AS * cell.smoke * here * here * (1.0 - stepf(0.05, 0.4, cell.flame));
-    float lower = exp(-SMOKE_SHADE * under), upper = exp(-SMOKE_SHADE * max(2.0 * here - under, 0.0));
-    vec3 lit =
-        float3_mad(float3_scale(fireDaylight, 0.7 * upper), vec3(1.0, 0.45, 0.14), 2.2 * lower * cell.glow);
-    return Matter(float3_scale(lit, dense), dense);
+    float passed = (SMOKE_SPEED * fireMoment - moved.z) / eddy;
+    Noise curl = eddies(moved, passed, small, 0.7);
+    moved = float3_mad(moved, vec3(curl.a, curl.b, curl.c), bend);
+    float turned = passed - bend * curl.c / eddy;
+    float here = eddies(moved, turned, small, 0.8).d,
+                below = eddies(moved, turned + 0.25, small, 0.8).d;
+    float fold = 0.35 * wide.d + 0.65 * here, up = 2.0 * (here - below);
+    float down = clamp(up - 12.0 * fold * up, -1.0, 1.0);
+    float near = cell.glow / (cell.glow + SMOKE_GREY);
+    vec3 glow = float3_scale(mix(vec3(0.78, 0.8, 0.83), vec3(1.0, 0.45, 0.14), near), cell.glow);
+    Smoke smoke;
+    smoke.light = float3_mad(float3_scale(fireDaylight, 0.33 - 0.2 * down), glow, 1.1 + 1.1 * down);
+    smoke.dense = SMOKE_SEEN_AS * cell.smoke * stepf(SMOKE_THIN, SMOKE_FULL, cell.smoke) *
+                  stepf(-0.2, 0.35, wide.d + SMOKE_FILLS * cell.smoke) * (1.0 - stepf(0.05, 0.4, cell.flame)) *
+                  (1.0 - stepf(SMOKE_FAR, SMOKE_NEAR, cell.glow));
+    smoke.fold = fold;
+    return smoke;
+}
+float fold_sum(float x) {
+    float edge = clamp(1.0 + x, 0.0, 1.0), left = clamp(1.0 - x / SMOKE_SOFT, 0.0, 1.0);
+    return (edge * edge * edge + (x > 0.0 ? SMOKE_SOFT * (1.0 - left * left * left) : 0.0)) / 3.0;
+}
+Matter fire_smoke_between(Smoke a, Smoke b, float blur) {
+    float dense = 0.5 * (a.dense + b.dense);
+    if (dense <= 0.0) return Matter(vec3(0.0, 0.0, 0.0), 0.0);
+    float width = SMOKE_FOLD + 1.2 * blur / (fireScale * SMOKE_EDDY), first = a.fold / width;
+    float apart = b.fold / width - first;
+    apart = abs(apart) > 0.02 ? apart : 0.02;
+    dense *= SMOKE_FOLD / width * (fold_sum(first + apart) - fold_sum(first)) / apart;
+    return Matter(float3_scale(mix(a.light, b.light, 0.5), dense), dense);
 }
 `;

@@ -383,18 +383,22 @@ void main() {
     vec3 light = vec3(0.0);
     float blur = FIRE_SOFT * length(dFdx(ray)) * 0.5, clear = 1.0, jitter = fract(52.9829 * fract(dot(gl_FragCoord.xy, vec2(0.06711, 0.00584)) + 0.618 * fract(time * 7.0)));
     if (t < end) {
-        float short_ = max((end - t) / 180.0, 0.0016), pace = 2.0 * short_, from = -1.0;
+        float short_ = max((end - t) / 180.0, 0.0016), pace = 2.0 * short_;
         FirePoint here = FirePoint(vec3(0.0), vec3(0.0), FIRE_OUTSIDE, 0.0, 0.0, 0.0), there;
-        Matter smoke = Matter(vec3(0.0), 0.0);
         t += short_ * jitter;
+        float until = t;
+        Smoke last, next = fire_smoke_at(eye + ray * t);
+        Matter smoke;
         for (int i = 0; i < 180 && t < end && clear > 0.02; i++) {
             vec3 p = eye + ray * t;
             Gas c = gas(p);
             there = FirePoint(vec3(0.0), vec3(0.0), FIRE_OUTSIDE, 0.0, 0.0, 0.0);
             if (c.flame > 0.004 || c.height > 0.0) there = fire_at_point(p, c.height, blur * t);
-            if (t > from + SMOKE_STEP) { // it has no detail as fine as a flame's
-                smoke = fire_smoke_at(p);
-                from = t;
+            if (t >= until) {
+                until = t + SMOKE_STEP;
+                last = next;
+                next = fire_smoke_at(eye + ray * until);
+                smoke = fire_smoke_between(last, next, blur / FIRE_SOFT * t);
             }
             Matter j = smoke;
             fire_between(here, there, pace, j);
