@@ -8,6 +8,7 @@
 #include <string.h>
 
 #define FORWARD 0.45f     ///< g of the smoke's phase function
+#define FIRE_FAINT 0.06f  ///< light of a fire that loses half of its colour
 #define LIGHT_MOST 40.0f  ///< of a pixel: a spark that flies at the eye is all in one
 #define LEAF_WIDTH 0.008f ///< m: a leaf that glows as a whole counts as a line for each
 
@@ -80,17 +81,22 @@ void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]
 
 Float3 smoke_light(const Preview *preview, Float3 p) {
     const EmberLights *lamps = &preview->scene.lights;
-    const Float3 blue = {0.88f, 0.93f, 1.0f}; // of fine, fresh smoke
+    const Float3 blue = {0.74f, 0.87f, 1.0f}; // of fine, fresh smoke
     Float3 d = float3_unit_or(float3_sub(p, preview->camera.eye), float3(0, 1, 0));
     const float g = FORWARD, cosine = float3_dot(preview->sun, d);
     const float phase = (1 - g * g) / powf(1 + g * g - 2 * g * cosine, 1.5f);
     Float3 sky = float3_add(sky_ambient(&preview->sky, float3(0, 0, 1)), sky_ambient(&preview->sky, float3(0, 0, -1)));
     Float3 light = float3_mad(float3_scale(sky, 0.5f), preview->sun_light, 0.25f * phase);
+    Float3 fire = {0, 0, 0};
     for (int k = 0; k < preview->scene.light_count; k++) {
         Float3 to = float3_sub(float3(lamps->x[k], lamps->y[k], lamps->z[k]), p);
         float share = 0.25f / (float3_dot(to, to) + lamps->softness[k] + 4e-4f);
-        light = float3_mad(light, float3(lamps->strength[0][k], lamps->strength[1][k], lamps->strength[2][k]), share);
+        fire = float3_mad(fire, float3(lamps->strength[0][k], lamps->strength[1][k], lamps->strength[2][k]), share);
     }
+
+    // where it is faint its colour is lost, too: red and blue would be purple
+    const float grey = float3_luminance(fire), faint = FIRE_FAINT / (FIRE_FAINT + grey);
+    light = float3_add(light, float3_mix(fire, float3(grey, grey, grey), faint));
     return float3_mul(light, blue);
 }
 

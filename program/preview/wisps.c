@@ -19,10 +19,10 @@ enum {
 #define WISP_LIFE 1.5f    ///< s
 #define RISE 0.12f        ///< m/s
 #define SPEEDING 0.13f    ///< m/s2
-#define RIBBON 0.0060f    ///< m, half of its width at half a second
+#define RIBBON 0.0045f    ///< m, half of its width at half a second
 #define KINDLING 0.28f    ///< s, in which it is seen more and more: vapour becomes droplets as it cools
 #define THREAD 0.0009f    ///< m, radius there
-#define WISP_DEPTH 11e-3f ///< m, optical depth across a wisp times its width
+#define WISP_DEPTH 13e-3f ///< m, optical depth across a wisp times its width
 #define SMOKING 6.0f      ///< sites of which half smoke
 #define WISP_AREA 2.5e-5f ///< m2 that smoulder and give half of the densest wisp
 #define FORWARD 0.45f     ///< g of the phase function
@@ -47,9 +47,9 @@ static Float3 wisp_at(const Wisp *wisp, float age, float place) {
     Float3 p = wisp->from;
     p.x += side * (c * wisp->across.x - s * wisp->across.y) + 0.085f * early * swing(wisp, moment, 2.6f, place, 11);
     p.y += side * (s * wisp->across.x + c * wisp->across.y) + 0.085f * early * swing(wisp, moment, 2.6f, place, 12);
-    p.x += 0.24f * late * swing(wisp, moment, 8, 1.7f * place, 13);
-    p.y += 0.24f * late * swing(wisp, moment, 8, 1.7f * place, 14);
-    p.z += (RISE + SPEEDING * age) * age + 0.24f * late * swing(wisp, moment, 7, 1.7f * place, 15);
+    p.x += 0.36f * late * swing(wisp, moment, 8, 1.7f * place, 13);
+    p.y += 0.36f * late * swing(wisp, moment, 8, 1.7f * place, 14);
+    p.z += (RISE + SPEEDING * age) * age + 0.36f * late * swing(wisp, moment, 7, 1.7f * place, 15);
     return p;
 }
 
@@ -71,7 +71,7 @@ static void thread_draw(Preview *preview, const Wisp *wisp, float place) {
 
         // steps of half of a dot; what rises faster is thinner
         const float pixel = preview->camera.pixel * depth, fast = RISE + 2 * SPEEDING * age;
-        const float wide = THREAD + (0.0012f + 0.0065f * age) * age;
+        const float wide = THREAD + (0.0020f + 0.0075f * age) * age;
         const float radius = maxf(wide / pixel + camera_blur(&preview->camera, depth), 1.1f);
         const float step = minf(0.45f * radius * pixel / (1.4f * fast), 0.02f), left = 1 - age / WISP_LIFE;
         const float patchy = clampf(0.9f + 0.5f * swing(wisp, wisp->now - age, 3, 0.6f * place, 17), 0, 2);

@@ -136,3 +136,24 @@ TEST(sparks_differ) {
     assert_true(sparks > 3 * FRAMES);
     assert_true(varies > 2.2f); // 1.48, 2.00
 }
+
+/// Wisps over embers by night are a bluish grey: the red of embers and the blue of the sky made them purple.
+TEST(wisps_are_blue_grey) {
+    static float fire[W * H][4];
+    static Burning paper;
+    PreviewDef def = embers_make(&paper);
+    def.sparks = 0, def.wisps = 1;
+    for (int c = 0; c < 3; c++) def.sun_colour[c] = 0, def.sky_colour[c] = 0.02f + 0.004f * (float)c;
+    for (int v = 0; v < 4 * WIDE; v++) paper.rate[v] = v / 4 % 4 < 2;
+    PreviewLayers layers = {.fire = fire};
+    Preview *preview = preview_open(&def);
+    float sum[3] = {0, 0, 0};
+    for (int k = 0; k < 6; k++) {
+        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
+        for (int i = 0; i < W * (H - 10); i++)
+            for (int c = 0; c < 3; c++) sum[c] += fire[i][c];
+    }
+    preview_destroy(preview);
+    print_message("wisps: red %.2f, green %.2f, blue %.2f\n", (double)sum[0], (double)sum[1], (double)sum[2]);
+    assert_true(sum[2] > 1 && sum[0] < sum[1] && sum[1] < sum[2]);
+}
