@@ -11,9 +11,10 @@
 // The height of a flame's gas above the paper is that above what burns around its cell, less the further aside that is,
 // and elsewhere found by following the velocity back, layer by layer from below: r(x) = (r(x - v dt) + dz) times the
 // share that was burning there; it distinguishes the clear base, the bright centre and the torn tip. Cells below what
-// burns have its flame and a negative height: so both are linear at the paper, where flames begin. Smoke is its
-// extinction, 8.7 m2/g times its density (Mulholland & Croarkin 2000, for the soot of flames), where the gas is cold: in hot
-// gas soot still burns and vapours have not condensed.
+// burns have its flame and a negative height: so both are linear at the paper, where flames begin. Gas that burns low,
+// but several cells aside of what gives it off, has a negative height, too, and no foot there. Smoke is its extinction,
+// 8.7 m2/g times its density (Mulholland & Croarkin 2000, for the soot of flames), where the gas is cold: in hot gas soot
+// still burns and vapours have not condensed.
 
 #include "preview/internal.h"
 
@@ -22,9 +23,13 @@
 #define FLAME_LOW 5e4f     ///< W/m3, the heat released where the flame is 0
 #define FLAME_HIGH 5e6f    ///< where it is 1
 #define FLAME_THICK 0.014f ///< m, of burning gas: in wider cells the heat is a mean with what does not burn
-#define ROOT_REACH 2.2f    ///< cells, over which what burns gives gas its height
+#define ROOT_REACH 4.4f    ///< cells, over which what burns gives gas its height
+#define ROOT_OVER 1.5f     ///< cells aside of what burns, over which flames come down to it
+#define ROOT_FALLS 0.05f   ///< of a full flame per cell, as they do
 #define ROOT_WIDE 0.6f     ///< cells aside, from which on a flame draws together
 #define ROOT_LEAN 0.4f
+#define NOISE_LARGER 0.85f ///< of the hills of one size, how high those are that are twice as wide
+#define NOISE_SIZES 0.68f  ///< of the smallest, so that all of them vary as one size would
 #define FIRE_PASSING 0.75f ///< share of the gas over burning paper that came from flames below
 #define SMOKE_COLD 450.0f  ///< K: what is colder is all smoke
 #define SMOKE_HOT 650.0f   ///< K: what is hotter is none yet
@@ -57,8 +62,8 @@ static void find_roots(Preview *preview) {
                 for (int x = low[0]; x <= high[0]; x++) {
                     const Float3 to = float3_sub(g, float3((float)x, (float)y, (float)z));
                     const float near = 1 - float3_dot(to, to) / (ROOT_REACH * ROOT_REACH);
-                    if (near <= 0) continue;
-                    const float weight = rate * near * near * near * near;
+                    if (near < 0.05f) continue; // its power would be 0
+                    const float near4 = near * near * near * near, weight = rate * near4 * near4 * near4 * near4;
                     float *root = fire->roots[fire_at(fire, x, y, z)];
                     root[0] += weight, root[1] += weight * g.x, root[2] += weight * g.y, root[3] += weight * g.z;
                 }
@@ -73,6 +78,21 @@ static float root_height(const Fire *fire, int x, int y, int z, float *near) {
     const float aside = sqrtf(dx * dx + dy * dy);
     *near = maxf(1 - sqrtf(aside * aside + dz * dz), 0);
     return fire->cell * (dz - ROOT_LEAN * maxf(aside - ROOT_WIDE, 0));
+}
+
+/// Near paper the gas is too rich to burn: flames that begin a few cells above what burns come down to it.
+static void root_cells(Fire *fire) {
+    for (int z = fire->size[2] - 3; z > 0; z--)
+        for (int y = 1; y < fire->size[1] - 1; y++)
+            for (int x = 1; x < fire->size[0] - 1; x++) {
+                const size_t here = fire_at(fire, x, y, z), above = fire_at(fire, x, y, z + 1);
+                const float *root = fire->roots[here];
+                if (!(root[0] > 0) || fire->source[above][2] - ROOT_FALLS <= fire->source[here][2]) continue;
+                const float dx = (float)x - root[1] / root[0], dy = (float)y - root[2] / root[0];
+                const float aside = sqrtf(dx * dx + dy * dy), dz = (float)z - root[3] / root[0];
+                if (aside > ROOT_OVER || dz < -1) continue;
+                fire->source[here][2] = fire->source[above][2] - ROOT_FALLS;
+            }
 }
 
 /// The height of the gas above the paper where paper burns, and upwards from there, layer by layer.
@@ -243,6 +263,7 @@ void fire_raise(Preview *preview) {
     if (!fire->size[0]) return;
 
     find_roots(preview);
+    root_cells(fire);
     raise_cells(preview);
 
     // above their max height flames are too thin to be seen
@@ -328,6 +349,25 @@ static SingeResult check_gas(const SingeGas *gas, SingeError *error) {
                         "gas: size, cell, origin or a value is out of range, or an array is missing");
 }
 
+/// Number c at a corner of the noise, of hills `size` wide, from -1 to 1. The larger ones are flatter.
+static float noise_hills(const uint32_t at[3], uint32_t c, uint32_t size) {
+    const uint32_t sides[3] = {size, size, size > 1 ? size / 2 : 1};
+    float sum = 0;
+    for (uint32_t m = 0; m < 8; m++) {
+        uint32_t corner[3];
+        float weight = 1;
+        for (uint32_t k = 0; k < 3; k++) {
+            const float f = (float)(at[k] % sides[k]) / (float)sides[k];
+            corner[k] = (at[k] / sides[k] + (m >> k & 1)) * sides[k] % FIRE_NOISE;
+            weight *= m >> k & 1 ? f : 1 - f;
+        }
+        const uint32_t key = corner[0] + FIRE_NOISE * (corner[1] + FIRE_NOISE * corner[2]);
+        sum += weight * (2 * hash_unit(4 * key + c + 1 + (size - 1) * 65536) - 1);
+    }
+
+    return sum;
+}
+
 /// Initialises data that does not change with the gas.
 static bool make_tables(Preview *preview) {
     Fire *fire = &preview->fire;
@@ -339,9 +379,13 @@ static bool make_tables(Preview *preview) {
     fire->tiles = allocator_resize(preview->allocator, NULL, 0, (size_t)preview->def.thread_count * sizeof(FireTile));
     if (!fire->tiles) return false;
     for (uint32_t i = 0; i < count; i++) {
-        const uint32_t x = i % side % period, y = i / side % side % period, z = i / (side * side) % period;
-        const uint32_t key = 4 * (x + period * (y + period * z));
-        for (uint32_t c = 0; c < 4; c++) fire->noise[i][c] = 2 * hash_unit(key + c + 1) - 1;
+        const uint32_t at[3] = {i % side % period, i / side % side % period, i / (side * side) % period};
+        for (uint32_t c = 0; c < 4; c++) fire->noise[i][c] = noise_hills(at, c, 1);
+
+        // the third has hills of three sizes: its creases are close together here and far apart there, where those of one
+        // size would be the teeth of a comb
+        const float wide = noise_hills(at, 2, 2) + NOISE_LARGER * noise_hills(at, 2, 4);
+        fire->noise[i][2] = clampf(NOISE_SIZES * (fire->noise[i][2] + NOISE_LARGER * wide), -1, 1);
     }
     fire_fill_colours(preview);
 

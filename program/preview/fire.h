@@ -99,8 +99,8 @@ typedef struct Fire {
 #define FLAME_END 0.30f        ///< m, max height of a flame
 
 // m, max displacement by eddies
-#define FIRE_SWAY 0.018f
-#define FIRE_WARP_WIDE 0.0055f
+#define FIRE_SWAY 0.021f
+#define FIRE_WARP_WIDE 0.0062f
 #define FIRE_WARP_FINE 0.0018f
 #define SMOKE_WARP 0.0234f
 #define SMOKE_THIN 0.2f ///< 1/m, extinction from which on smoke is seen

@@ -13,10 +13,12 @@
 // A flame over paper is a thin shell of glowing soot around clear, hot vapour. With f the flame (fire.c), r the height
 // above the paper and N, n noises of the width of a tongue and of a streak, its edge lies where
 //
-//     e = f + a(r) (0.6 - 2.4 |N|) + b(r) (0.4 - 2 |n|) - EDGE - TAPER (1 - exp(-r/H)) = 0
+//     e = f + a(r) (0.67 - 2.4 |N|) + b(r) (0.4 - 2 |n|) - EDGE - TAPER (1 - exp(-r/H)) = 0
 //
 // |N| has creases, where it is 0: they are the middles of thin sheets and sharp tongues. A smooth noise has round hills
-// instead, and its flames are domes. The taper is steep at first, and so tongues narrow below and end in long tips. They
+// instead, and its flames are domes. Its hills are of three sizes (fire.c), so its creases, and with them tongues, are at
+// no one distance. Eddies are at most five times or so as long as wide, and larger ones roll and bend smaller ones: else
+// flames are combs of vertical stripes. The taper is steep at first, and so tongues narrow below and end in long tips. They
 // are as tall as their fire is strong. The depth inside of the edge is d = e/|grad e|, in metres, whatever the size of
 // the cells. Light comes from the shell's profile
 //
@@ -43,18 +45,19 @@
 // Gas leaves the paper slowly and accelerates: v^2 = BASE_SPEED^2 + 2 BUOYANCY h at the height h. An eddy that was formed
 // at the base grows longer as it rises, and moves by the same share of its length in every frame.
 #define BASE_SPEED 0.25f ///< m/s
-#define BUOYANCY 3.0f    ///< m/s2
-#define RISE_MOST 0.7f   ///< m/s, which it reaches
+#define BUOYANCY 2.0f    ///< m/s2
+#define RISE_MOST 0.55f  ///< m/s, which it reaches
 #define EDDY_RATE 8.0f   ///< 1/s, eddies that pass a height
-#define EDDY_WIDE 0.014f ///< m across
+#define EDDY_WIDE 0.012f ///< m across
 #define EDDY_FINE 0.006f
-#define FINE_OFTEN 1.6f
+#define FINE_OFTEN 2.2f
 #define EDDY_THREAD 0.0085f ///< of the soot's threads
 #define THREAD_BLUR 0.0016f ///< m, blur from which on they are wider
 #define EDDY_FILAMENT 0.007f
 #define THREAD_WARP 0.01f ///< m, by which wide eddies bend them
-#define SWAY_WIDE 0.1f    ///< m, of the eddies that bend whole tongues
-#define SWAY_SLOPE 0.35f  ///< m aside per m above the paper
+#define ROLL 0.5f         ///< of an eddy's length, by which they roll them
+#define SWAY_WIDE 0.08f   ///< m, of the eddies that bend whole tongues
+#define SWAY_SLOPE 0.55f  ///< m aside per m above the paper
 #define LICK_WIDE 0.045f  ///< m, of the eddies that feed and starve whole tongues
 #define LICK_FULL 0.05f   ///< m above the paper, where they do so fully
 #define LICK 0.6f
@@ -65,7 +68,7 @@
 #define GROUP_WIDE 0.075f ///< m along what burns, over which tongues are high or low together
 #define GROUP_RATE 2.0f   ///< 1/s
 #define GROUP 0.2f
-#define GROUP_UNLIKE 0.9f   ///< octaves
+#define GROUP_UNLIKE 1.1f   ///< octaves
 #define FED_WHOLLY 0.3f     ///< what burns less gains and loses less
 #define SMOKE_SEEN_AS 40.0f ///< times its extinction, in the middle of a fold; what lies between folds is clear
 #define SMOKE_FULL 0.9f     ///< 1/m, from which on it is wholly
@@ -89,7 +92,7 @@
 #define FLAME_THROWN 384.0f     ///< 1/m, its luminance
 #define FLAME_BAKED 3.0f        ///< radiance of what is 1 where gas is baked
 #define SOOT_DENSE 195.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
-#define BLUE_DENSE 3.8f         ///< 1/m: radiance of the root per metre
+#define BLUE_DENSE 3.3f         ///< 1/m: radiance of the root per metre
 #define BLUE_ENDS 0.005f        ///< m above the paper
 #define SHELL_RISE 0.0005f      ///< m, w
 #define SHELL_RISE_MOST 0.0016f ///< more would dim thin tongues
@@ -98,19 +101,19 @@
 #define TAPER 0.55f             ///< what is added to it above a flame's height
 #define STAND_OFF 0.0006f       ///< m above the paper, below which nothing is visible
 #define SOOT_FULL 0.0075f       ///< m
-#define STREAK_FULL 0.005f      ///< m, of streaks
-#define FOOT_COOL 0.05f         ///< of the range of temperatures: soot begins orange
+#define STREAK_FULL 0.0058f     ///< m, of streaks
+#define FOOT_COOL 0.20f         ///< of the range of temperatures: soot begins orange
 #define FOOT_HOT 0.50f          ///< of that range: streaks in the foot are hot
 #define JOINED_HOT 0.15f
-#define FILAMENT_HOT 0.35f
+#define FILAMENT_HOT 0.42f
 #define HIGH_COOL 0.18f
 #define FOOT_CLEAR 0.004f   ///< m above the paper, from where on soot fills the gaps between streaks
 #define FOOT_FULL 0.027f    ///< m, where it has
 #define FOOT_SEAM 0.58f     ///< below that, so that they are rooted in what burns
 #define FOOT_HAZE 0.08f     ///< of the soot, in those gaps
-#define STREAK 0.08f        ///< of the noise whose creases they are
+#define STREAK 0.05f        ///< of the noise whose creases they are
 #define CORE_BEGINS 0.0030f ///< m
-#define CORE_FULL 0.0270f
+#define CORE_FULL 0.0240f
 #define LAMP_BEGINS 0.0050f ///< m, from which on flames cast light
 #define LAMP_FULL 0.0120f
 
@@ -224,7 +227,7 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
     float torn = stepf(0, 0.02f, rise);
     float tall = rise / (fire->scale * FLAME_HEIGHT);
     float coarse = 0.075f + 0.425f * torn, small = 0.025f + 0.225f * torn;
-    float edge = flame + coarse * (0.6f - 2.4f * fabsf(wide.c)) + small * (0.4f - 2 * fabsf(fine.c)) - EDGE -
+    float edge = flame + coarse * (0.67f - 2.4f * fabsf(wide.c)) + small * (0.4f - 2 * fabsf(fine.c)) - EDGE -
                  TAPER * (1 - expf(-tall)) - 0.1f * (1 - torn);
     edge = minf(edge, 2 * (flame - FLAME_SEEN));
     float noisy = 2 * (coarse / EDDY_WIDE + small / EDDY_FINE) / fire->scale;
@@ -245,7 +248,7 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
     // in the foot it glows in streaks that begin at what burns; between them that is seen
     const float above = stepf(FOOT_CLEAR, FOOT_FULL, rise);
     const float narrow = mixf(0.7f * STREAK, 1.1f * STREAK, above);
-    const float streak = 1 - stepf(narrow, 4 * narrow, fabsf(wide.c) + 0.5f * fabsf(fine.c));
+    const float streak = 1 - stepf(narrow, 4 * narrow, fabsf(wide.c) + 0.3f * fabsf(fine.c));
     const float seam = mixf(FOOT_SEAM, FOOT_HAZE, stepf(FOOT_CLEAR, 2 * FOOT_CLEAR, rise));
     const float dense = mixf(seam, 1, maxf(streak, above));
     soot = mixf(soot, stepf(0, STREAK_FULL, foot), streak);
@@ -254,7 +257,8 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
     const Float3 bent =
         float3_mad(p, float3(wide.b + 0.2f * fine.b, wide.a + 0.2f * fine.a, 0), fire->scale * THREAD_WARP);
     Noise thread = {0, 0, 0, 0};
-    if (soot > 0) thread = eddies(fire, bent, passed, sqrtf(fire->scale) * EDDY_THREAD, 3 * sqrtf(fire->scale));
+    if (soot > 0)
+        thread = eddies(fire, bent, passed + ROLL * wide.d, sqrtf(fire->scale) * EDDY_THREAD, 3 * sqrtf(fire->scale));
     const float sharp = maxf(3 * minf(THREAD_BLUR / maxf(blur, 1e-6f), 1), 2.2f); // thin ones would look like combs
     float clear =
         stepf(-0.5f, 0.6f, 0.15f * (wide.d + fine.d) + torn * (0.57f - 0.17f * (3 - sharp) - sharp * fabsf(thread.a)));
@@ -262,15 +266,16 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
     // filaments along the flow, and gaps between them, through which what is behind is seen
     float filament = 0, pane = 0;
     if (above > 0) {
-        const Noise n = eddies(fire, p, passed, sqrtf(fire->scale) * EDDY_FILAMENT, 1.3f * sqrtf(fire->scale));
+        const Noise n =
+            eddies(fire, bent, passed + ROLL * wide.d, sqrtf(fire->scale) * EDDY_FILAMENT, 2 * sqrtf(fire->scale));
         filament = above * minf(1.5f * THREAD_BLUR / maxf(blur, 1e-6f), 1) *
                    clampf(0.45f - 2.6f * fabsf(n.a) + 0.9f * n.b, -1, 1);
-        pane = above * clampf(1.6f * n.c + 0.8f * thread.c, -1, 1);
+        pane = above * clampf(1.6f * n.d + 0.8f * thread.d, -1, 1);
     }
 
     float core = stepf(0.35f, 0.7f, flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
-    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.19f;
+    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.175f;
     hot += FILAMENT_HOT * filament + 0.15f * pane * (1 - clear) - HIGH_COOL * stepf(0.1f, 1.5f, tall);
     hot += JOINED_HOT * stepf(0.95f, 1.35f, flame); // where tongues have joined
     hot += FOOT_HOT * streak * soot * (1 - above) - FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));

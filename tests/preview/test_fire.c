@@ -73,6 +73,60 @@ TEST(flames_begin_where_paper_burns) {
     assert_true(off > 0 && off < 3 && apart < 2.5f);
 }
 
+/// A flame has its foot where paper burns. Where gas burns low over ground that gives off none there is little light. Before,
+/// flames had a second foot there, in the air.
+TEST(feet_are_over_what_burns) {
+    enum { FRAMES = 6, LOW = 2, HIGH = 8, FROM = 8, TO = 32 }; // mm up, and mm from the end of what burns
+    static float fire[W * H][4], mean[H][4];
+    float light[2] = {0, 0};
+
+    line_make(&line, 0.003f), burning_make(&paper);
+    for (int v = 0; v < 4 * WIDE; v++) paper.rate[v] = paper.position[v][0] < 0;
+    for (int k = 0; k < FRAMES; k++) {
+        see_line(&paper.surface, &line.gas, 0.3 + k / 6.0, fire, mean, 1);
+        for (int row = LOW; row < HIGH; row++)
+            for (int x = FROM; x < TO; x++)
+                for (int side = 0; side < 2; side++)
+                    light[side] += luminance(fire[(H - 1 - row) * W + (side ? W / 2 + x : W / 2 - 1 - x)]);
+    }
+
+    print_message("feet: %.3f of the light is over what gives off no fuel\n",
+                  (double)(light[1] / (light[0] + light[1])));
+    assert_true(light[1] < 0.12f * (light[0] + light[1])); // .47
+}
+
+/// Flames behind each other, as over a bed of fire that is seen from low, are no comb of vertical stripes: their light changes
+/// up as well as from side to side.
+TEST(flames_are_no_comb) {
+    enum { FRAMES = 8, LOW = 8 };
+    static float fire[W * H][4];
+    float across = 0, up = 1e-6f;
+
+    line_make(&line, 0.003f), burning_make(&paper);
+    for (int i = 0; i < COLUMN; i++) line.flame[i] *= expf(0.2f * (float)(i / (WIDE * DEEP))); // tall
+    PreviewDef def = aside(0.02f);
+    def.camera = (PreviewCamera){.eye = {-1.86f, -0.72f, H / 2000.0f},
+                                 .target = {0, 0, H / 2000.0f},
+                                 .up = {0, 0, 1},
+                                 .fov = 2 * atanf(H / 4000.0f)};
+    PreviewLayers layers = {.fire = fire};
+    for (int k = 0; k < FRAMES; k++) {
+        draw_layers(&def, &paper.surface, &line.gas, 0.3 + k / 6.0, &layers);
+        for (int row = LOW; row < H - 1; row++)
+            for (int x = 1; x < W; x++) {
+                const float(*at)[4] = &fire[(H - 1 - row) * W + x];
+                const float here = luminance(at[0]), left = luminance(at[-1]), above = luminance(at[-W]);
+                if (here < 0.2f) continue;
+                const float aside_by = here / (1 + here) - left / (1 + left);
+                const float up_by = here / (1 + here) - above / (1 + above);
+                across += aside_by * aside_by, up += up_by * up_by;
+            }
+    }
+
+    print_message("comb: light changes %.2f times as much from side to side as up\n", (double)(across / up));
+    assert_true(across < 3.4f * up); // 3.77 where eddies were of one size, and up to nine times as long as wide
+}
+
 /// Tongues narrow to tips and are sharp, and rise: of frames 1/24 s apart the later one is more like the earlier one
 /// when that is raised. Flames of which the gas's cells are the only shape stood as columns.
 TEST(tongues_narrow_and_rise) {

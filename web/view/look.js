@@ -1,5 +1,5 @@
 // Made by scripts/write_look.py from program/preview: do not edit.
-export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.01, FLAME_SEEN: 0.15, FLAME_END: 0.3, FIRE_SWAY: 0.018, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 6.5, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, FIRE_PASSING: 0.75, SLAB: 0.55 };
+export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.01, FLAME_SEEN: 0.15, FLAME_END: 0.3, FIRE_SWAY: 0.021, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 6.5, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, FIRE_PASSING: 0.75, SLAB: 0.55 };
 
 export const PAPER = /* glsl */ `
 const float EMBER_BURN = 0.74;
@@ -289,25 +289,26 @@ export const FLAME = /* glsl */ `
 const float FLAME_SEEN = 0.15;
 const float FLAME_HEIGHT = 0.08;
 const float FLAME_END = 0.3;
-const float FIRE_SWAY = 0.018;
-const float FIRE_WARP_WIDE = 0.0055;
+const float FIRE_SWAY = 0.021;
+const float FIRE_WARP_WIDE = 0.0062;
 const float FIRE_WARP_FINE = 0.0018;
 const float SMOKE_WARP = 0.0234;
 const float SMOKE_THIN = 0.2;
 const float FIRE_OUTSIDE = -0.006;
 const float BASE_SPEED = 0.25;
-const float BUOYANCY = 3.0;
-const float RISE_MOST = 0.7;
+const float BUOYANCY = 2.0;
+const float RISE_MOST = 0.55;
 const float EDDY_RATE = 8.0;
-const float EDDY_WIDE = 0.014;
+const float EDDY_WIDE = 0.012;
 const float EDDY_FINE = 0.006;
-const float FINE_OFTEN = 1.6;
+const float FINE_OFTEN = 2.2;
 const float EDDY_THREAD = 0.0085;
 const float THREAD_BLUR = 0.0016;
 const float EDDY_FILAMENT = 0.007;
 const float THREAD_WARP = 0.01;
-const float SWAY_WIDE = 0.1;
-const float SWAY_SLOPE = 0.35;
+const float ROLL = 0.5;
+const float SWAY_WIDE = 0.08;
+const float SWAY_SLOPE = 0.55;
 const float SMOKE_SEEN_AS = 40.0;
 const float SMOKE_FULL = 0.9;
 const float SMOKE_FILLS = 0.03;
@@ -322,7 +323,7 @@ const float SMOKE_NEAR = 0.6;
 const float SMOKE_SLOW = 0.4;
 const float SMOKE_SPEED = 0.5;
 const float SOOT_DENSE = 195.0;
-const float BLUE_DENSE = 3.8;
+const float BLUE_DENSE = 3.3;
 const float BLUE_ENDS = 0.005;
 const float SHELL_RISE = 0.0005;
 const float SHELL_RISE_MOST = 0.0016;
@@ -331,19 +332,19 @@ const float EDGE = 0.42;
 const float TAPER = 0.55;
 const float STAND_OFF = 0.0006;
 const float SOOT_FULL = 0.0075;
-const float STREAK_FULL = 0.005;
-const float FOOT_COOL = 0.05;
+const float STREAK_FULL = 0.0058;
+const float FOOT_COOL = 0.2;
 const float FOOT_HOT = 0.5;
 const float JOINED_HOT = 0.15;
-const float FILAMENT_HOT = 0.35;
+const float FILAMENT_HOT = 0.42;
 const float HIGH_COOL = 0.18;
 const float FOOT_CLEAR = 0.004;
 const float FOOT_FULL = 0.027;
 const float FOOT_SEAM = 0.58;
 const float FOOT_HAZE = 0.08;
-const float STREAK = 0.08;
+const float STREAK = 0.05;
 const float CORE_BEGINS = 0.003;
-const float CORE_FULL = 0.027;
+const float CORE_FULL = 0.024;
 const float SMOKE_STEP = 0.01;
 const float FIRE_SOFT = 6.0;
 struct FireCell { float flame; float rise; float smoke; float glow; };
@@ -377,7 +378,7 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     float torn = stepf(0.0, 0.02, rise);
     float tall = rise / (fireScale * FLAME_HEIGHT);
     float coarse = 0.075 + 0.425 * torn, small = 0.025 + 0.225 * torn;
-    float edge = flame + coarse * (0.6 - 2.4 * abs(wide.c)) + small * (0.4 - 2.0 * abs(fine.c)) - EDGE -
+    float edge = flame + coarse * (0.67 - 2.4 * abs(wide.c)) + small * (0.4 - 2.0 * abs(fine.c)) - EDGE -
                  TAPER * (1.0 - exp(-tall)) - 0.1 * (1.0 - torn);
     edge = min(edge, 2.0 * (flame - FLAME_SEEN));
     float noisy = 2.0 * (coarse / EDDY_WIDE + small / EDDY_FINE) / fireScale;
@@ -393,27 +394,29 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     float soot = stepf(0.0, SOOT_FULL, foot);
     float above = stepf(FOOT_CLEAR, FOOT_FULL, rise);
     float narrow = mix(0.7 * STREAK, 1.1 * STREAK, above);
-    float streak = 1.0 - stepf(narrow, 4.0 * narrow, abs(wide.c) + 0.5 * abs(fine.c));
+    float streak = 1.0 - stepf(narrow, 4.0 * narrow, abs(wide.c) + 0.3 * abs(fine.c));
     float seam = mix(FOOT_SEAM, FOOT_HAZE, stepf(FOOT_CLEAR, 2.0 * FOOT_CLEAR, rise));
     float dense = mix(seam, 1.0, max(streak, above));
     soot = mix(soot, stepf(0.0, STREAK_FULL, foot), streak);
     vec3 bent =
         float3_mad(p, vec3(wide.b + 0.2 * fine.b, wide.a + 0.2 * fine.a, 0.0), fireScale * THREAD_WARP);
     Noise thread = Noise(0.0, 0.0, 0.0, 0.0);
-    if (soot > 0.0) thread = eddies(bent, passed, sqrt(fireScale) * EDDY_THREAD, 3.0 * sqrt(fireScale));
+    if (soot > 0.0)
+        thread = eddies(bent, passed + ROLL * wide.d, sqrt(fireScale) * EDDY_THREAD, 3.0 * sqrt(fireScale));
     float sharp = max(3.0 * min(THREAD_BLUR / max(blur, 1e-6), 1.0), 2.2);
     float clear =
         stepf(-0.5, 0.6, 0.15 * (wide.d + fine.d) + torn * (0.57 - 0.17 * (3.0 - sharp) - sharp * abs(thread.a)));
     float filament = 0.0, pane = 0.0;
     if (above > 0.0) {
-        Noise n = eddies(p, passed, sqrt(fireScale) * EDDY_FILAMENT, 1.3 * sqrt(fireScale));
+        Noise n =
+            eddies(bent, passed + ROLL * wide.d, sqrt(fireScale) * EDDY_FILAMENT, 2.0 * sqrt(fireScale));
         filament = above * min(1.5 * THREAD_BLUR / max(blur, 1e-6), 1.0) *
                    clamp(0.45 - 2.6 * abs(n.a) + 0.9 * n.b, -1.0, 1.0);
-        pane = above * clamp(1.6 * n.c + 0.8 * thread.c, -1.0, 1.0);
+        pane = above * clamp(1.6 * n.d + 0.8 * thread.d, -1.0, 1.0);
     }
     float core = stepf(0.35, 0.7, flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0.0, 0.7, edge), low = 1.0 - stepf(0.1, 0.9, tall);
-    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.19;
+    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.175;
     hot += FILAMENT_HOT * filament + 0.15 * pane * (1.0 - clear) - HIGH_COOL * stepf(0.1, 1.5, tall);
     hot += JOINED_HOT * stepf(0.95, 1.35, flame);
     hot += FOOT_HOT * streak * soot * (1.0 - above) - FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
