@@ -408,7 +408,7 @@ FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
 Smoke fire_smoke_at(const Fire *fire, Float3 p) {
     const float eddy = fire->scale * SMOKE_EDDY, small = SMOKE_SMALL * eddy,
                 bend = SMOKE_BEND * fire->scale * SMOKE_WARP;
-    const Noise wide = eddies(fire, p, (SMOKE_SLOW * fire->moment - p.z) / eddy, eddy, 0.65f);
+    const Noise wide = eddies(fire, p, (SMOKE_SLOW * fire->moment - p.z) / eddy, eddy, 0.72f);
     Float3 moved = float3_mad(p, float3(wide.a, wide.b, wide.c), fire->scale * SMOKE_WARP);
     const FireCell cell = cell_at(fire, moved);
     const float passed = (SMOKE_SPEED * fire->moment - moved.z) / eddy;

@@ -443,7 +443,7 @@ void fire_between(FirePoint a, FirePoint b, float step_, inout Matter matter) {
 Smoke fire_smoke_at(vec3 p) {
     float eddy = fireScale * SMOKE_EDDY, small = SMOKE_SMALL * eddy,
                 bend = SMOKE_BEND * fireScale * SMOKE_WARP;
-    Noise wide = eddies(p, (SMOKE_SLOW * fireMoment - p.z) / eddy, eddy, 0.65);
+    Noise wide = eddies(p, (SMOKE_SLOW * fireMoment - p.z) / eddy, eddy, 0.72);
     vec3 moved = float3_mad(p, vec3(wide.a, wide.b, wide.c), fireScale * SMOKE_WARP);
     FireCell cell = cell_at(moved);
     float passed = (SMOKE_SPEED * fireMoment - moved.z) / eddy;
