@@ -73,6 +73,7 @@ typedef struct Weave {
 typedef struct Cloth {
     float shown;     ///< 1 where a pixel resolves threads, 0 where it does not
     float burnt;     ///< 0 whole cloth, 1 char or ash
+    float at[2];     ///< threads from the origin of uv, as the burnt ones lie
     float across[2]; ///< from the middle of each thread, -1 and 1 at its sides
     float tone[2];   ///< of each thread, -0.5 to 0.5
     float end[2];    ///< 1 at the burnt end of each, 0 some threads away from it

@@ -4,17 +4,20 @@
 // that they stay where they are while it burns. Where a pixel no longer resolves them, they fade, and what is left is the
 // unevenness of bundles of 2, 4, 8, ... threads.
 //
-// Threads give way one by one. A thread's fate is its own noise, and that of bundles of 2 to 16 threads of both families:
-// so single threads, and tufts of them, stand out at a burnt edge, and holes in burnt cloth are slits along threads, of
-// many sizes. There is a hole where neither thread is left.
+// Burnt cloth falls to pieces in rounded holes of many sizes, and its threads lie in waves. Beyond its ends strands of some
+// threads, and single ones where a pixel resolves them, stand out, each to its own length, and curl. There is a hole where
+// neither thread is left.
 
 #include "preview/shape_look.h"
 
-#define FRAY 10.0f ///< threads, mean depth to which a burnt edge loses them
-#define FATE_MOST 0.8f
-#define LONG 16.0f     ///< how much longer than wide the patches are in which a bundle has one fate
-#define CLOSED 0.5f    ///< half a thread's width over the pitch, of whole cloth
-#define SHRUNKEN 0.36f ///< the same of char
+#define FRAY 12.0f       ///< threads, depth to which a burnt edge loses them
+#define REACH 22.0f      ///< threads, to which the longest stand out at it
+#define STRANDS 11.0f    ///< threads from strand to strand
+#define STRAND 1.2f      ///< threads, half of its width
+#define WORN 0.58f       ///< damage at which char has a hole
+#define HOLE_SLOPE 30.0f ///< threads from there to where it is 1 more
+#define CLOSED 0.5f      ///< half a thread's width over the pitch, of whole cloth
+#define SHRUNKEN 0.36f   ///< the same of char
 
 // ---- the threads of a sheet
 
@@ -78,58 +81,76 @@ void cloth_frame(const PreviewScene *scene, uint32_t triangle, Point *point) {
 
 static float resolved(float threads, float wide) { return clampf(1.6f - 0.8f * wide / threads, 0, 1); }
 
-/// How much sooner than others threads give way there, about -1 to 1, in bundles of 2 to 16 of both families at once: what each
-/// family loses alone would end along the other's threads, in stairs of squares.
-static float bundle_fate(const float at[2], float wide) {
-    float sum = 0, size = 2, weight = 0.36f;
-    for (uint32_t octave = 1; octave <= 4; octave++, size *= 2, weight *= 1.12f) {
-        const float shown = resolved(size, wide);
-        if (shown <= 0) continue;
-        sum += shown * weight *
-               (noise2(at[0] / size, at[1] / (LONG * size), 71 + 7 * octave) +
-                noise2(at[1] / size, at[0] / (LONG * size), 171 + 7 * octave));
-    }
+/// Noise of features that wide, about twice as long, 0 where a pixel does not resolve it. Its direction follows from the seed,
+/// and is never the threads': what ends along these ends in steps.
+static float oblique(const float at[2], float size, float wide, uint32_t seed) {
+    static const float direction[5][2] = {
+        {0.500f, 0.866f}, {0.829f, 0.559f}, {-0.848f, 0.530f}, {-0.559f, 0.829f}, {0.719f, 0.695f}};
+    const float shown = resolved(0.5f * size, wide);
+    if (shown <= 0) return 0;
+    const float c = direction[seed % 5][0] / size, s = direction[seed % 5][1] / size;
+    return shown * noise2(c * at[0] + s * at[1], 0.55f * (c * at[1] - s * at[0]), seed);
+}
+
+/// How far burnt cloth has fallen to pieces there, about -1 to 1: rounded holes of sizes in octaves.
+static float cloth_damage(const float at[2], float wide) {
+    float sum = 0, weight = 0.62f, size = 60;
+    for (uint32_t octave = 0; octave < 5; octave++, size *= 0.45f, weight *= 0.78f)
+        sum += weight * oblique(at, size, wide, 151 + octave);
     return sum;
 }
 
-/// How far burnt cloth has fallen to pieces there, about -1 to 1: rips of sizes in octaves, here along one family of threads and
-/// there along the other.
-static float cloth_damage(float x, float y, float wide) {
-    const float aspect = 5, lean = 0.7f * noise2(x / 90, y / 90, 150);
-    float sum = -0.34f, weight = 0.6f, size = 56;
-    for (uint32_t octave = 0; octave < 4; octave++, size *= 0.4f, weight *= 0.85f) {
-        const float shown = resolved(size, wide);
-        if (shown <= 0) break;
-        const float warp = noise2(x / size, y / (aspect * size), 151 + octave);
-        const float weft = noise2(x / (aspect * size), y / size, 161 + octave);
-        sum += shown * weight * maxf(warp + lean, weft - lean);
+/// Burnt threads lie in waves, as they have shrunk unevenly; `loose` ones curl.
+static void cloth_bend(float x, float y, float burnt, float loose, float wide, float at[2]) {
+    const float from[2] = {x, y};
+    at[0] = x, at[1] = y;
+    for (uint32_t k = 0; k < 2 && burnt > 0; k++) {
+        at[k] += burnt * 20 * oblique(from, 70, wide, 63 + k);
+        at[k] += burnt * 9 * oblique(from, 22, wide, 65 + k);
+        if (loose > 0) at[k] += loose * 30 * oblique(from, 36, wide, 67 + k);
     }
-    return sum;
+}
+
+/// How far a thread stands out beyond cloth's end, in threads: strands of some that stick together, each to its own length, and
+/// single ones where a pixel resolves them.
+static float thread_reach(float at, float along, float single, float most, float tuft, uint32_t seed) {
+    float within;
+    const uint32_t strand = hash_u32((uint32_t)noise_floor(at / STRANDS, &within) * 0x85ebca6bu + seed);
+    const float length = hash_unit(strand), middle = 0.2f + 0.6f * hash_unit(strand + 1);
+    const float wide = STRAND * (1 + 0.4f * noise2(along / 9, length, seed + 3)),
+                off = STRANDS * fabsf(within - middle);
+    float reach = (tuft < 0 ? 0.62f : 0.12f) * tuft - 0.03f; // pinholes, and no islands
+    if (single > 0) {
+        const float fate = hash_unit((uint32_t)noise_floor(at, &within) * 0x85ebca6bu + seed);
+        reach += single * (0.8f * fate * fate * fate * fate + 0.2f * noise2(at, along / 23, seed + 2));
+    }
+    return REACH * (off < wide ? maxf(reach, most * length * length) : reach);
 }
 
 void cloth_find(const Weave *weave, const PaperState *state, float burn, float footprint, Cloth *cloth) {
     const float wide = footprint / weave->pitch, burnt = stepf(PAPER_WHOLE, 0.6f, burn);
     const float x = state->uv[0] * weave->threads[0], y = state->uv[1] * weave->threads[1];
     const float hot = ember_activity(state->burn_rate) * stepf(600, 760, state->temperature);
-    const float edge = state->edge / weave->pitch, loose = burnt * (1 - stepf(2, CLOTH_EDGE, edge));
+    const float edge = state->edge / weave->pitch;
     *cloth = (Cloth){.shown = clampf(1.9f - 3.6f * wide, 0, 1), .burnt = burnt};
+
+    float at[2];
+    cloth_bend(x, y, burnt, 0, wide, at);
+    cloth->at[0] = at[0], cloth->at[1] = at[1];
     if (cloth->shown + burnt <= 0) return;
 
-    // burnt threads lie unevenly and in waves, and their ends bend aside
-    float at[2] = {x, y};
-    if (burnt > 0) {
-        const float aside = cloth->shown * (0.5f * burnt + 2 * loose), wave = 5 * burnt;
-        at[0] += wave * noise2(0.021f * x, 0.013f * y, 63);
-        at[1] += wave * noise2(0.013f * x, 0.021f * y, 64);
-        if (aside > 0) at[0] += aside * noise2(0.13f * x, 0.08f * y, 61);
-        if (aside > 0) at[1] += aside * noise2(0.08f * x, 0.13f * y, 62);
-    }
+    // how many threads it is from there to where cloth ends: the border of the piece, from which much has crumbled, and holes
+    const float damage = burnt > 0 ? cloth_damage(at, wide) : -1;
+    const float worn = WORN - 0.4f * stepf(0.45f, 0.9f, burn);
+    const float bite = burnt * FRAY * (1 - 0.75f * hot) * maxf(0.6f + 1.5f * damage, 0.1f);
+    const float left = minf((worn - damage) * HOLE_SLOPE, edge < CLOTH_EDGE ? edge - bite : INFINITY);
+    const float loose = burnt * (1 - stepf(-REACH, 4, left));
+    const bool firm = burnt <= 0 || left > 0.85f * REACH;
+    if (loose > 0) cloth_bend(x, y, burnt, loose, wide, at);
+    cloth->at[0] = at[0], cloth->at[1] = at[1];
 
-    // far from where it could give way?
-    const float damage = burnt > 0 ? cloth_damage(at[0], at[1], wide) : 0;
-    const float worn = 0.9f - 0.4f * stepf(0.45f, 0.9f, burn);
-    const bool firm = burnt <= 0 || (edge >= CLOTH_EDGE && damage + 0.5f * FATE_MOST + 0.25f < worn);
-    const float fates = firm ? 0 : bundle_fate(at, wide);
+    const float lean = firm ? 0 : stepf(-0.2f, 0.2f, oblique(at, 70, wide, 70)); // one family's strands are left
+    const float single = resolved(1, wide), tuft = firm ? 0 : oblique(at, 8, wide, 69);
     int thread[2];
     for (int k = 0; k < 2; k++) {
         float within, along = at[1 - k];
@@ -137,22 +158,17 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
         const uint32_t seed = 71 + 100 * (uint32_t)k;
         const float own = hash_unit((uint32_t)thread[k] * 0x9e3779b1u + seed);
         float half = CLOSED;
-        if (burnt > 0 && cloth->shown > 0) {
+        if (burnt > 0 && single > 0) {
             const float thin = 0.8f + 0.5f * own + 0.3f * noise2(1.7f * (float)thread[k], 0.21f * along, seed + 40);
-            half = mixf(CLOSED, SHRUNKEN * thin, burnt * cloth->shown);
+            half = mixf(CLOSED, SHRUNKEN * thin, burnt * maxf(cloth->shown, loose * single));
         }
         cloth->across[k] = (within - 0.5f) / half;
         cloth->tone[k] = own - 0.5f;
+        cloth->end[k] = 1 - stepf(0, 3, left);
         cloth->gone[k] = fabsf(cloth->across[k]) > 1;
-        if (firm) continue;
-
-        float fate = fates;
-        if (wide < 2) fate += 0.45f * resolved(1, wide) * noise2((float)thread[k], along / LONG, seed);
-        fate = clampf(fate, -FATE_MOST, FATE_MOST);
-        const float bite = minf(
-            burnt * FRAY * (1 - 0.75f * hot) * maxf(0.4f + 1.7f * fate + 2.1f * maxf(damage, -0.1f), 0), CLOTH_EDGE);
-        cloth->gone[k] = cloth->gone[k] || edge < bite || damage + 0.5f * fate + 0.5f * cloth->tone[k] > worn;
-        cloth->end[k] = 1 - stepf(0, 3, edge - bite);
+        if (!firm)
+            cloth->gone[k] = cloth->gone[k] || edge < 0.5f ||
+                             left + thread_reach(at[k], along, single, k ? lean : 1 - lean, tuft, seed) < 0;
     }
 
     cloth->top = (thread[0] + thread[1]) & 1;
@@ -191,23 +207,36 @@ void cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth,
     const float wide = point->footprint / weave->pitch;
     float bundle[2], relief[2];
     for (int k = 0; k < 2; k++) {
-        const float at = state->uv[k] * weave->threads[k], along = state->uv[1 - k] * weave->threads[1 - k];
-        float sum = 0, slope = 0, size = 3, weight = 0.55f;
+        const float at = cloth->at[k], along = cloth->at[1 - k];
+        float sum = 0, slope = 0, size = 3, weight = 0.5f;
         for (uint32_t octave = 0; octave < 4; octave++, size *= 2.2f, weight *= 0.85f) {
             const float shown = resolved(0.5f * size, wide);
             if (shown <= 0) continue;
             const uint32_t seed = 171 + 10 * (uint32_t)k + octave;
-            const float n = noise2(at / size, along / (9 * size), seed);
+            const float n = noise2(at / size, along / (5 * size), seed);
             sum += shown * weight * n;
-            slope += shown * weight * (noise2(at / size + 0.3f, along / (9 * size), seed) - n) / 0.3f;
+            slope += shown * weight * (noise2(at / size + 0.3f, along / (5 * size), seed) - n) / 0.3f;
         }
         bundle[k] = sum;
-        relief[k] = slope;
+        relief[k] = 0.6f * slope;
+    }
+
+    // it wrinkles
+    float wrinkle = 0, size = 44, weight = 0.7f;
+    for (uint32_t octave = 0; octave < 3; octave++, size *= 0.45f, weight *= 0.8f) {
+        const float n = oblique(cloth->at, size, wide, 191 + octave);
+        wrinkle += weight * n;
+        for (int k = 0; k < 2; k++) {
+            float beside[2] = {cloth->at[0], cloth->at[1]};
+            beside[k] += 0.2f * size;
+            relief[k] += weight * (oblique(beside, size, wide, 191 + octave) - n) / 0.2f;
+        }
     }
 
     // it shrinks in bundles, over and under each other: crowns are grey with ash, and hollows black; where it has just
     // charred it is brown
-    const float charred = stepf(0.2f, 0.45f, burn), up = bundle[0] + bundle[1], top = maxf(bundle[0], bundle[1]);
+    const float charred = stepf(0.2f, 0.45f, burn), top = maxf(bundle[0], bundle[1]),
+                up = top - 0.25f + 0.35f * wrinkle;
     const float ash =
         charred * stepf(0.42f, 0.7f, burn) * stepf(0.15f, 0.95f, top) * (1 - stepf(520, 760, state->temperature));
     const float brown = charred * (1 - stepf(0.45f, 0.75f, burn)) * stepf(-0.4f, 0.6f, up);
@@ -218,7 +247,8 @@ void cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth,
     Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, -0.55f * charred), point->normal);
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
 
-    const float glows = 1 + charred * clampf(0.9f * top - 0.25f, -0.7f, 0.6f);
+    const float glows =
+        mixf(1, 0.15f + 1.4f * stepf(-0.05f, 0.55f, top + 0.3f * wrinkle), charred); // embers creep along strands
     point->albedo = float3_scale(point->albedo, threads);
     point->glow =
         float3_scale(point->glow, glows * mixf(1, threads, cloth->shown) * (1 + 1.5f * cloth->end[cloth->top]));
