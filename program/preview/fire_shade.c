@@ -91,7 +91,7 @@
 #define FLAME_CAST 0.875f       ///< of that range, 1900 K: the colour of the light that they cast
 #define FLAME_THROWN 384.0f     ///< 1/m, its luminance
 #define FLAME_BAKED 3.0f        ///< radiance of what is 1 where gas is baked
-#define SOOT_DENSE 195.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
+#define SOOT_DENSE 198.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
 #define BLUE_DENSE 3.3f         ///< 1/m: radiance of the root per metre
 #define BLUE_ENDS 0.005f        ///< m above the paper
 #define SHELL_RISE 0.0005f      ///< m, w
@@ -275,7 +275,7 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
 
     float core = stepf(0.35f, 0.7f, flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
-    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.175f;
+    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.180f;
     hot += FILAMENT_HOT * filament + 0.15f * pane * (1 - clear) - HIGH_COOL * stepf(0.1f, 1.5f, tall);
     hot += JOINED_HOT * stepf(0.95f, 1.35f, flame); // where tongues have joined
     hot += FOOT_HOT * streak * soot * (1 - above) - FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));

@@ -322,7 +322,7 @@ const float SMOKE_FAR = 0.15;
 const float SMOKE_NEAR = 0.6;
 const float SMOKE_SLOW = 0.4;
 const float SMOKE_SPEED = 0.5;
-const float SOOT_DENSE = 195.0;
+const float SOOT_DENSE = 198.0;
 const float BLUE_DENSE = 3.3;
 const float BLUE_ENDS = 0.005;
 const float SHELL_RISE = 0.0005;
@@ -416,7 +416,7 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     }
     float core = stepf(0.35, 0.7, flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0.0, 0.7, edge), low = 1.0 - stepf(0.1, 0.9, tall);
-    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.175;
+    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.180;
     hot += FILAMENT_HOT * filament + 0.15 * pane * (1.0 - clear) - HIGH_COOL * stepf(0.1, 1.5, tall);
     hot += JOINED_HOT * stepf(0.95, 1.35, flame);
     hot += FOOT_HOT * streak * soot * (1.0 - above) - FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
