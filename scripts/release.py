@@ -105,7 +105,7 @@ def debian_source(source, version, epoch, orig, work, out):
     shutil.copytree(source / "packaging" / "debian", tree / "debian")
     day = ask("date", "-u", "-R", "-d", f"@{epoch}", env={**os.environ, "LC_ALL": "C"})
     (tree / "debian" / "changelog").write_text(
-        f"singe ({version}-1) unstable; urgency=medium\n\n  * As CHANGELOG.md of the sources says.\n\n"
+        f"singe ({version}-1) unstable; urgency=medium\n\n  * As docs/CHANGELOG.md of the sources says.\n\n"
         f" -- {MAINTAINER}  {day}\n")
     shutil.copy(orig, place / f"singe_{version}.orig.tar.gz")
     run("dpkg-source", "-b", tree.name, cwd=place)
@@ -138,7 +138,7 @@ def static_command(source, work, out, name, epoch):
     (folder / "examples").mkdir(parents=True)
     shutil.copy(build / "singe", folder)
     run("strip", folder / "singe")
-    for file in ("LICENSE", "README.md", "CHANGELOG.md"):
+    for file in ("LICENSE", "README.md"):
         shutil.copy(source / file, folder)
     for part, place in ("docs", "docs"), ("src/materials", "materials"), ("examples/letter", "examples/letter"):
         shutil.copytree(source / part, folder / place, ignore=shutil.ignore_patterns("gallery", "*.[ch]"))

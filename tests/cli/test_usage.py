@@ -17,7 +17,7 @@ class Usage(Case):
     def test_help_and_version(self):
         self.assertIn("usage: singe COMMAND", self.singe("--help")[0])
         self.assertEqual(self.singe("--version")[0], f"singe {VERSION}\n")
-        with open(os.path.join(ROOT, "CHANGELOG.md"), encoding="utf-8") as file:
+        with open(os.path.join(ROOT, "docs/CHANGELOG.md"), encoding="utf-8") as file:
             self.assertEqual(re.search(r"^## ([0-9.]+)", file.read(), re.M).group(1), VERSION)
         for command, word in ("run", "--resume"), ("check", "--threads"), ("render", "--sheet"), ("paper", "table1"):
             out, _ = self.singe(command, "--help")
