@@ -37,7 +37,7 @@ JPEG = "libjpeg-turbo8-dev" if pathlib.Path("/usr/share/doc/libjpeg-turbo8-dev")
 LINKED = {"libc6-dev": "LGPL-2.1-or-later", "libfyaml-dev": "MIT", "libpng-dev": "Libpng", "zlib1g-dev": "Zlib",
           JPEG: "IJG AND BSD-3-Clause AND Zlib"}
 
-# nobody's address: whoever publishes the packages names a maintainer here and in packaging/debian/control
+# nobody's address: whoever publishes the packages names a maintainer here and in scripts/packaging/debian/control
 MAINTAINER = "The Singe authors <singe@localhost>"
 
 
@@ -102,7 +102,7 @@ def debian_source(source, version, epoch, orig, work, out):
     place = work / "debian"
     tree = place / f"singe-{version}"
     shutil.copytree(source, tree)
-    shutil.copytree(source / "packaging" / "debian", tree / "debian")
+    shutil.copytree(source / "scripts/packaging/debian", tree / "debian")
     day = ask("date", "-u", "-R", "-d", f"@{epoch}", env={**os.environ, "LC_ALL": "C"})
     (tree / "debian" / "changelog").write_text(
         f"singe ({version}-1) unstable; urgency=medium\n\n  * As docs/CHANGELOG.md of the sources says.\n\n"

@@ -36,7 +36,7 @@ SYSTEMS = {
     "macos-arm64": ("aarch64-macos", "macosx_13_0_arm64", "libsinge.dylib"),
     "macos-x86_64": ("x86_64-macos", "macosx_13_0_x86_64", "libsinge.dylib"),
 }
-# what the command links: Debian's source packages, and the folders of packaging/libraries
+# what the command links: Debian's source packages, and the folders of scripts/packaging/libraries
 SOURCES = {"libfyaml": "fyaml", "libpng1.6": "png", "zlib": "zlib", "libjpeg-turbo": "jpeg"}
 # of pkg-config's names: the libraries
 LIBRARIES = {"libfyaml": ["fyaml"], "libpng": ["png16", "z"], "libjpeg": ["jpeg"]}
@@ -88,13 +88,13 @@ def static_libraries(system, work, environment):
     def make(source, *defines):
         place = folder / f"build-{source.name}"
         subprocess.run(["cmake", "-Wno-dev", "-S", source, "-B", place, "-DCMAKE_BUILD_TYPE=Release",
-                        f"-DCMAKE_TOOLCHAIN_FILE={ROOT}/packaging/cmake/toolchains/zig.cmake",
+                        f"-DCMAKE_TOOLCHAIN_FILE={ROOT}/scripts/packaging/cmake/toolchains/zig.cmake",
                         f"-DCMAKE_INSTALL_PREFIX={folder}", "-DCMAKE_INSTALL_LIBDIR=lib", *defines], check=True,
                        env=environment, stdout=subprocess.DEVNULL)
         return place
 
     quiet = {"check": True, "env": environment, "stdout": subprocess.DEVNULL}
-    most = make(ROOT / "packaging/libraries", f"-DSOURCES={found}")
+    most = make(ROOT / "scripts/packaging/libraries", f"-DSOURCES={found}")
     subprocess.run(["cmake", "--build", most], **quiet)
     subprocess.run(["cmake", "--install", most], **quiet)
     jpeg = make(found / "jpeg", "-DENABLE_SHARED=OFF", "-DWITH_TURBOJPEG=OFF", "-DWITH_SIMD=OFF")
@@ -120,7 +120,7 @@ def build(system, out, work):
                    "CMAKE_BUILD_PARALLEL_LEVEL": "2"}
     environment.pop("CMAKE_C_COMPILER_LAUNCHER", None)
     static = static_libraries(system, work, environment) if shutil.which("apt-get") else None
-    defines = {"CMAKE_TOOLCHAIN_FILE": ROOT / "packaging/cmake/toolchains/zig.cmake", "SINGE_EXR": "OFF",
+    defines = {"CMAKE_TOOLCHAIN_FILE": ROOT / "scripts/packaging/cmake/toolchains/zig.cmake", "SINGE_EXR": "OFF",
                "SINGE_ASSIMP": "OFF", "SINGE_NLOPT": "OFF", "SINGE_MESHOPT": "OFF", "SINGE_VIEW": "OFF",
                "SINGE_PROGRAM": "ON" if static else "OFF"}
     if static:

@@ -1,4 +1,4 @@
-// The built-in materials: the files of materials/, embedded unchanged by packaging/cmake/embed.cmake.
+// The built-in materials: the files of materials/, embedded unchanged by scripts/packaging/cmake/embed.cmake.
 #pragma once
 
 #include <stddef.h>

@@ -160,7 +160,8 @@ def own_python(work, name):
 
 def conda(work, wanted):
     version = run(ROOT / "build/singe", "--version").split()[1]
-    run(own_python(work, "conda") / "python", ROOT / "tests/packages/conda.py", ROOT / "packaging/conda/recipe.yaml",
+    recipe = ROOT / "scripts/packaging/conda/recipe.yaml"
+    run(own_python(work, "conda") / "python", ROOT / "tests/packages/conda.py", recipe,
         work / "conda-work", env={**os.environ, "SINGE_VERSION": version})
     prefix = work / "conda-work" / "prefix"
     run(prefix / "bin/singe", "run", work / "scene.yaml", "-o", work / "conda-out", "--quiet")
@@ -173,7 +174,7 @@ def conan(work, _):
     environment = {**os.environ, "CONAN_HOME": str(work / "conan-home")}
     command = own_python(work, "conan") / "conan"
     run(command, "profile", "detect", "--force", env=environment)
-    shown = run(command, "create", ROOT / "packaging/conan", env=environment, cwd=ROOT, both=True)
+    shown = run(command, "create", ROOT / "scripts/packaging/conan", env=environment, cwd=ROOT, both=True)
     version = run(ROOT / "build/singe", "--version").strip()
     if f"\n{version}\n" not in shown:
         sys.exit(f"conan: the test package does not say '{version}'\n{shown[-2000:]}")

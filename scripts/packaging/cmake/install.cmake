@@ -13,7 +13,7 @@ if(NOT BUILD_SHARED_LIBS AND CMAKE_OBJCOPY AND CMAKE_SYSTEM_NAME STREQUAL Linux
     set(singe_cc \"${CMAKE_C_COMPILER}\")
     set(singe_objcopy \"${CMAKE_OBJCOPY}\")
     set(singe_ar \"${CMAKE_AR}\")" COMPONENT development)
-  install(SCRIPT packaging/cmake/localise.cmake COMPONENT development)
+  install(SCRIPT scripts/packaging/cmake/localise.cmake COMPONENT development)
 endif()
 set_target_properties(singe singe_input PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
 install(DIRECTORY include/singe DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development
@@ -21,7 +21,7 @@ install(DIRECTORY include/singe DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONEN
 
 set(singe_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/singe)
 install(EXPORT singeTargets NAMESPACE singe:: DESTINATION ${singe_package_dir} COMPONENT development)
-configure_package_config_file(packaging/cmake/singeConfig.cmake.in ${PROJECT_BINARY_DIR}/singeConfig.cmake
+configure_package_config_file(scripts/packaging/cmake/singeConfig.cmake.in ${PROJECT_BINARY_DIR}/singeConfig.cmake
                               INSTALL_DESTINATION ${singe_package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/singeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/singeConfig.cmake ${PROJECT_BINARY_DIR}/singeConfigVersion.cmake
@@ -39,8 +39,8 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 file(RELATIVE_PATH singe_pc_prefix /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 string(REGEX REPLACE "/$" "" singe_pc_prefix ${singe_pc_prefix})
-configure_file(packaging/cmake/singe.pc.in ${PROJECT_BINARY_DIR}/singe.pc @ONLY)
-configure_file(packaging/cmake/singe-input.pc.in ${PROJECT_BINARY_DIR}/singe-input.pc @ONLY)
+configure_file(scripts/packaging/cmake/singe.pc.in ${PROJECT_BINARY_DIR}/singe.pc @ONLY)
+configure_file(scripts/packaging/cmake/singe-input.pc.in ${PROJECT_BINARY_DIR}/singe-input.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/singe.pc ${PROJECT_BINARY_DIR}/singe-input.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
         COMPONENT development)
 

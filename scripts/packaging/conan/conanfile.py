@@ -20,14 +20,14 @@ class Singe(ConanFile):
 
     @property
     def root(self):
-        return os.path.join(self.recipe_folder, "..", "..")
+        return os.path.join(self.recipe_folder, "..", "..", "..")
 
     def set_version(self):
         text = load(self, os.path.join(self.root, "include", "singe", "base.h"))
         self.version = re.search(r'#define SINGE_VERSION "(.*)"', text).group(1)
 
     def export_sources(self):
-        for pattern in ("CMakeLists.txt", "LICENSE", "include/*", "src/*", "packaging/cmake/*"):
+        for pattern in ("CMakeLists.txt", "LICENSE", "include/*", "src/*", "scripts/packaging/cmake/*"):
             copy(self, pattern, self.root, self.export_sources_folder)
 
     def config_options(self):

@@ -20,7 +20,7 @@ foreach(file IN LISTS files)
   string(APPEND rows "    {\"${name}\", (const char *)${array}, sizeof ${array}},\n")
 endforeach()
 get_filename_component(folder "${FOLDER}" NAME)
-file(WRITE "${OUTPUT}" "// made by packaging/cmake/embed.cmake from ${folder}/${PATTERN}
+file(WRITE "${OUTPUT}" "// made by scripts/packaging/cmake/embed.cmake from ${folder}/${PATTERN}
 #include \"scene/builtin.h\"
 
 ${arrays}
