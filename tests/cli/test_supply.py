@@ -44,14 +44,18 @@ class Supply(unittest.TestCase):
             self.assertRegex(line, r"npm (ci|update --package-lock-only) .*--ignore-scripts", name)
 
     def test_locks_have_all_hashes(self):
-        locks = sorted(LOCKS.glob("*.txt"))
+        locks, included = sorted(LOCKS.rglob("*.txt")), set()
         self.assertTrue(locks)
         for lock in locks:
             text = lock.read_text()
-            self.assertNotRegex(text, r"://|^-", lock.name)
-            needed = re.split(r"\n(?=\S)", text.split("\n", 1)[1])
+            self.assertNotRegex(text, r"://|^-(?!r shared/[\w.-]+\n)", lock.name)
+            needed = re.split(r"\n(?=\S)", text.rstrip().split("\n", 1)[1])
+            included |= {package[3:] for package in needed if package.startswith("-r ")}
             for package in needed:
+                if package.startswith("-r "):
+                    continue
                 self.assertRegex(package, r"^[\w.-]+==\S+[^\n]*\\\n    --hash=sha256:[0-9a-f]{64}", lock.name)
+        self.assertEqual(included, {f"shared/{lock.name}" for lock in locks if lock.parent != LOCKS})
         for name, packages in sources("package-lock.json"):
             self.assertNotIn('"resolved"', packages, name)
             self.assertEqual(packages.count('"node_modules/'), packages.count('"integrity": "sha512-'), name)
