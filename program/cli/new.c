@@ -1,4 +1,5 @@
 // singe new: a commented scene to begin with. singe materials: the built-in materials, and the text of one.
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,8 @@
 #include "cli/text.h"
 #include "common/printable.h"
 #include "scene/builtin.h"
+
+#define PI 3.14159265358979323846
 
 /// The files of templates/, embedded.
 extern const SceneBuiltin new_templates[];
@@ -52,9 +55,34 @@ const ArgCommand new_command = {
 
 const char *new_template_word(int index) { return index < TEMPLATES ? templates[index].name : NULL; }
 
-static void print_template(FILE *file, const void *context) {
-    const SceneBuiltin *found = context;
-    fwrite(found->bytes, 1, found->size, file);
+/// The paper shade of a lamp: rows of quads on a cone, as OBJ. The seam's vertices have two uv each.
+static void print_lamp(FILE *file) {
+    enum { AROUND = 48, ROWS = 18 };
+    fputs("# The paper shade of a lamp: a cone, open above and below, in metres; z is up.\n", file);
+
+    for (int j = 0; j <= ROWS; j++)
+        for (int i = 0; i < AROUND; i++) {
+            const double radius = 0.1 - 0.02 * j / ROWS, angle = 2 * PI * i / AROUND;
+            fprintf(file, "v %.5f %.5f %.5f\n", radius * cos(angle), radius * sin(angle), 0.12 * j / ROWS);
+        }
+
+    for (int j = 0; j <= ROWS; j++)
+        for (int i = 0; i <= AROUND; i++) fprintf(file, "vt %.4f %.4f\n", (double)i / AROUND, (double)j / ROWS);
+
+    for (int j = 0; j < ROWS; j++)
+        for (int i = 0; i < AROUND; i++) {
+            const int v = j * AROUND + 1, uv = j * (AROUND + 1) + 1, next = (i + 1) % AROUND;
+            fprintf(file, "f %d/%d %d/%d %d/%d %d/%d\n", v + i, uv + i, v + next, uv + i + 1, v + AROUND + next,
+                    uv + AROUND + i + 2, v + AROUND + i, uv + AROUND + i + 1);
+        }
+}
+
+/// One of the templates by its name, or the lamp, which is the only file that is not embedded.
+static void print_file(FILE *file, const void *name) {
+    const SceneBuiltin *found = new_templates;
+    while (found->name && strcmp(found->name, name) != 0) found++;
+    if (found->name) fwrite(found->bytes, 1, found->size, file);
+    else print_lamp(file);
 }
 
 int command_new(int argc, char **argv) {
@@ -90,9 +118,7 @@ int command_new(int argc, char **argv) {
 
     for (int i = 0; i < 2 && !code; i++) {
         if (!files[i] || (i == 0 && lstat(paths[0], &info) == 0)) continue;
-        const SceneBuiltin *found = new_templates;
-        while (strcmp(found->name, files[i]) != 0) found++;
-        code = console_write_table(&console, paths[i], print_template, found);
+        code = console_write_table(&console, paths[i], print_file, files[i]);
         if (!code) printf("%s\n", paths[i]);
     }
 

@@ -279,17 +279,19 @@ static void put_fieldsets(Crate *crate) {
     put_ints(crate, &crate->sink, (const int32_t *)crate->sets, crate->set_count);
 }
 
+/// Room for columns of numbers; NULL, and the sink has failed, if there is no memory.
+static int32_t *room_of(Crate *crate, size_t numbers) {
+    crate->packed.size = 0;
+    int32_t *room = (int32_t *)(void *)sink_room(&crate->packed, sizeof *room * numbers);
+    if (!room) crate->sink.failed = true;
+    return room;
+}
+
 /// Numbers, names (those of properties negative) and jumps.
 static void put_paths(Crate *crate) {
     const size_t count = crate->path_count;
-    Sink *room = &crate->packed;
-    room->size = 0;
-    int32_t *columns = (int32_t *)(void *)sink_room(room, 4 * 4 * count);
-
-    if (!columns) {
-        crate->sink.failed = true;
-        return;
-    }
+    int32_t *columns = room_of(crate, 4 * count);
+    if (!columns) return;
 
     for (size_t i = 0; i < count; i++) {
         const int32_t name = (int32_t)crate->paths[i].token;
@@ -317,14 +319,8 @@ static void put_paths(Crate *crate) {
 
 static void put_specs(Crate *crate) {
     const size_t count = crate->spec_count;
-    Sink *room = &crate->packed;
-    room->size = 0;
-    int32_t *columns = (int32_t *)(void *)sink_room(room, 3 * 4 * count);
-
-    if (!columns) {
-        crate->sink.failed = true;
-        return;
-    }
+    int32_t *columns = room_of(crate, 3 * count);
+    if (!columns) return;
 
     for (size_t i = 0; i < count; i++) {
         columns[i] = (int32_t)crate->specs[i].path;
