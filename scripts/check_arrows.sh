@@ -39,7 +39,7 @@ lab/bench        $program cli
 lab/page         $program cli bench
 lab/paper        $program cli bench page
 lab/validate     $program cli bench page
-samples
+docs/samples
 "
 
 bad=0

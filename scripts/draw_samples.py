@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Draws samples/NAME.webp again: what is left when a sample destroys its simulation, seen by singe.draw; if it has several
-that end differently, side by side. Needs the static libraries and the Python package of the preset release, a C compiler
+"""Draws docs/samples/NAME.webp again: what is left when a sample destroys its simulation, seen by singe.draw; if it has
+several that end differently, side by side. Needs the static libraries and the Python package of the preset release, a C compiler
 and ffmpeg.
 
 usage: draw_samples.py [NAME...]
@@ -62,18 +62,18 @@ def draw(source, work):
     small = (pixels[::2, ::2].astype(int) + pixels[1::2, ::2] + pixels[::2, 1::2] + pixels[1::2, 1::2] + 2) // 4
     (work / "picture.png").write_bytes(picture.png(small.astype("uint8")))
     subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", work / "picture.png", "-quality", "80",
-                    ROOT / f"samples/{source.stem}.webp"], check=True)
+                    ROOT / f"docs/samples/{source.stem}.webp"], check=True)
     return True
 
 
 def main():
     picture._VIEW[:] = 0.25, -0.8, 0.6  # higher than in notebooks: many samples lie on a table
-    names = sys.argv[1:] or [file.stem for file in sorted((ROOT / "samples").glob("*.c")) if file.stem != "live"]
+    names = sys.argv[1:] or [file.stem for file in sorted((ROOT / "docs/samples").glob("*.c")) if file.stem != "live"]
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         (work / "hook.c").write_text(HOOK)
         for name in names:
-            print(name, "drawn" if draw(ROOT / f"samples/{name}.c", work) else "has no picture")
+            print(name, "drawn" if draw(ROOT / f"docs/samples/{name}.c", work) else "has no picture")
 
 
 if __name__ == "__main__":

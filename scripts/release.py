@@ -141,7 +141,7 @@ def static_command(source, work, out, name, epoch):
     for file in ("LICENSE", "README.md"):
         shutil.copy(source / file, folder)
     for part, place in ("docs", "docs"), ("src/materials", "materials"), ("examples/letter", "examples/letter"):
-        shutil.copytree(source / part, folder / place, ignore=shutil.ignore_patterns("gallery", "*.[ch]"))
+        shutil.copytree(source / part, folder / place, ignore=shutil.ignore_patterns("gallery", "samples", "*.[ch]"))
     licences = folder / "licences"
     licences.mkdir()
     for package in LINKED:

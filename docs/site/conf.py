@@ -26,7 +26,7 @@ author = copyright = "the Singe authors"
 release = version = re.search(r'SINGE_VERSION "([^"]+)"', (ROOT / "include/singe/base.h").read_text()).group(1)
 extensions = ["myst_parser", "breathe", "sphinx.ext.autodoc", "sphinx.ext.viewcode", "sphinx_copybutton"]
 root_doc = "README"
-include_patterns = ["README.md", "docs/**", "bindings/web/README.md", "samples/README.md"]
+include_patterns = ["README.md", "docs/**", "bindings/web/README.md"]
 exclude_patterns = ["build*", "**/node_modules", "out", ".*"]
 highlight_language = "none"
 

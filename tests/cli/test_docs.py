@@ -74,7 +74,7 @@ class Tutorials(Case):
     def test_c(self):
         for name, block in self.blocks("c"):
             file, lines = re.fullmatch(r"// ([\w.]+)\n(.*)", block, re.DOTALL).groups()
-            self.assertIn(lines, Path(ROOT, "samples", file).read_text(), f"{name}: {file} has other lines")
+            self.assertIn(lines, Path(ROOT, "docs/samples", file).read_text(), f"{name}: {file} has other lines")
 
 
 class Docs(Case):

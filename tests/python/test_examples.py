@@ -21,7 +21,7 @@ class Examples(Case):
         if not there(name):
             self.skipTest(f"needs {' and '.join(PACKAGES[name])}")
         picture = self.dir / "picture.png"
-        done = subprocess.run([sys.executable, str(ROOT / f"samples/{name}.py"), str(picture)], text=True,
+        done = subprocess.run([sys.executable, str(ROOT / f"docs/samples/{name}.py"), str(picture)], text=True,
                               capture_output=True, timeout=600, env={**os.environ, "PYTHONPATH": str(ROOT / "bindings/python")})
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))

@@ -56,7 +56,7 @@ class Layout(Case):
 
     def test_lines_fit(self):
         """The width that the project's C has."""
-        files = [*(ROOT / "bindings/python").rglob("*.py"), *(ROOT / "samples").rglob("*.py")]
+        files = [*(ROOT / "bindings/python").rglob("*.py"), *(ROOT / "docs/samples").rglob("*.py")]
         self.assertGreater(len(files), 12)
         long = [f"{path.name}:{n}" for path in files for n, line in enumerate(path.read_text().split("\n"), 1)
                 if len(line) > 120]
@@ -70,7 +70,7 @@ class Layout(Case):
 
 class Burning(Case):
     def test_as_in_c(self):
-        """samples/burn.c, line by line."""
+        """docs/samples/burn.c, line by line."""
         program = os.environ.get("SINGE_BURN")
         if not program:
             self.skipTest("SINGE_BURN names no program")
