@@ -33,7 +33,7 @@ build-asan:
 
 build-fuzz:
 	cmake --preset fuzz
-	cmake --build --preset fuzz
+	cmake --build --preset fuzz --target fuzz_targets
 
 # the command on a shared library that exports the public names only
 build-shared:
