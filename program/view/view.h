@@ -43,7 +43,6 @@ typedef struct View {
     Live live; ///< scene NULL: a finished cache
     char token[33];
     int port;
-    const char *program_name;
 } View;
 
 // live.c
