@@ -93,6 +93,19 @@ class Case(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
         self.scene = self.write_scene()
 
+    @classmethod
+    def setUpClass(cls):
+        cls.kept = tempfile.mkdtemp(prefix="singe-test-")
+        cls.addClassCleanup(shutil.rmtree, cls.kept, ignore_errors=True)
+
+    def once(self, name, make):
+        """A folder that make(path) fills, for all tests of a class: it takes long, and is the same for each, and none
+        changes it. It is reached in the test's own folder by its name."""
+        folder = os.path.join(self.kept, name)
+        if not os.path.exists(folder):
+            make(folder)
+        os.symlink(folder, self.path(name))
+
     def path(self, *parts):
         return os.path.join(self.dir, *parts)
 

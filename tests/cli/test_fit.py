@@ -37,7 +37,10 @@ class Fit(Case):
         return path
 
     def truth(self, *args):
-        self.run_scene("truth", "--set", f"{RATE}=9e-3", "--quiet", *args)
+        def burn(folder):
+            self.run_scene(folder, "--set", f"{RATE}=9e-3", "--quiet", *args)
+
+        burn("truth") if args else self.once("truth", burn)
         return self.stats("truth")[-1]
 
     def fit(self, plan, *args, out="f", expect=0, **options):

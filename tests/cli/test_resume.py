@@ -33,6 +33,10 @@ class Resume(Case):
         self.wait_for(lambda: self.lines(out) >= frame, run)
         return run
 
+    def whole(self):
+        """The usual scene, which nothing interrupts."""
+        self.once("whole", lambda folder: self.run_scene(folder, "--quiet"))
+
     def same_as_whole(self, out, whole="whole"):
         self.assertEqual(self.plys(whole), self.plys(out))
         self.assertEqual(self.numbers(whole), self.numbers(out))
@@ -41,7 +45,7 @@ class Resume(Case):
         self.no_temporaries(out)
 
     def test_kill_and_resume(self):
-        self.run_scene("whole", "--quiet")
+        self.whole()
         seed = int(time.time())
         rng = random.Random(seed)
         for attempt in range(2 if SANITIZED else 4):
@@ -55,7 +59,7 @@ class Resume(Case):
                 self.same_as_whole(out)
 
     def test_killed_twice(self):
-        self.run_scene("whole", "--quiet")
+        self.whole()
         for frame, more in (6, []), (14, ["--resume"]):
             run = self.start_until("k", frame, "--no-preview", *more)
             run.kill()
@@ -65,7 +69,7 @@ class Resume(Case):
 
     def test_debris_of_a_killed_run(self):
         """The worst debris of a kill: a truncated line, later frames, a temporary file."""
-        self.run_scene("whole", "--quiet")
+        self.whole()
         self.run_scene("k", "--frames", "9", "--quiet")
         with open(self.path("k", "stats.csv"), "a") as file:
             file.write("10,0.375,1,2\n11,0.4")
@@ -95,7 +99,7 @@ class Resume(Case):
         return done
 
     def test_ctrl_c(self):
-        self.run_scene("whole", "--quiet")
+        self.whole()
         done = self.interrupted(signal.SIGINT)
         _, err = self.run_scene("i", "--resume", preview=True)
         self.assertIn(f"continuing from frame {done}", err)
@@ -195,7 +199,7 @@ class Resume(Case):
         self.assertEqual(self.plys("o"), before)
 
     def test_longer_run_and_other_looks(self):
-        self.run_scene("whole", "--quiet")
+        self.whole()
         self.run_scene("o", "--frames", "3", "--quiet")
         self.run_scene("o", "--resume", "--set", "preview.exposure=2")
         self.same_as_whole("o")
@@ -342,7 +346,7 @@ class Resume(Case):
 
     def test_the_checkpoint_before_a_damaged_one(self):
         """It is used, with the reason; the cache has the same bytes, and a good checkpoint is there all the time."""
-        self.run_scene("whole", "--quiet")
+        self.whole()
         self.run_scene("a", "--frames", "5", "--quiet")
         self.run_scene("a", "--frames", "9", "--resume", "--quiet")
         good = Path(self.path("a", "checkpoint.singe")).read_bytes()
@@ -363,7 +367,7 @@ class Resume(Case):
                 self.same_as_whole("o")
                 # the damaged one never took the place of the good one before it
                 os.remove(self.path("o", "checkpoint.singe"))
-                self.assertIn("continuing from frame", self.run_scene("o", "--resume", "--frames", "30")[1])
+                self.assertIn("continuing from frame", self.run_scene("o", "--resume", "--frames", str(self.FRAMES + 1))[1])
 
     def test_the_checkpoint_before_does_not_hide_a_changed_scene(self):
         self.run_scene("o", "--frames", "5", "--quiet")
@@ -386,7 +390,7 @@ class Resume(Case):
         self.assertIn("stats.csv", self.run_scene("o", "--resume", expect=2)[1])
 
     def test_checkpoint_moves_with_its_folder(self):
-        self.run_scene("whole", "--quiet")
+        self.whole()
         self.run_scene("a", "--frames", "7", "--quiet")
         shutil.move(self.path("a"), self.path("b"))
         self.run_scene("b", "--resume")

@@ -274,7 +274,7 @@ class Sweep(Case):
         frames = 16 if SANITIZED else 30
         self.write_scene(frames=frames, steps=12, gas="no")
         self.write_plan("parameters:\n  pace: [2, 5, 9]\n")
-        self.sweep(out="whole")
+        self.once("whole", lambda folder: self.sweep(out=folder))
         sweep = self.begin("--jobs", "2")
         self.wait_for(lambda: self.lines("0001") > 3 and self.lines("0002") > 2)
         stop(sweep)
