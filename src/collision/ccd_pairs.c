@@ -143,7 +143,8 @@ static bool turns_far(const CollisionPlan *plan, uint32_t cell) {
 /// feature_distance.c).
 static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     const CollisionPlan *plan = ccd->plan;
-    CollisionFourPairs four = collision_four_pairs(plan, number);
+    CollisionFourPairs four;
+    collision_four_pairs(plan, number, &four);
 
     // so far apart that the sweep, which stops a little before the gap, would not stop either
     Float4Mask separation =

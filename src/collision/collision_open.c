@@ -211,7 +211,8 @@ static void look_block(void *context, BlockList *list, int block) {
         const uint32_t count = end - first < 4 ? end - first : 4;
         uint32_t number[4];
         for (uint32_t i = 0; i < 4; i++) number[i] = first + (i < count ? i : 0);
-        CollisionFourPairs four = collision_four_pairs(plan, number);
+        CollisionFourPairs four;
+        collision_four_pairs(plan, number, &four);
 
         // connected cells whose normals lie within a cone cannot collide
         unsigned joined = four.bridged;

@@ -320,21 +320,22 @@ typedef struct CollisionFourPairs {
     Float4 distance;                ///< m
 } CollisionFourPairs;
 
-static inline CollisionFourPairs collision_four_pairs(const CollisionPlan *plan, const uint32_t number[4]) {
-    CollisionFourPairs four = {.motion = (const Float4(*)[COLLISION_MOTIONS])plan->motion};
+/// Fills in what is there: a copy of it would wait for all of these short stores.
+static inline void collision_four_pairs(const CollisionPlan *plan, const uint32_t number[4], CollisionFourPairs *four) {
+    four->motion = (const Float4(*)[COLLISION_MOTIONS])plan->motion;
+    four->bridged = 0;
     float distance[4];
     for (int i = 0; i < 4; i++) {
         const CollisionPair *pair = &plan->pairs[number[i]];
         bool bridged = pair->bridge != SHELL_NONE;
-        four.a[i] = pair->a;
-        four.b[i] = pair->b;
-        four.bridge[i] = bridged ? pair->bridge : pair->a;
-        four.bridged |= (unsigned)bridged << i;
+        four->a[i] = pair->a;
+        four->b[i] = pair->b;
+        four->bridge[i] = bridged ? pair->bridge : pair->a;
+        four->bridged |= (unsigned)bridged << i;
         distance[i] = pair->distance;
     }
 
-    four.distance = (Float4){distance[0], distance[1], distance[2], distance[3]};
-    return four;
+    four->distance = (Float4){distance[0], distance[1], distance[2], distance[3]};
 }
 
 /// Difference of a motion of cells a and b; *deviations: the sums of the fourth components.
