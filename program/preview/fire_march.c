@@ -8,6 +8,7 @@
 #include <string.h>
 
 #define FIRE_SHORT 0.18f   ///< step near an edge, relative to the usual one: .35 leaves ribs in thin sheets
+#define FIRE_NOTED 0.8f    ///< of the usual step, which what is noted is longer than
 #define FIRE_NEAR 4.0f     ///< short steps from an edge, in usual ones: with 2, arcs are seen inside of tongues
 #define SMOKE_APART 0.005f ///< m, between rays that have smoke
 #define SMOKE_STEP 0.010f  ///< m, distance at most between the places of a ray where its smoke is looked up
@@ -201,9 +202,12 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile
         light = float3_mad(light, m.light, clear * step * mean);
         clear *= kept;
 
-        // the last step is the remaining length
-        int k = view->count < FIRE_STEPS ? view->count++ : FIRE_STEPS - 1;
-        view->from[k] = t;
+        // short steps are noted together, and what is left after the last note is one
+        int k = view->count - 1;
+        if (k < 0 || view->distance[k] != t || t - view->from[k] > FIRE_NOTED * fine) {
+            k = view->count < FIRE_STEPS ? view->count++ : FIRE_STEPS - 1;
+            view->from[k] = t;
+        }
         t = next;
         view->distance[k] = t;
         view->light[k] = light;
