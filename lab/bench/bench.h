@@ -76,7 +76,9 @@ int options_cells(double springs);
 
 /// As asked for, or 3: fewer than the default, so that a step's cost compares with that of earlier versions.
 int options_substeps(const BenchOptions *options);
-int options_steps(const BenchOptions *options); ///< of a frame
+
+/// Steps of a frame of 1/24 s: as asked for, or 20.
+int options_steps(const BenchOptions *options);
 
 // ---- command lines
 

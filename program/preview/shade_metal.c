@@ -66,7 +66,8 @@ void shape_metal(const Place *place, Point *point) {
 
 // What glows is drawn as bright as lets its colours differ: a glow is wide, so a film that is set for what it lights would
 // show it as a white disc. It glows evenly, cooler at its limb, below, where air that rises cools it most, and towards the
-// end of a rod by which it is held, that of its +z. A few thin flakes of scale lie on it, cooler than the metal; elsewhere scale has come off.
+// end of a rod by which it is held, that of its +z. A few thin flakes of scale lie on it, cooler than the metal; elsewhere
+// scale has come off.
 
 #define SHAPE_GAIN 0.147f
 #define SHAPE_MIDDLE 125.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
