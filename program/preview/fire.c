@@ -409,7 +409,8 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
 
     float shift = (0.5f - FIRE_BORDER) * gas->cell;
     fire->cell = gas->cell;
-    fire->scale = clampf(gas->cell / FIRE_SCALE_CELL, 1, 3);
+    const float fine = maxf(gas->cell / FIRE_FINE_CELL, 0.4f);
+    fire->scale = fine < 1 ? fine : clampf(gas->cell / FIRE_SCALE_CELL, 1, 3);
     fire->origin = float3_add(float3_load(gas->origin), float3(shift, shift, shift));
     const float range = logf(FLAME_HIGH / FLAME_LOW);
     fire->fading = gas->cell / (range * sqrtf(gas->cell / (2 * 9.81f)));

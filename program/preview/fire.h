@@ -84,7 +84,7 @@ typedef struct Fire {
     uint8_t *burns;   ///< [cells] whether flame may be within reach of the small eddies
     size_t brick_capacity;
     float fading;      ///< m/s: what flames lose as they rise by a cell, times their speed
-    float scale;       ///< of flames, 1 where cells are small: what burns over a wide cell has larger tongues
+    float scale;       ///< of flames, 1 over cells of 8 to 10 mm: what burns over wider cells has larger tongues
     float moment;      ///< s, time for which the eddies have risen
     Float3 daylight;   ///< of sun and sky, per unit of the smoke's albedo
     Float3 low, high;  ///< m, bounds of the bricks that are not empty
@@ -94,6 +94,7 @@ typedef struct Fire {
 } Fire;
 
 #define FIRE_SCALE_CELL 0.010f ///< m, cells above which flames are larger, in proportion
+#define FIRE_FINE_CELL 0.008f  ///< m, cells below which flames are smaller, in proportion
 #define FLAME_SEEN 0.15f       ///< a smaller value is outside of all flames
 #define FLAME_HEIGHT 0.08f     ///< m, typical height of tongues
 #define FLAME_END 0.30f        ///< m, max height of a flame

@@ -331,27 +331,35 @@ TEST(tongues_join_and_differ_in_height) {
     assert_true(wide > 12.8f * flames); // 11.8 where they do not
 }
 
-/// A fire over cells of 14 mm, as along a shirt, has larger tongues than one over small cells, with wider gaps. As narrow
-/// as others they were a fringe that was equally wide everywhere.
-TEST(wide_cells_have_larger_tongues) {
-    enum { FRAMES = 8, LOW = 24, HIGH = 56 };
+/// The mean width in mm of what is bright in a fire over cells of that size, at a few of its cells above the paper.
+static float width_of_tongues(float cell) {
+    enum { FRAMES = 8 };
     static float fire[W * H][4], mean[H][4];
+    const int low = (int)(1714 * cell), high = (int)(4000 * cell);
     float wide = 0, flames = 0;
 
     line_make(&line, 0.003f), burning_make(&paper);
-    line.gas.cell = 0.014f;
-    for (int c = 0; c < 3; c++) line.gas.origin[c] *= 0.014f / 0.008f;
+    line.gas.cell = cell;
+    for (int c = 0; c < 3; c++) line.gas.origin[c] *= cell / 0.008f;
     for (int k = 0; k < FRAMES; k++) {
         see_line(&paper.surface, &line.gas, 0.3 + k / 6.0, fire, mean, H);
-        for (int row = LOW; row < HIGH; row++)
+        for (int row = low; row < high; row++)
             for (int x = 1; x < W; x++) {
                 const float(*at)[4] = &fire[(H - 1 - row) * W + x];
                 wide += luminance(at[0]) > 0.3f, flames += luminance(at[0]) > 0.3f && !(luminance(at[-1]) > 0.3f);
             }
     }
 
-    print_message("flames are %.1f mm wide\n", (double)(wide / flames));
-    assert_true(wide > 19 * flames); // 16.4
+    print_message("over cells of %.0f mm flames are %.1f mm wide\n", (double)(1e3f * cell), (double)(wide / flames));
+    return wide / flames;
+}
+
+/// A fire over cells of 14 mm, as along a shirt, has larger tongues than one over small cells, with wider gaps. As narrow
+/// as others they were a fringe that was equally wide everywhere. One over cells of 4 mm, as over examples/macro, has
+/// smaller ones: as wide as others they were lumps that hung over the page.
+TEST(tongues_are_as_large_as_their_cells) {
+    assert_true(width_of_tongues(0.014f) > 19); // 16.4
+    assert_true(width_of_tongues(0.004f) < 5);  // 6.4
 }
 
 /// The burning rim is visible through the first 4 mm of its flames. The bar, a tenth of white paper's light and a twentieth

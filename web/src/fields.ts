@@ -1,7 +1,7 @@
 // From the library's surface and gas to what the shaders read: the fields of program/preview/mesh_in.c and fire.c.
 import type { Gas, Surface } from "singe";
 import { airborneOf } from "../view/airborne.js";
-import { refineGas, spreadHeight } from "../view/gas.js";
+import { flameScale, refineGas, spreadHeight } from "../view/gas.js";
 import { LOOK } from "../view/look.js";
 
 /** Interleaved, FLOATS for each vertex; the shaders' attributes in this order. */
@@ -108,7 +108,7 @@ const LIGHTS = 6;
 
 export interface Fire {
     size: [number, number, number]; origin: [number, number, number]; cell: number;
-    /** of flames, 1 where cells are small (fire.h) */
+    /** of flames, 1 over cells of 8 to 10 mm (fire.h) */
     scale: number;
     /** four bytes a cell: flame, height in FLAME_END times scale, smoke in 20 1/m, the gradient of flame once it is refined */
     cells: Uint8Array;
@@ -121,7 +121,7 @@ export type Lights = Float32Array;
 
 export function fireOf(gas: Gas, surface: Surface): Fire {
     const [nx, ny, nz] = gas.size, count = nx * ny * nz, flame = new Float32Array(count), rise = new Float32Array(count);
-    const thin = Math.max(gas.cell / LOOK.FLAME_THICK, 1), scale = clamp(gas.cell / LOOK.FIRE_SCALE_CELL, 1, 3);
+    const thin = Math.max(gas.cell / LOOK.FLAME_THICK, 1), scale = flameScale(gas.cell);
     const rootRate = new Float32Array(count), rootHeight = new Float32Array(count), cells = new Uint8Array(4 * count);
     const index = (x: number, y: number, z: number) => x + nx * (y + ny * z);
 

@@ -1,5 +1,7 @@
 // The gas's cells, made ready for the shader that marches through them (FIRE in shaders.js).
 
+import { LOOK } from "./look.js";
+
 const REFINED_MOST = 160_000; // cells; more stay as they are, to save the card's memory
 
 /**
@@ -29,6 +31,12 @@ export function refineGas(size, cells) {
                 if (a || b || c) values[at + 3] = Math.min(0.5 * Math.sqrt(a * a + b * b + c * c), 255);
             }
     return { size: [x, y, z], cells: values };
+}
+
+/** How large flames over such cells are, 1 over those of 8 to 10 mm: `preview_set_gas` of fire.c. @param {number} cell m */
+export function flameScale(cell) {
+    const fine = Math.max(cell / LOOK.FIRE_FINE_CELL, 0.4);
+    return fine < 1 ? fine : Math.min(Math.max(cell / LOOK.FIRE_SCALE_CELL, 1), 3);
 }
 
 /** Gives cells around flames a height, the mean of their neighbours', as far as eddies reach: `sway_cells` of fire.c. */

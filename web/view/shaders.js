@@ -328,7 +328,7 @@ uniform sampler3D fireMap;
 uniform sampler2D depthMap;
 uniform mat4 inverse_;
 uniform vec3 eye, low, high, origin, span, match_, fireDaylight;
-uniform float time, matchOn, fireScale; // fireScale: of flames, 1 where cells are small (fire.h)
+uniform float time, matchOn, fireScale; // fireScale: of flames, 1 over cells of 8 to 10 mm (fire.h)
 uniform vec4 fireLights[6];
 out vec4 colour;
 #define fireMoment time

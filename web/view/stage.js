@@ -5,9 +5,8 @@ import { gapsOf } from "./contact.js";
 import { DAY, GROUND_PLAIN, GROUND_WOOD, LIGHTS, SHAPE, SHEET_VERTEX, WALL } from "./daylight.js";
 import { Flying } from "./flying.js";
 import { FIELDS, VERTEX_BYTES } from "./frame.js";
-import { refineGas } from "./gas.js";
+import { flameScale, refineGas } from "./gas.js";
 import { FIELD, FIELD_GROUND, hex, LAYERS, ramp, SLICE, STRAND, STRAND_VERTEX, TABLE } from "./layers.js";
-import { LOOK } from "./look.js";
 import { add, apply, cross, dot, invert, length, lookAt, multiply, orthographic, perspective, placed, unit } from "./math.js";
 import * as glsl from "./shaders.js";
 import { box, sphere } from "./solids.js";
@@ -383,7 +382,7 @@ export class Stage extends Card {
         const daylight = room.sun.map((x, c) => behind * x + 0.282095 * room.ambient[c] + 0.630784 * room.ambient[18 + c]);
         this.pass("fire", fire, {
             ...shared, fireMap: this.gas, depthMap: this.depth, inverse_: invert(matrix), low: gas.corner, high: add(gas.corner, span), origin: gas.corner, span,
-            match_: [0, 0, 0], matchOn: 0, fireScale: Math.min(Math.max(gas.cell / LOOK.FIRE_SCALE_CELL, 1), 3), fireLights: lights, fireDaylight: daylight,
+            match_: [0, 0, 0], matchOn: 0, fireScale: flameScale(gas.cell), fireLights: lights, fireDaylight: daylight,
         });
     }
 
