@@ -10,7 +10,7 @@ import { ATTRIBUTES, FLOATS } from "./fields.js";
 import type { Frame } from "./messages.js";
 import { BALL, placeOf, type Place, type Point, type Sides, type Where } from "./places.js";
 import { AIRBORNE_FLOATS, AIRBORNE_LIMIT } from "../view/airborne.js";
-import { glowBytes, noiseBytes, sliceBytes } from "../view/tables.js";
+import { flameNoiseBytes, glowBytes, noiseBytes, sliceBytes } from "../view/tables.js";
 import * as glsl from "../view/shaders.js";
 
 /** Behind what lies, before what hangs. */
@@ -116,7 +116,7 @@ export class Renderer {
         const seen = { sceneMap: { value: this.sceneTarget.texture }, fireMap2: { value: this.fireTarget.texture } };
         this.passes = {
             fire: material(glsl.FULL_VERTEX, glsl.FIRE, {
-                ...this.shared, fireMap: { value: null }, depthMap: { value: this.sceneTarget.depthTexture }, inverse_: { value: new Matrix4() },
+                ...this.shared, flameNoiseMap: { value: noiseTexture(Data3DTexture, flameNoiseBytes()) }, fireMap: { value: null }, depthMap: { value: this.sceneTarget.depthTexture }, inverse_: { value: new Matrix4() },
                 low: { value: new Vector3() }, high: { value: new Vector3() }, origin: { value: new Vector3() }, span: { value: new Vector3(1, 1, 1) },
                 match_: { value: new Vector3() }, matchOn: { value: 0 }, fireScale: { value: 1 }, fireDaylight: { value: new Vector3(...LAMP.colour as Point).multiplyScalar(0.1) },
             }),

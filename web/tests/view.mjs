@@ -4,7 +4,7 @@
 // ONLY=PATTERN runs the first case and those whose title has it. SINGE=PROGRAM, build/singe without it. It burns a coarse letter first, and then all cases look at the same cache.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { mkdir, mkdtemp, rm } from "node:fs/promises";
+import { mkdir, mkdtemp, readdir, readFile, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
@@ -98,6 +98,24 @@ const CASES = {
         await click(page, "#fire");
         assert.ok(lit[0] > (await colour(page))[0] + 1, "the flames are switched off");
         await click(page, "#fire");
+    },
+    async "flames are those of the preview, tongue by tongue"(page) {
+        const out = join(work, "preview"), [width, height] = [320, 180];
+        execFileSync(SINGE, ["render", cache, "--frames", String(FRAMES), "-o", out, "--set", `preview.size=[${width}, ${height}]`, "--set", "preview.samples=8"], { stdio: "pipe" });
+        const [name] = await readdir(join(out, "frames")), preview = (await readFile(join(out, "frames", name))).toString("base64");
+        const [count, difference] = await page.evaluate(async ([preview, width, height]) => {
+            const { stage, camera } = globalThis.view, kept = [stage.canvas.width, stage.canvas.height], [w, h] = [64, 36], small = document.createElement("canvas");
+            const pen = Object.assign(small, { width: w, height: h }).getContext("2d"), picture = new Image();
+            const greens = (of) => { pen.drawImage(of, 0, 0, w, h); return pen.getImageData(0, 0, w, h).data.filter((_, i) => i % 4 === 1); };
+            picture.src = `data:image/png;base64,${preview}`;
+            await picture.decode();
+            stage.resize(width, height);
+            stage.draw(camera);
+            const here = greens(stage.canvas), there = greens(picture), bright = [...here.keys()].filter((i) => i < (w * h * 2) / 3 && Math.max(here[i], there[i]) > 110); // not the table
+            stage.resize(...kept);
+            return [bright.length, bright.reduce((sum, i) => sum + Math.abs(here[i] - there[i]), 0) / bright.length];
+        }, [preview, width, height]);
+        assert.ok(count > 50 && difference < 20, `of ${count} bright parts of the picture green differs by ${difference} of 255 in the mean`);
     },
     async "stone lies in slabs with dark joints"(page) {
         const dark = await page.evaluate(() => {

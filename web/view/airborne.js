@@ -2,6 +2,7 @@
 // thrown up, cool and go out, and small plates of char and ash are carried off and tumble down. All follows from a
 // frame's mesh and its time, so that scrubbing shows the same. Used by the page (web/src) and by `singe view`.
 import { LOOK } from "./look.js";
+import { hash } from "./math.js";
 
 /** Floats of one thing: from, to, across (m), size (m; 0: a plate at `from` with half axes `to` and `across`), temperature (K), strength of a spark or ash of a plate. */
 export const AIRBORNE_FLOATS = 12;
@@ -19,11 +20,6 @@ const leaf = (glowing, starved, burn) => {
     return alone + LOOK.STARVED * step(LOOK.STARVED_SLOW, LOOK.STARVED_FAST, starved) * step(LOOK.STARVED_BEGINS, LOOK.STARVED_FULL, burn) * (1 - alone);
 };
 
-function hash(x) {
-    x = Math.imul(x ^ (x >>> 16), 0x7feb352d);
-    x = Math.imul(x ^ (x >>> 15), 0x846ca68b);
-    return (x ^ (x >>> 16)) >>> 0;
-}
 const unit = (x) => hash(x) / 4294967296;
 
 /** What is asked of a vertex: position and rest (m), temperature (K), burn rate and its glowing part (1/s), burnt share, its gradient (1/m), and the part of the rate of char that feeds a flame. */

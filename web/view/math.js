@@ -59,3 +59,10 @@ export function apply(m, p) {
     const w = m[3] * p[0] + m[7] * p[1] + m[11] * p[2] + m[15];
     return [0, 1, 2].map((r) => (m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]) / w);
 }
+
+/** As hash_u32 of noise.h. */
+export function hash(x) {
+    x = Math.imul(x ^ (x >>> 16), 0x7feb352d);
+    x = Math.imul(x ^ (x >>> 15), 0x846ca68b);
+    return (x ^ (x >>> 16)) >>> 0;
+}

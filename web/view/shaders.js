@@ -1,16 +1,17 @@
 // Shared by the page (web/src) and `singe view` (web/view): GLSL after program/preview. How paper, embers and flames look is
 // translated from its C (look.js); here are what that calls, light, ground and film.
 import { FLAME, PAPER } from "./look.js";
+import { FLAME_NOISE } from "./tables.js";
 
-/** Four smooth noises from -1 to 1, lattice size 1, by one look into a texture of random corners. */
-export const NOISE = /* glsl */ `
+/** Four smooth noises from -1 to 1, lattice size 1, by one look into a texture of random corners, so many a side, repeated. */
+const noise = (map, side) => /* glsl */ `
 precision highp float;
 precision highp sampler3D;
-uniform sampler3D noiseMap; // 32 corners a side, repeated
+uniform sampler3D ${map};
 vec4 noise4(vec3 p) {
     vec3 i = floor(p), f = p - i;
     f = f * f * (3.0 - 2.0 * f);
-    return texture(noiseMap, (i + f + 0.5) / 32.0) * 2.0 - 1.0;
+    return texture(${map}, (i + f + 0.5) / ${side}.0) * 2.0 - 1.0;
 }
 float stepf(float a, float b, float x) { return smoothstep(a, b, x); }
 float noise3(vec3 p, float seed) { return noise4(p + seed * vec3(7.31, 3.17, 5.73)).r; }
@@ -21,6 +22,8 @@ vec3 float3_scale(vec3 a, float b) { return a * b; }
 vec3 float3_mad(vec3 a, vec3 b, float s) { return a + b * s; }
 vec3 float3_unit_or(vec3 a, vec3 b) { return dot(a, a) > 1e-30 ? normalize(a) : b; }
 `;
+
+export const NOISE = noise("noiseMap", 32);
 
 /** Blackbodies: row 0 from 780 K to 2100 K as embers, row 1 flames from their coolest to their hottest. */
 export const GLOW = /* glsl */ `
@@ -322,7 +325,7 @@ void main() {
 }`;
 
 /** Marches through flame and smoke, as fire_march.c does. Light, and in alpha what is left of what lies behind. */
-export const FIRE = /* glsl */ `${NOISE}${GLOW}
+export const FIRE = /* glsl */ `${noise("flameNoiseMap", FLAME_NOISE)}${GLOW}
 in vec2 at;
 uniform sampler3D fireMap;
 uniform sampler2D depthMap;
@@ -381,7 +384,7 @@ void main() {
     vec3 a = (low - eye) / ray, b = (high - eye) / ray, near_ = min(a, b), far_ = max(a, b);
     float t = max(max(max(near_.x, near_.y), near_.z), 0.0), end = min(min(min(far_.x, far_.y), far_.z), reach);
     vec3 light = vec3(0.0);
-    float blur = FIRE_SOFT * length(dFdx(ray)) * 0.5, clear = 1.0, jitter = fract(52.9829 * fract(dot(gl_FragCoord.xy, vec2(0.06711, 0.00584)) + 0.618 * fract(time * 7.0)));
+    float blur = FIRE_SOFT * length(dFdx(ray)) * 0.5, clear = 1.0, jitter = fract(0.5 * mod(gl_FragCoord.x + gl_FragCoord.y - 1.0, 2.0) + 0.25 * mod(gl_FragCoord.y - 0.5, 2.0) + 0.618 * fract(time * 7.0));
     if (t < end) {
         float short_ = max((end - t) / 180.0, 0.0016), pace = 2.0 * short_;
         FirePoint here = FirePoint(vec3(0.0), vec3(0.0), FIRE_OUTSIDE, 0.0, 0.0, 0.0), there;
@@ -480,7 +483,7 @@ float curve(float x) {
     return f <= 0.0031308 ? 12.92 * f : 1.055 * pow(f, 1.0 / 2.4) - 0.055;
 }
 void main() {
-    vec4 fire = fireSeen(0.75);
+    vec4 fire = fireSeen(0.5);
     vec3 c = (texture(sceneMap, at).rgb * fire.a + fire.rgb) * exposure + 0.14 * texture(halo, at).rgb + 0.10 * texture(glare, at).rgb;
     vec2 d = (at - 0.5) * vec2(resolution.x / resolution.y, 1.0);
     c *= 1.0 - vignette * smoothstep(0.35, 1.05, length(d));

@@ -11,7 +11,7 @@ import { add, apply, cross, dot, invert, length, lookAt, multiply, orthographic,
 import * as glsl from "./shaders.js";
 import { box, sphere } from "./solids.js";
 import { COLOURS, placesOf } from "./strands.js";
-import { glowBytes, noiseBytes, sliceBytes } from "./tables.js";
+import { FLAME_NOISE, flameNoiseBytes, glowBytes, noiseBytes, sliceBytes } from "./tables.js";
 
 const SHADOW = 2048;
 const COPY = /* glsl */ `precision highp float;
@@ -36,6 +36,7 @@ export class Stage extends Card {
         };
         const { side, bytes } = noiseBytes(), glow = glowBytes();
         this.noise = this.texture3d(side, side, side, bytes, gl.REPEAT);
+        this.flameNoise = this.texture3d(FLAME_NOISE, FLAME_NOISE, FLAME_NOISE, flameNoiseBytes().bytes, gl.REPEAT);
         this.slices = this.texture3d(side, side, 4, sliceBytes().bytes, gl.REPEAT, gl.TEXTURE_2D_ARRAY);
         this.glow = this.texture2d(glow.width, 2, gl.RGBA16F, gl.RGBA, gl.FLOAT, glow.values);
         this.ramps = Object.fromEntries(Object.entries(LAYERS).map(([name, layer]) => [name, this.texture2d(256, 1, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, ramp(layer))]));
@@ -381,8 +382,8 @@ export class Stage extends Card {
         const behind = 0.28 + 0.3 * Math.max(dot(room.towards, ahead), 0) ** 2;
         const daylight = room.sun.map((x, c) => behind * x + 0.282095 * room.ambient[c] + 0.630784 * room.ambient[18 + c]);
         this.pass("fire", fire, {
-            ...shared, fireMap: this.gas, depthMap: this.depth, inverse_: invert(matrix), low: gas.corner, high: add(gas.corner, span), origin: gas.corner, span,
             match_: [0, 0, 0], matchOn: 0, fireScale: flameScale(gas.cell), fireLights: lights, fireDaylight: daylight,
+            ...shared, flameNoiseMap: this.flameNoise, fireMap: this.gas, depthMap: this.depth, inverse_: invert(matrix), low: gas.corner, high: add(gas.corner, span), origin: gas.corner, span,
         });
     }
 

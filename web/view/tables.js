@@ -1,5 +1,6 @@
 // Tables that the shaders look into, shared by the page (web/src) and `singe view`.
 import { LOOK } from "./look.js";
+import { hash } from "./math.js";
 
 /** Random corners of a cube, four bytes each, the same on every page. */
 export function noiseBytes() {
@@ -23,6 +24,29 @@ export function sliceBytes() {
     }
     return { side, bytes: means };
 }
+
+export const FLAME_NOISE = 16; // FIRE_NOISE of fire.h
+
+/** The noise of flames and smoke, FLAME_NOISE corners a side: the very numbers that the preview has (fire.c), four each. */
+export function flameNoise() {
+    const side = FLAME_NOISE, values = new Float32Array(4 * side ** 3);
+    const corner = (x, y, z, c, size) => hash(4 * (x % side + side * (y % side + side * (z % side))) + c + 1 + (size - 1) * 65536) / 2 ** 31 - 1;
+    const mix = (a, b, f) => a + (b - a) * f;
+    const hills = (x, y, z, size) => { // of the third number
+        const low = size / 2, u = (x % size) / size, v = (y % size) / size, w = (z % low) / low, i = x - (x % size), j = y - (y % size), k = z - (z % low);
+        const row = (y, z) => mix(corner(i, y, z, 2, size), corner(i + size, y, z, 2, size), u), layer = (z) => mix(row(j, z), row(j + size, z), v);
+        return mix(layer(k), layer(k + low), w);
+    };
+    for (let z = 0, at = 0; z < side; z++)
+        for (let y = 0; y < side; y++)
+            for (let x = 0; x < side; x++, at += 4) {
+                for (let c = 0; c < 4; c++) values[at + c] = corner(x, y, z, c, 1);
+                const sum = values[at + 2] + LOOK.NOISE_LARGER * (hills(x, y, z, 2) + LOOK.NOISE_LARGER * hills(x, y, z, 4));
+                values[at + 2] = Math.min(Math.max(LOOK.NOISE_SIZES * sum, -1), 1);
+            }
+    return values;
+}
+export const flameNoiseBytes = () => ({ side: FLAME_NOISE, bytes: Uint8Array.from(flameNoise(), (x) => Math.round(127.5 * (x + 1))) });
 
 /** Planck's law by the eye's three curves (blackbody.c), linear Rec. 709 as a camera balanced for 3400 K sees it. */
 function blackbody(kelvin) {
