@@ -98,6 +98,7 @@ typedef struct Fire {
 #define FLAME_SEEN 0.15f       ///< a smaller value is outside of all flames
 #define FLAME_HEIGHT 0.08f     ///< m, typical height of tongues
 #define FLAME_END 0.30f        ///< m, max height of a flame
+#define FLAME_MOST 2.0f        ///< what eddies feed is more than a full flame, and is drawn elsewhere up to so much
 
 // m, max displacement by eddies
 #define FIRE_SWAY 0.021f

@@ -2,8 +2,8 @@
 //
 //   PackHead
 //   PackVertex [vertex_count], PackShape [shape_count], uint32_t triangles [triangle_count][3]
-//   uint8_t cells [size[2]][size[1]][size[0]][4]: flame; its height above the paper in FLAME_END times Fire.scale, as far
-//                                                 as eddies bring it; smoke in PACK_SMOKE; 0
+//   uint8_t cells [size[2]][size[1]][size[0]][4]: flame in FLAME_MOST; its height above the paper in FLAME_END times
+//                                                 Fire.scale, as far as eddies bring it; smoke in PACK_SMOKE; 0
 //
 // The gas is cut to the box in which there is something to see.
 //
@@ -215,7 +215,7 @@ SingeResult preview_pack(Preview *preview, const SingeSurface *surface, double t
         const size_t z = i / head.size[0] / head.size[1] + (size_t)first[2];
         const size_t at = x + (size_t)fire->size[0] * (y + (size_t)fire->size[1] * z);
         const FireCell *cell = &fire->cells[at];
-        cell_out[0] = byte_part(cell->flame, 1);
+        cell_out[0] = byte_part(cell->flame, FLAME_MOST);
         cell_out[1] = byte_part(fire->sway[at][2], FLAME_END * fire->scale);
         cell_out[2] = byte_part(cell->smoke, PACK_SMOKE);
         cell_out[3] = 0;

@@ -1,6 +1,6 @@
 // Between the page and its worker.
 import type { FileQuads, Surface } from "singe";
-import type { Fire, Lights } from "./fields.js";
+import type { Fire, Lights } from "./fire.js";
 import type { Point } from "./places.js";
 import type { Settings, Stroke } from "./scene.js";
 

@@ -1,6 +1,7 @@
 // The simulation, away from the page's own thread. The page asks for one frame at a time, so nothing queues up.
 import { load, type Handle, type Simulation, type Singe, type Texture } from "singe";
-import { airborneAt, fireOf, lightsOf, meshOf, refined } from "./fields.js";
+import { airborneAt, meshOf } from "./fields.js";
+import { fireOf, lightsOf, refined } from "./fire.js";
 import { MARKS, type FromWorker, type Shape, type ToWorker } from "./messages.js";
 import { BALL, placeOf, type Point, type Where } from "./places.js";
 import { BREATH, gridOf, MATCH, materialOptions, MOUTH, PIN_RADIUS, simulationOptions, sourceOf, TIME_STEP, type Settings, type Stroke } from "./scene.js";
@@ -213,7 +214,7 @@ function plannedMatch(time: number): Point | null {
 
 function frame(steps: number, ms: number): void {
     const surface = sim!.draw(), view = sim!.view(), stats = sim!.stats();
-    const mesh = meshOf(surface, view.time, settings.pace), gas = sim!.gas(), cells = gas ? fireOf(gas, surface) : null;
+    const mesh = meshOf(surface, view.time, settings.pace), gas = sim!.gas(), cells = gas ? fireOf(gas, surface, view.time) : null;
     const lights = lightsOf(cells, mesh), airborne = airborneAt(mesh, view.time).slice(), fire = cells && refined(cells), positions = view.position;
     const places = pins.map(({ rest, handle }) => { // beside the first particle that the pin holds
         const particle = sim!.pinParticles(handle)[0] ?? 0;

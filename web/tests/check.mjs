@@ -12,12 +12,14 @@ import { createRequire } from "node:module";
 import { availableParallelism, loadavg, tmpdir } from "node:os";
 import { dirname } from "node:path";
 import { promisify } from "node:util";
+import { build } from "esbuild";
 import { validateBytes } from "gltf-validator";
 import { chromium } from "playwright-core";
 import { serve } from "../serve.mjs";
 import { AIRBORNE_FLOATS, airborneOf } from "../view/airborne.js";
 import { gapsOf, REACH } from "../view/contact.js";
 import { refineGas } from "../view/gas.js";
+import { LOOK } from "../view/look.js";
 import { Pixels } from "../view/pixels.js";
 import { placesOf, readCells } from "../view/strands.js";
 import { CHROMIUM, CHROMIUM_ARGS, isCard, processorTime, turned } from "./browsers.mjs";
@@ -573,6 +575,25 @@ const CASES = {
         assert.deepEqual(fine.size, [12, 10, 8]);
         assert.ok(worst < 25 && worstBefore > 80, `${worst} of 255 beside the spline, ${worstBefore} before`);
         assert.ok(fine.cells[4 * (6 + 12 * (4 + 10 * 2)) + 3] > 10); // the gradient
+    },
+    async "the page's flames stand on what burns, and eddies feed some and starve others"() {
+        const bundle = await build({ entryPoints: [new URL("../src/fire.ts", import.meta.url).pathname], bundle: true, write: false, format: "esm", platform: "node", logLevel: "error" });
+        const { fireOf } = await import(`data:text/javascript,${encodeURIComponent(bundle.outputFiles[0].text)}`);
+        // a line along x burns in the second layer of cells of 1 cm, and gas from two cells above it on
+        const side = 24, count = side ** 3, at = (x, y, z) => x + side * (y + side * z), flame = new Float32Array(count), velocity = new Float32Array(3 * count);
+        for (let i = 0; i < count; i++) velocity[3 * i + 2] = 1;
+        for (let x = 0; x < side; x++) for (let y = 11; y < 14; y++) for (let z = 4; z < 8; z++) flame[at(x, y, z)] = 1.5e6;
+        const gas = { size: [side, side, side], cell: 0.01, origin: [0, 0, 0], flame, velocity, smoke: new Float32Array(count) };
+        const surface = { vertex_count: side, burn_rate: new Float32Array(side).fill(1), mass: new Float32Array(side).fill(1), char_fraction: new Float32Array(side), ash_fraction: new Float32Array(side), position: Float32Array.from({ length: 3 * side }, (_, i) => [0.005 + 0.01 * Math.floor(i / 3), 0.125, 0.015][i % 3]) };
+        const { cells, burns, scale } = fireOf(gas, surface, 2.5), height = (i) => (cells[4 * i + 1] / 255) * LOOK.FLAME_END * scale;
+        for (let x = 4; x < side - 4; x++) {
+            assert.ok(burns[at(x, 12, 2)] > 0.5 && burns[at(x, 17, 2)] === 0, `${burns[at(x, 12, 2)]} burns below, ${burns[at(x, 17, 2)]} aside`);
+            assert.ok(Math.abs(height(at(x, 12, 4)) - 0.03) < 0.002, `${height(at(x, 12, 4))} m`);
+        }
+        const shares = (z) => Array.from({ length: side }, (_, x) => (cells[4 * at(x, 12, z)] * LOOK.FLAME_MOST) / 255 / burns[at(x, 12, z)]), high = shares(7), low = shares(1);
+        assert.ok(Math.max(...high) > 1.4 && Math.min(...high) < 0.7, `${high}`);
+        assert.ok(Math.max(...low) < 1.02 && Math.min(...low) > 0.98, `${low}`); // at the paper they are as they were
+        assert.deepEqual(fireOf(gas, surface, 2.5).cells, cells);
     },
     async "contact tells what is near: the ground, a ball, another sheet, its own far parts"() {
         // strips of 6 vertices along x, 2 mm apart at rest and where they lie

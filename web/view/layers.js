@@ -1,5 +1,6 @@
 // The layers: fields of the sheets by colour, springs and gas, their GLSL, and what stands under their colours.
 import { REACH } from "./contact.js";
+import { LOOK } from "./look.js";
 import { COLOURS } from "./strands.js";
 
 export const TABLE = 1024; // texels of a row of a table
@@ -71,7 +72,7 @@ out vec4 colour;
 void main() {
     vec3 at = (vPosition - origin) / span, off = abs(at - 0.5), wide = fwidth(at);
     if (any(greaterThan(off, vec3(0.5)))) discard;
-    vec4 c = texture(fireMap, at);
+    vec4 c = texture(fireMap, at) * vec4(${LOOK.FLAME_MOST.toFixed(1)}, vec3(1.0));
     float burning = smoothstep(0.01, 0.12, c.r), grey = 0.85 * (1.0 - exp(-2.5 * c.b)), rim = any(greaterThan(off, 0.5 - 1.5 * wide)) ? 0.5 : 0.0;
     vec3 smoke = vec3(0.42, 0.40, 0.39);
     colour = vec4(mix(smoke, texture(colours, vec2(c.r, 0.5)).rgb, burning), max(max(burning, grey), max(rim, 0.10)));

@@ -339,7 +339,7 @@ ${FLAME}
 struct Gas { float flame, height, smoke, slope; };
 /** Of the gas: flame, height above the paper (m), smoke (1/m), gradient of flame (1/m). */
 Gas gas(vec3 p) {
-    vec4 c = texture(fireMap, (p - origin) / span) * vec4(1.0, FLAME_END * fireScale, 20.0, float(textureSize(fireMap, 0).x) / span.x);
+    vec4 c = texture(fireMap, (p - origin) / span) * vec4(FLAME_MOST, FLAME_END * fireScale, 20.0, FLAME_MOST * float(textureSize(fireMap, 0).x) / span.x);
     return Gas(c.x, c.y, c.z, c.w);
 }
 Noise noise_at(vec3 q) { vec4 n = noise4(q); return Noise(n.x, n.y, n.z, n.w); }

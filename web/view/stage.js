@@ -382,8 +382,8 @@ export class Stage extends Card {
         const behind = 0.28 + 0.3 * Math.max(dot(room.towards, ahead), 0) ** 2;
         const daylight = room.sun.map((x, c) => behind * x + 0.282095 * room.ambient[c] + 0.630784 * room.ambient[18 + c]);
         this.pass("fire", fire, {
-            match_: [0, 0, 0], matchOn: 0, fireScale: flameScale(gas.cell), fireLights: lights, fireDaylight: daylight,
             ...shared, flameNoiseMap: this.flameNoise, fireMap: this.gas, depthMap: this.depth, inverse_: invert(matrix), low: gas.corner, high: add(gas.corner, span), origin: gas.corner, span,
+            match_: [0, 0, 0], matchOn: 0, fireScale: flameScale(gas.cell), fireLights: lights, fireDaylight: daylight,
         });
     }
 
