@@ -226,7 +226,7 @@ void main() {
     if (fine.x > 0.0) fibre += 0.5 * fine.x * noise2(u * 31.0, y * 500.0, 0.0).a;
     if (fine.y > 0.0) fibre += 0.45 * fine.y * noise2(u * 62.0, y * 1000.0, 1.0).r;
     if (fine.z > 0.0) fibre += 0.4 * fine.z * noise2(u * 125.0, y * 2000.0, 1.0).b;
-    float within = fract(year), slope = max(abs(aside) / radius, 0.12), fall = clamp(1.2 * size * slope / wide, 0.03, 0.4), sharp = visible(0.0035 / max(slope, 0.3), size);
+    float within = fract(year), slope = max(abs(aside) / radius, 0.12), fall = clamp(1.2 * size * slope / wide, 0.03, 0.4), sharp = visible(0.0035 / max(slope, 0.3), 2.0 * size);
     float late = stepf(0.25, 1.0 - fall, within) * (1.0 - stepf(1.0 - fall, 1.0, within)), strength = 0.35 + 0.65 * hash(vec2(floor(year), tone));
     late = mix(0.33, late, sharp) * mix(0.65, strength, sharp);
 
