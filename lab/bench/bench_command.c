@@ -131,7 +131,7 @@ int command_bench(int argc, char **argv) {
         return EXIT_GOOD;
     }
 
-    const char *word = strcmp(argv[0], "--compare") == 0 ? "compare" : argv[0];
+    const char *word = argv[0];
     int m = 0;
     while (m < MEASUREMENTS && strcmp(measurements[m].name, word) != 0) m++;
 
