@@ -1,15 +1,11 @@
-// A decimal number is M 10^e with an integer M. The nearest binary number with p bits is
-//
-//     q 2^k,  q = round(M 10^e / 2^k),  2^(p-1) <= q < 2^p,
-//
-// with k at least the exponent of the smallest subnormal. The slow path finds q by exact long division of big integers.
-// The fast path computes M 10^e in double precision (M of up to 19 digits, |e| <= 22, relative error below 2^-51) and
-// uses it if that error cannot change the rounding to a float.
+// A decimal number is M 10^e with an integer M. The fast path of floats computes M 10^e in double precision (M of up to 19
+// digits, |e| <= 22, relative error below 2^-51) and uses it if that error cannot change the rounding to a float.
 #include "formats/number.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 // ---- the text
@@ -96,117 +92,24 @@ static NumberStatus decimal_read(const uint8_t **at, const uint8_t *end, Decimal
     return NUMBER_OK;
 }
 
-// ---- big integers, little end first, of up to 4096 + 64 bits: 10^1130 is the largest needed
-
-enum { BIG_WORDS = 136 };
-
-typedef struct Big {
-    int count; // words in use; the highest is not zero
-    uint32_t words[BIG_WORDS];
-} Big;
-
-static void big_multiply_add(Big *a, uint32_t factor, uint32_t summand) {
-    uint64_t carry = summand;
-    for (int i = 0; i < a->count; i++) {
-        carry += (uint64_t)a->words[i] * factor;
-        a->words[i] = (uint32_t)carry;
-        carry >>= 32;
-    }
-
-    if (carry && a->count < BIG_WORDS) a->words[a->count++] = (uint32_t)carry;
-}
-
-static void big_times_power_of_ten(Big *a, int power) {
-    for (; power >= 9; power -= 9) big_multiply_add(a, 1000000000u, 0);
-    for (; power > 0; power--) big_multiply_add(a, 10, 0);
-}
-
-static void big_shift_left(Big *a, int bits) {
-    int words = bits / 32;
-    if (a->count == 0 || a->count + words + 1 > BIG_WORDS) return; // the second never happens: see above
-    memmove(a->words + words, a->words, (size_t)a->count * sizeof *a->words);
-    memset(a->words, 0, (size_t)words * sizeof *a->words);
-    a->count += words;
-    if (bits % 32) big_multiply_add(a, (uint32_t)1 << bits % 32, 0);
-}
-
-static int big_bits(const Big *a) {
-    int bits = 32 * a->count;
-    if (a->count)
-        for (uint32_t top = a->words[a->count - 1]; !(top & 0x80000000u); top <<= 1) bits--;
-    return bits;
-}
-
-static bool big_less(const Big *a, const Big *b) {
-    if (a->count != b->count) return a->count < b->count;
-    for (int i = a->count - 1; i >= 0; i--)
-        if (a->words[i] != b->words[i]) return a->words[i] < b->words[i];
-    return false;
-}
-
-// ---- rounding
-
-// The magnitude of the number, exactly rounded to `bits` bits.
-static double decimal_round(const Decimal *number, int bits, int lowest) {
-    int count = number->digit_count < EXACT_DIGITS ? number->digit_count : EXACT_DIGITS;
-    int exponent = number->exponent + (number->digit_count - count);
-    if (number->digit_count == 0 || exponent + count < -330) return 0;
-    if (exponent + count > 310) return INFINITY;
-
-    Big over = {0}, under = {.count = 1, .words = {1}};
-    int taken = 0;
-
-    for (const uint8_t *p = number->digits; p < number->digits_end && taken < count; p++)
-        if (*p != '.') {
-            uint32_t digit = (uint32_t)(*p - '0');
-            if (over.count) big_multiply_add(&over, 10, digit);
-            else {
-                over.count = 1;
-                over.words[0] = digit;
-            }
-
-            taken++;
-        }
+/// The magnitude of the number, exactly rounded to a float or to a double. libc reads its digits without their point, so
+/// that no locale matters.
+static double decimal_round(const Decimal *number, bool single) {
+    char text[EXACT_DIGITS + 24];
+    int count = 0;
+    if (!number->digits) return 0;
+    for (const uint8_t *p = number->digits; p < number->digits_end && count < EXACT_DIGITS; p++)
+        if (*p != '.') text[count++] = (char)*p;
 
     // digits beyond 800 can only break a tie
-    if (number->digit_count > count) big_multiply_add(&over, 10, 1), exponent--;
-    if (exponent >= 0) big_times_power_of_ten(&over, exponent);
-    else big_times_power_of_ten(&under, -exponent);
-
-    // over 2^shift / under lies in (2^bits, 2^(bits + 2))
-    int shift = bits + 1 - (big_bits(&over) - big_bits(&under));
-    if (shift > 0) big_shift_left(&over, shift);
-    else big_shift_left(&under, -shift);
-    big_shift_left(&under, bits + 1);
-
-    uint64_t quotient = 0;
-    for (int i = 0; i < bits + 2; i++) {
-        quotient <<= 1;
-        if (!big_less(&over, &under)) {
-            int64_t borrow = 0;
-            for (int k = 0; k < over.count; k++) {
-                borrow += (int64_t)over.words[k] - (k < under.count ? under.words[k] : 0);
-                over.words[k] = (uint32_t)borrow;
-                borrow >>= 32;
-            }
-            while (over.count && over.words[over.count - 1] == 0) over.count--;
-            quotient |= 1;
-        }
-
-        big_shift_left(&over, 1);
+    int exponent = number->exponent + (number->digit_count - count);
+    if (number->digit_count > count) {
+        text[count++] = '1';
+        exponent--;
     }
 
-    // rounds quotient 2^-shift (a little more if `rest`) to `bits` bits, ties to even; the last bit is worth at least 2^lowest
-    int have = 0;
-    for (uint64_t q = quotient; q; q >>= 1) have++;
-    int drop = have - bits;
-    if (drop - shift < lowest) drop = lowest + shift;
-    if (drop > 62) return 0;
-
-    uint64_t low = quotient & (((uint64_t)1 << drop) - 1), halfway = (uint64_t)1 << (drop - 1);
-    uint64_t kept = quotient >> drop;
-    if (low > halfway || (low == halfway && ((over.count > 0) || (kept & 1)))) kept++;
-    return ldexp((double)kept, drop - shift);
+    snprintf(text + count, sizeof text - (size_t)count, "e%d", exponent);
+    return single ? (double)strtof(text, NULL) : strtod(text, NULL);
 }
 
 NumberStatus number_float(const uint8_t **at, const uint8_t *end, float *value) {
@@ -234,9 +137,8 @@ NumberStatus number_float(const uint8_t **at, const uint8_t *end, float *value) 
     }
 
     if (!fast) {
-        double exact = decimal_round(&number, 24, -149);
-        if (exact > 3.4028234663852886e38) return NUMBER_RANGE;
-        result = (float)exact;
+        result = (float)decimal_round(&number, true);
+        if (isinf(result)) return NUMBER_RANGE;
     }
 
     *value = number.negative ? -result : result;
@@ -250,7 +152,7 @@ NumberStatus number_double(const uint8_t **at, const uint8_t *end, double *value
     NumberStatus status = decimal_read(&p, end, &number);
 
     if (status) return status;
-    double result = decimal_round(&number, 53, -1074);
+    double result = decimal_round(&number, false);
     if (isinf(result)) return NUMBER_RANGE;
     *value = number.negative ? -result : result;
     *at = p;

@@ -49,33 +49,6 @@ static const DimensionRow dimensions[DIM_COUNT] = {
     [DIM_FRAME_RATE] = {"frame rate", {{"1/s", 1, 0}, {"fps", 1, 0}, {"Hz", 1, 0}}},
 };
 
-static bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/// The length of a decimal number at the start of a text; 0 if there is none.
-static size_t number_length(const char *text) {
-    const char *c = text + (*text == '+' || *text == '-');
-    const char *digits = c;
-    while (is_digit(*c)) c++;
-    size_t count = (size_t)(c - digits);
-
-    if (*c == '.') {
-        const char *point = ++c;
-        while (is_digit(*c)) c++;
-        count += (size_t)(c - point);
-    }
-
-    if (!count) return 0;
-    if (*c == 'e' || *c == 'E') {
-        const char *power = c + 1 + (c[1] == '+' || c[1] == '-');
-        if (is_digit(*power)) {
-            while (is_digit(*power)) power++;
-            c = power;
-        }
-    }
-
-    return (size_t)(c - text);
-}
-
 /// Other spellings of parts of unit names. Longer spellings come first.
 static const struct Spelling {
     const char *piece, *text;
@@ -107,13 +80,12 @@ static bool unit_spelt(const char *text, const char *name) {
 }
 
 NumberFault quantity_read(const char *text, Dimension dimension, double *value) {
-    const size_t length = number_length(text);
-    const uint8_t *at = (const uint8_t *)text, *end = at + length;
+    const uint8_t *at = (const uint8_t *)text;
     double bare = 0;
-    if (!length || number_double(&at, end, &bare) != NUMBER_OK || at != end) return NUMBER_NOT_ONE;
+    if (number_double(&at, at + strlen(text), &bare) != NUMBER_OK) return NUMBER_NOT_ONE;
 
     // without a unit it is in the dimension's first
-    const char *spelt = text + length + strspn(text + length, " ");
+    const char *spelt = (const char *)at + strspn((const char *)at, " ");
     const Unit *units = dimensions[dimension].units;
     int i = 0;
 
