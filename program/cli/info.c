@@ -16,63 +16,34 @@
 
 // ---- the record
 
-/// A folder's run.json.
+/// What a folder's record says.
 typedef struct Book {
-    Bytes bytes;
-    char *name, *result, *version, *scene;
-    long frames, done;
+    JobRecord record;
+    char *name;
+    int frames, done;
 } Book;
 
-/// A member that is a string, from malloc; "" if there is none.
-static char *text_member(const char *json, size_t size, const char *name) {
-    const char *value;
-    size_t length;
-    char *text = text_json_member(json, size, name, &value, &length) ? text_json_unquote(value, length) : NULL;
-    return text ? text : text_format("%s", "");
-}
-
-/// A member that is a whole number; 0 if there is none.
-static long number_member(const char *json, size_t size, const char *name) {
-    const char *value;
-    size_t length;
-    char text[16];
-    if (!text_json_member(json, size, name, &value, &length) || length >= sizeof text) return 0;
-    snprintf(text, sizeof text, "%.*s", (int)length, value);
-    const long number = strtol(text, NULL, 10);
-    return number >= 0 && number <= 1000000 ? number : 0;
-}
-
 static void book_close(Book *book) {
-    bytes_free(&book->bytes);
+    job_record_close(&book->record);
     free(book->name);
-    free(book->result);
-    free(book->version);
-    free(book->scene);
-    *book = (Book){0};
 }
 
 static ExitCode book_open(Book *book, Console *console, const char *folder) {
-    SingeError error = {0};
     *book = (Book){0};
-    char *path = text_format("%s/run.json", folder);
-    const SingeResult result = file_read(path, (SingeAllocator){0}, &book->bytes, &error);
-    if (result) console_result(console, &error);
+    const ExitCode code = job_record_open(&book->record, console, folder);
+    if (code) return EXIT_INPUT;
+    book->name = text_json_words(book->record.json, "name");
+    book->frames = text_json_count(book->record.json, "frames");
+    book->done = text_json_count(book->record.json, "frames_done");
+    const bool good = book->name && value_names_files(book->name) && book->frames > 0;
+    return good ? EXIT_GOOD : job_record_refuse(&book->record, console);
+}
 
-    const char *json = (const char *)book->bytes.data;
-    const size_t size = book->bytes.size;
-    if (!result) {
-        book->name = text_member(json, size, "name");
-        book->result = text_member(json, size, "result");
-        book->version = text_member(json, size, "version");
-        book->scene = text_member(json, size, "scene_file");
-        book->frames = number_member(json, size, "frames");
-        book->done = number_member(json, size, "frames_done");
-    }
-
-    const bool good = !result && value_names_files(book->name) && book->frames > 0;
-    if (!result && !good) job_refuse_record(console, path);
-    free(path);
-    return good ? EXIT_GOOD : EXIT_INPUT;
+/// Prints a member that is a string, as words or as a path.
+static void print_words(const char *before, JsonText object, const char *name, bool path) {
+    char *text = text_json_words(object, name);
+    printf("%s%s", before, !text ? "" : path ? shown_path(text).text : shown(text).text);
+    free(text);
 }
 
 // ---- info
@@ -135,21 +106,20 @@ int command_info(int argc, char **argv) {
     SingeError error = {0};
     SingeResult result = SINGE_OK;
     double bytes = 0, shared = 0;
-    printf("%-13s %s, by singe %s\n", "run", shown(book.result).text, shown(book.version).text);
-    printf("%-13s %s, from %s\n", "scene", shown(book.name).text, shown_path(book.scene).text);
+    JsonText at = book.record.json, from;
+    print_words("run           ", at, "result", false);
+    print_words(", by singe ", at, "version", false);
+    print_words("\nscene         ", at, "name", false);
+    print_words(", from ", at, "scene_file", true);
+    putchar('\n');
 
-    const char *json = (const char *)book.bytes.data, *from;
-    size_t size = book.bytes.size, length;
-    for (int depth = 0; depth < 1000 && text_json_member(json, size, "from", &from, &length); depth++) {
-        char *parent = text_member(from, length, "folder");
-        printf("%-13s frame %ld of %s\n", depth ? "  itself from" : "branch from", number_member(from, length, "frame"),
-               shown_path(parent).text);
-        free(parent);
-        json = from;
-        size = length;
+    for (int depth = 0; depth < 1000 && text_json_member(at, "from", &from); depth++) {
+        printf("%-13s frame %d", depth ? "  itself from" : "branch from", text_json_count(from, "frame"));
+        print_words(" of ", from, "folder", true);
+        putchar('\n');
+        at = from;
     }
-
-    printf("%-13s %ld\n", "frames asked", book.frames);
+    printf("%-13s %d\n", "frames asked", book.frames);
     for (int k = 0; k < FOLDER_COUNT && !result; k++) {
         Kind kind = {0};
         result = folder_each(&folder, k, take_file, &kind, &error);
@@ -233,9 +203,9 @@ int command_clean(int argc, char **argv) {
     int removed = 0;
     SingeResult result = lock_take(&cache, folder.cache_lock, "frames", false, &console, &error);
     if (!result) result = lock_take(&pictures, folder.pictures_lock, "pictures", false, &console, &error);
-    if (!result) result = folder_thin(&folder, options.every, (int)book.done, &removed, &error);
+    if (!result) result = folder_thin(&folder, options.every, book.done, &removed, &error);
     if (result) console_result(&console, &error);
-    else console_note(&console, "removed %d files of %ld frames in %s", removed, book.done, folder.path);
+    else console_note(&console, "removed %d files of %d frames in %s", removed, book.done, folder.path);
 
     lock_release(&pictures);
     lock_release(&cache);

@@ -208,68 +208,62 @@ ExitCode job_open(Job *job, Console *console, const char *scene_path, const SetL
     return code ? code : job_load(job, console, 0);
 }
 
-ExitCode job_parse(Job *job, Console *console, const char *name, const char *text, size_t size, const char *folder,
+ExitCode job_parse(Job *job, Console *console, const char *name, JsonText scene, const char *folder,
                    const SetList *sets, int threads) {
     SceneMessages messages = {0};
     *job = (Job){0};
     set_hooks(job, console, threads);
-    SingeResult result = scene_parse(name, text, size, folder, sets->items, sets->count, &job->scene, &messages);
+    SingeResult result =
+        scene_parse(name, scene.text, scene.size, folder, sets->items, sets->count, &job->scene, &messages);
     const ExitCode code = job_tell(job, console, result, &messages);
     return code ? code : job_load(job, console, 0);
 }
 
-char *job_recorded_path(const char *folder) {
-    SingeError error;
-    Bytes bytes = {0};
-    char *record = text_format("%s/run.json", folder), *path = NULL;
-    if (file_read(record, (SingeAllocator){0}, &bytes, &error) == SINGE_OK) {
-        const char *json = (const char *)bytes.data, *value[2];
-        size_t size[2];
-        if (text_json_member(json, bytes.size, "scene_folder", &value[0], &size[0]) &&
-            text_json_member(json, bytes.size, "scene_file", &value[1], &size[1])) {
-            char *base = text_json_unquote(value[0], size[0]), *file = text_json_unquote(value[1], size[1]);
-            const char *slash = file ? strrchr(file, '/') : NULL;
-            if (base && file) path = text_format("%s/%s", base, slash ? slash + 1 : file);
-            free(base);
-            free(file);
-        }
-        bytes_free(&bytes);
-    }
-    free(record);
+ExitCode job_record_open(JobRecord *record, Console *console, const char *folder) {
+    SingeError error = {0};
+    *record = (JobRecord){.path = text_format("%s/run.json", folder)};
+    const SingeResult result = file_read(record->path, (SingeAllocator){0}, &record->bytes, &error);
+    if (result && console) console_result(console, &error);
+    record->json = (JsonText){(const char *)record->bytes.data, record->bytes.size};
+    return job_exit(result);
+}
 
+void job_record_close(JobRecord *record) {
+    bytes_free(&record->bytes);
+    free(record->path);
+}
+
+ExitCode job_record_refuse(const JobRecord *record, Console *console) {
+    console_error(console, "%s is not the record of a run, or it is damaged", shown_path(record->path).text);
+    return EXIT_INPUT;
+}
+
+char *job_recorded_path(const char *folder) {
+    char *path = NULL;
+    JobRecord record;
+    if (!job_record_open(&record, NULL, folder)) {
+        char *base = text_json_words(record.json, "scene_folder"), *file = text_json_words(record.json, "scene_file");
+        const char *slash = file ? strrchr(file, '/') : NULL;
+        if (base && file) path = text_format("%s/%s", base, slash ? slash + 1 : file);
+        free(base);
+        free(file);
+    }
+    job_record_close(&record);
     return path;
 }
 
-void job_refuse_record(Console *console, const char *path) {
-    console_error(console, "%s is not the record of a run, or it is damaged", shown_path(path).text);
-}
-
 ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads) {
-    SingeError error = {0};
-    Bytes bytes = {0};
-    char *record = text_format("%s/run.json", folder);
-    const SingeResult result = file_read(record, (SingeAllocator){0}, &bytes, &error);
-    if (result) {
-        console_result(console, &error);
-        free(record);
-        return job_exit(result);
-    }
-
-    const char *scene, *scene_folder, *json = (const char *)bytes.data;
-    size_t scene_size, folder_size;
-    ExitCode code = EXIT_INPUT;
-    if (text_json_member(json, bytes.size, "scene", &scene, &scene_size) &&
-        text_json_member(json, bytes.size, "scene_folder", &scene_folder, &folder_size)) {
-        char *base = text_json_unquote(scene_folder, folder_size);
-        if (base) code = job_parse(job, console, record, scene, scene_size, base, sets, threads);
-        else job_refuse_record(console, record);
+    JobRecord record;
+    ExitCode code = job_record_open(&record, console, folder);
+    if (!code) {
+        JsonText scene;
+        char *base = text_json_words(record.json, "scene_folder");
+        if (base && text_json_member(record.json, "scene", &scene))
+            code = job_parse(job, console, record.path, scene, base, sets, threads);
+        else code = job_record_refuse(&record, console);
         free(base);
-    } else {
-        job_refuse_record(console, record);
     }
-
-    bytes_free(&bytes);
-    free(record);
+    job_record_close(&record);
     return code;
 }
 

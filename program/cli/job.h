@@ -3,6 +3,7 @@
 
 #include "cli/cli.h"
 #include "cli/console.h"
+#include "cli/text.h"
 #include "scene/scene.h"
 
 /// The PATH=VALUE texts of --set, in order. The array points into the command line or to `owned`.
@@ -38,14 +39,25 @@ ExitCode job_load(Job *job, Console *console, double pictures);
 ExitCode job_open(Job *job, Console *console, const char *scene_path, const SetList *sets, int threads);
 
 /// The same for a scene in memory, whose files are looked for in `folder`.
-ExitCode job_parse(Job *job, Console *console, const char *name, const char *text, size_t size, const char *folder,
+ExitCode job_parse(Job *job, Console *console, const char *name, JsonText scene, const char *folder,
                    const SetList *sets, int threads);
+
+/// The record of a run, which run writes (record.c).
+typedef struct JobRecord {
+    char *path; ///< FOLDER/run.json
+    Bytes bytes;
+    JsonText json; ///< all of them
+} JobRecord;
+
+/// Reads it. The error has been printed unless the result is EXIT_GOOD or the console is NULL. Close it in any case.
+ExitCode job_record_open(JobRecord *record, Console *console, const char *folder);
+void job_record_close(JobRecord *record);
+
+/// Says that it is damaged or something else. Returns EXIT_INPUT.
+ExitCode job_record_refuse(const JobRecord *record, Console *console);
 
 /// The scene's path in the record of a run's folder, from malloc; NULL if the folder is none.
 char *job_recorded_path(const char *folder);
-
-/// Says that FOLDER/run.json, at `path`, is damaged or something else.
-void job_refuse_record(Console *console, const char *path);
 
 /// Refuses a job that has been read, and closes it, if the machine has too little memory to draw it as well.
 ExitCode job_fits(Job *job, Console *console, double pictures);

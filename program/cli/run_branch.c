@@ -24,49 +24,26 @@
 
 enum { ANCESTORS_MAX = 1000 };
 
-/// A record, or an ancestor in it: text within the file's bytes.
-typedef struct Ancestor {
-    const char *json;
-    size_t size;
-} Ancestor;
-
-static bool ancestor_member(Ancestor of, const char *name, Ancestor *value) {
-    return text_json_member(of.json, of.size, name, &value->json, &value->size);
-}
-
-/// A whole number of at least 1; 0 if the member is none.
-static int ancestor_frame(Ancestor of) {
-    Ancestor value;
-    char text[16];
-    if (!ancestor_member(of, "frame", &value) || value.size >= sizeof text) return 0;
-    snprintf(text, sizeof text, "%.*s", (int)value.size, value.json);
-    const long frame = strtol(text, NULL, 10);
-    return frame >= 1 && frame <= 1000000 ? (int)frame : 0;
-}
-
 char *branch_lineage(const Folder *folder) {
-    Bytes bytes = {0};
-    SingeError error;
-    Ancestor value;
+    JobRecord record;
+    JsonText from;
     char *text = NULL;
-    if (file_read(folder->record, (SingeAllocator){0}, &bytes, &error)) return NULL;
-
-    const Ancestor record = {(const char *)bytes.data, bytes.size};
-    if (ancestor_member(record, "from", &value) && ancestor_frame(value))
-        text = text_format("%.*s", (int)(value.size < INT_MAX ? value.size : 0), value.json);
-    bytes_free(&bytes);
+    if (!job_record_open(&record, NULL, folder->path) && text_json_member(record.json, "from", &from) &&
+        text_json_count(from, "frame"))
+        text = text_format("%.*s", (int)(from.size < INT_MAX ? from.size : 0), from.text);
+    job_record_close(&record);
     return text;
 }
 
 /// The scene that a run had at a frame: its own, or an ancestor's. *first is the frame from which it holds, 1 or that of
 /// a branch. False if the record is damaged.
-static bool scene_at(Ancestor record, int frame, Ancestor *scene, int *first) {
+static bool scene_at(JsonText record, int frame, JsonText *scene, int *first) {
     *scene = record;
     for (int depth = 0; depth < ANCESTORS_MAX; depth++) {
-        Ancestor from;
+        JsonText from;
         *first = 1;
-        if (!ancestor_member(*scene, "from", &from)) return true;
-        *first = ancestor_frame(from);
+        if (!text_json_member(*scene, "from", &from)) return true;
+        *first = text_json_count(from, "frame");
         if (*first == 0) return false;
         if (frame >= *first) return true;
         *scene = from;
@@ -76,7 +53,7 @@ static bool scene_at(Ancestor record, int frame, Ancestor *scene, int *first) {
 }
 
 /// Writes the member "from" of the new record.
-static char *lineage_text(const char *folder, int frame, Ancestor scene) {
+static char *lineage_text(const char *folder, int frame, JsonText scene) {
     static const char *const copied[] = {"scene_folder", "scene", "from"};
     char *text = NULL, *whole = realpath(folder, NULL);
     size_t size = 0;
@@ -87,10 +64,10 @@ static char *lineage_text(const char *folder, int frame, Ancestor scene) {
         fprintf(file, ", \"frame\": %d", frame);
 
         for (size_t i = 0; i < sizeof copied / sizeof *copied; i++) {
-            Ancestor value;
-            if (!ancestor_member(scene, copied[i], &value)) continue;
+            JsonText value;
+            if (!text_json_member(scene, copied[i], &value)) continue;
             fprintf(file, ", \"%s\": ", copied[i]);
-            fwrite(value.json, 1, value.size, file);
+            fwrite(value.text, 1, value.size, file);
         }
 
         fputc('}', file);
@@ -105,38 +82,25 @@ static char *lineage_text(const char *folder, int frame, Ancestor scene) {
 /// Reads the earlier run's record: names of its files, its scene at the frame, and the new record's lineage.
 static ExitCode read_record(Run *run, const char *folder) {
     Branch *branch = &run->branch;
-    Bytes bytes = {0};
-    SingeError error = {0};
-    ExitCode code = EXIT_INPUT;
-    char *path = text_format("%s/run.json", folder), *name = NULL, *base = NULL;
-    if (file_read(path, (SingeAllocator){0}, &bytes, &error)) {
-        console_result(run->console, &error);
-        free(path);
-        return EXIT_INPUT;
+    JobRecord record;
+    ExitCode code = job_record_open(&record, run->console, folder);
+    char *name = NULL, *base = NULL;
+    if (!code) {
+        JsonText scene, at;
+        name = text_json_words(record.json, "name");
+        if (name && value_names_files(name) && scene_at(record.json, branch->frame, &at, &branch->first) &&
+            text_json_member(at, "scene", &scene) && (base = text_json_words(at, "scene_folder"))) {
+            branch->folder = folder_name(folder, name);
+            code = job_parse(&branch->job, run->console, record.path, scene, base, &(SetList){0},
+                             run->job.hooks.thread_count);
+            run->record.from = lineage_text(folder, branch->frame, at);
+            if (!run->record.from) code = EXIT_FAILED;
+        } else code = job_record_refuse(&record, run->console);
     }
 
-    const Ancestor record = {(const char *)bytes.data, bytes.size};
-    Ancestor value, scene, at;
-    if (ancestor_member(record, "name", &value)) name = text_json_unquote(value.json, value.size);
-
-    bool good = name && value_names_files(name) && scene_at(record, branch->frame, &at, &branch->first) &&
-                ancestor_member(at, "scene", &scene);
-    if (good && ancestor_member(at, "scene_folder", &value)) base = text_json_unquote(value.json, value.size);
-
-    if (good && base) {
-        branch->folder = folder_name(folder, name);
-        code = job_parse(&branch->job, run->console, path, scene.json, scene.size, base, &(SetList){0},
-                         run->job.hooks.thread_count);
-        run->record.from = lineage_text(folder, branch->frame, at);
-        if (!run->record.from) code = EXIT_FAILED;
-    } else {
-        job_refuse_record(run->console, path);
-    }
-
-    bytes_free(&bytes);
+    job_record_close(&record);
     free(base);
     free(name);
-    free(path);
     return code;
 }
 
@@ -476,7 +440,7 @@ SingeResult run_keep_checkpoint(Run *run, int frame, SingeError *error) {
 
     // every second one is deleted until the rest fit
     const char *from = run->record.from;
-    const int branch = from ? ancestor_frame((Ancestor){from, strlen(from)}) : 0;
+    const int branch = from ? text_json_count((JsonText){from, strlen(from)}, "frame") : 0;
     KeptSizes sizes = {run->keep_every, branch, 0, NULL};
     result = folder_each(&run->folder, FOLDER_CHECKPOINTS, visit_kept, &sizes, error);
     while (!result && sizes.bytes > most && sizes.every < 1 << 20) {

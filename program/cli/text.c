@@ -93,8 +93,8 @@ static const char *skip_value(const char *p, const char *end) {
     return NULL;
 }
 
-bool text_json_member(const char *json, size_t size, const char *name, const char **value, size_t *value_size) {
-    const char *end = json + size, *p = skip_space(json, end);
+bool text_json_member(JsonText object, const char *name, JsonText *value) {
+    const char *end = object.text + object.size, *p = skip_space(object.text, end);
     size_t length = strlen(name);
     if (p >= end || *p != '{') return false;
 
@@ -111,8 +111,7 @@ bool text_json_member(const char *json, size_t size, const char *name, const cha
         const char *begin = skip_space(p + 1, end);
         if (!(p = skip_value(begin, end))) return false;
         if (found) {
-            *value = begin;
-            *value_size = (size_t)(p - begin);
+            *value = (JsonText){begin, (size_t)(p - begin)};
             return true;
         }
 
@@ -171,12 +170,12 @@ static const char *put_escape(const char *p, const char *end, char **out) {
     return p;
 }
 
-char *text_json_unquote(const char *value, size_t size) {
-    while (size && (value[size - 1] == ' ' || value[size - 1] == '\n')) size--;
-    if (size < 2 || value[0] != '"' || value[size - 1] != '"') return NULL;
+char *text_json_unquote(JsonText value) {
+    const char *p = value.text + 1, *end = value.text + value.size;
+    while (end > p && (end[-1] == ' ' || end[-1] == '\n')) end--;
+    if (end < p + 1 || p[-1] != '"' || *--end != '"') return NULL;
 
-    char *text = need(malloc(size)), *out = text; // no escape is shorter than its character
-    const char *p = value + 1, *end = value + size - 1;
+    char *text = need(malloc(value.size)), *out = text; // no escape is shorter than its character
     while (p && p < end) {
         if (*p == '\\') p = put_escape(p + 1, end, &out);
         else *out++ = *p++;
@@ -189,6 +188,20 @@ char *text_json_unquote(const char *value, size_t size) {
 
     *out = 0;
     return text;
+}
+
+char *text_json_words(JsonText object, const char *name) {
+    JsonText value;
+    return text_json_member(object, name, &value) ? text_json_unquote(value) : NULL;
+}
+
+int text_json_count(JsonText object, const char *name) {
+    JsonText value;
+    char text[16];
+    if (!text_json_member(object, name, &value) || value.size >= sizeof text) return 0;
+    snprintf(text, sizeof text, "%.*s", (int)value.size, value.text);
+    const long number = strtol(text, NULL, 10);
+    return number >= 1 && number <= 1000000 ? (int)number : 0;
 }
 
 char *text_shell_quote(const char *text) {

@@ -26,10 +26,21 @@ void text_csv_cell(FILE *file, const char *text);
 /// Writes a number that reads back exactly, or null if it is not finite.
 void text_json_number(FILE *file, double number);
 
-/// Finds the value of a member of the object in `json`. False if there is no such member or the text up to it is not
-/// JSON.
-bool text_json_member(const char *json, size_t size, const char *name, const char **value, size_t *value_size);
+/// A value within a text of JSON.
+typedef struct JsonText {
+    const char *text;
+    size_t size;
+} JsonText;
 
-/// The bytes of a JSON string value, from malloc; NULL if it is not one. The program ends with EXIT_FAILED when out of
+/// Finds the value of a member of an object. False if there is no such member or the text up to it is not JSON.
+bool text_json_member(JsonText object, const char *name, JsonText *value);
+
+/// The bytes of a JSON string, from malloc; NULL if the value is none. The program ends with EXIT_FAILED when out of
 /// memory.
-char *text_json_unquote(const char *value, size_t size);
+char *text_json_unquote(JsonText value);
+
+/// The bytes of a member that is a string, as text_json_unquote; NULL if there is none.
+char *text_json_words(JsonText object, const char *name);
+
+/// A member that is a whole number from 1 to 1000000, as of frames; 0 if there is none.
+int text_json_count(JsonText object, const char *name);

@@ -253,29 +253,21 @@ static ExitCode verify_all(Verify *verify) {
 
 /// The name of the run's files, from its record; and whether the run has reported that it began with crossings.
 static ExitCode find_folder(Verify *verify, const char *path) {
-    SingeError error = {0};
-    Bytes bytes = {0};
-    char *record = text_format("%s/run.json", path), *name = NULL;
-    const SingeResult result = file_read(record, (SingeAllocator){0}, &bytes, &error);
-    if (result) {
-        console_result(&verify->console, &error);
-        free(record);
-        return job_exit(result);
+    JobRecord record;
+    ExitCode code = job_record_open(&record, &verify->console, path);
+    if (!code) {
+        JsonText totals, crossed;
+        char *name = text_json_words(record.json, "name");
+        if (name) verify->folder = folder_name(path, name);
+        else code = job_record_refuse(&record, &verify->console);
+        verify->crossed = text_json_member(record.json, "totals", &totals) &&
+                          text_json_member(totals, "crossed_at_start", &crossed) && crossed.size &&
+                          *crossed.text >= '1' && *crossed.text <= '9';
+        free(name);
     }
 
-    const char *json = (const char *)bytes.data, *value, *totals;
-    size_t size;
-    if (text_json_member(json, bytes.size, "name", &value, &size)) name = text_json_unquote(value, size);
-    if (name) verify->folder = folder_name(path, name);
-    else job_refuse_record(&verify->console, record);
-
-    verify->crossed = text_json_member(json, bytes.size, "totals", &totals, &size) &&
-                      text_json_member(totals, size, "crossed_at_start", &value, &size) && size && *value >= '1' &&
-                      *value <= '9';
-    bytes_free(&bytes);
-    free(record);
-    free(name);
-    return verify->folder.path ? EXIT_GOOD : EXIT_INPUT;
+    job_record_close(&record);
+    return code;
 }
 
 int command_verify(int argc, char **argv) {

@@ -16,13 +16,12 @@
 #include "common/printable.h"
 
 static void expect_member(const char *json, const char *name, const char *expected) {
-    const char *value;
-    size_t size;
-    bool found = text_json_member(json, strlen(json), name, &value, &size);
+    JsonText value;
+    bool found = text_json_member((JsonText){json, strlen(json)}, name, &value);
     assert_int_equal(found, expected != NULL);
     if (!expected) return;
-    assert_int_equal(size, strlen(expected));
-    assert_memory_equal(value, expected, size);
+    assert_int_equal(value.size, strlen(expected));
+    assert_memory_equal(value.text, expected, value.size);
 }
 
 TEST(finds_json_members) {
@@ -40,10 +39,10 @@ TEST(finds_json_members) {
 
 TEST(refuses_cut_json) {
     const char *json = "{\"a\": [1, {\"b\": \"c\"}], \"scene\": {\"x\": 1}";
-    const char *value;
-    size_t size;
-    assert_true(text_json_member(json, strlen(json), "scene", &value, &size));
-    for (size_t cut = 0; cut < strlen(json); cut++) assert_false(text_json_member(json, cut, "scene", &value, &size));
+    JsonText value;
+    assert_true(text_json_member((JsonText){json, strlen(json)}, "scene", &value));
+    for (size_t cut = 0; cut < strlen(json); cut++)
+        assert_false(text_json_member((JsonText){json, cut}, "scene", &value));
 }
 
 TEST(unquotes_what_it_quotes) {
@@ -60,7 +59,7 @@ TEST(unquotes_what_it_quotes) {
         for (size_t at = 0; at < size; at += (size_t)utf8_length(json + at))
             assert_int_not_equal(utf8_length(json + at), 0);
 
-        char *back = text_json_unquote(json, size);
+        char *back = text_json_unquote((JsonText){json, size});
         assert_non_null(back);
         assert_string_equal(back, texts[i]);
         free(back);
@@ -68,14 +67,15 @@ TEST(unquotes_what_it_quotes) {
     }
 
     // as other writers of JSON put it
-    char *other = text_json_unquote("\"\\u00e4\\/\\uD83D\\uDD25\\n\"", 24);
+    char *other = text_json_unquote((JsonText){"\"\\u00e4\\/\\uD83D\\uDD25\\n\"", 24});
     assert_string_equal(other, "\xc3\xa4/\xf0\x9f\x94\xa5\n");
     free(other);
 
     static const char *const bad[] = {"\"\\u12\"", "\"\\q\"", "\"\\\"", "\"\\u0000\"", "\"\\u12g4\""};
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) assert_null(text_json_unquote(bad[i], strlen(bad[i])));
-    assert_null(text_json_unquote("12", 2));
-    assert_null(text_json_unquote("\"", 1));
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_null(text_json_unquote((JsonText){bad[i], strlen(bad[i])}));
+    assert_null(text_json_unquote((JsonText){"12", 2}));
+    assert_null(text_json_unquote((JsonText){"\"", 1}));
 }
 
 TEST(finds_the_nearest_word) {

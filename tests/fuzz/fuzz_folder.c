@@ -7,28 +7,28 @@
 #include "scene/scene.h"
 #include "input.h"
 
-static void demand_inside(const uint8_t *data, size_t size, const char *value, size_t value_size) {
-    const char *begin = (const char *)data;
-    demand(value >= begin && value_size <= size && value + value_size <= begin + size);
+static void demand_inside(JsonText whole, JsonText part) {
+    demand(part.text >= whole.text && part.size <= whole.size && part.text + part.size <= whole.text + whole.size);
 }
 
 /// As job_reopen does, but for the files that the scene names.
-static void read_record(const char *json, size_t size) {
+static void read_record(JsonText record) {
     static const char *const names[] = {"scene_folder", "name", "result", "error", "nothing"};
-    const char *value;
-    size_t length;
+    JsonText value;
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
-        if (!text_json_member(json, size, names[k], &value, &length)) continue;
-        demand_inside((const uint8_t *)json, size, value, length);
-        free(text_json_unquote(value, length));
+        if (!text_json_member(record, names[k], &value)) continue;
+        demand_inside(record, value);
+        free(text_json_unquote(value));
+        demand(text_json_count(record, names[k]) <= 1000000);
     }
 
-    if (!text_json_member(json, size, "scene", &value, &length)) return;
-    demand_inside((const uint8_t *)json, size, value, length);
+    if (!text_json_member(record, "scene", &value)) return;
+    demand_inside(record, value);
 
     Scene *scene = NULL;
     SceneMessages messages = {0};
-    if (scene_parse("run.json", value, length, NULL, NULL, 0, &scene, &messages)) demand(!scene && messages.count > 0);
+    if (scene_parse("run.json", value.text, value.size, NULL, NULL, 0, &scene, &messages))
+        demand(!scene && messages.count > 0);
     scene_free(scene);
     scene_messages_free(&messages);
 }
@@ -53,7 +53,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     demand(text);
     if (size) memcpy(text, data, size);
     text[size] = 0;
-    read_record(text, size);
+    read_record((JsonText){text, size});
     free(text);
     if (size && data[0] != '{') read_table(data, size);
     return 0;
