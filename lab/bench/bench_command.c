@@ -79,13 +79,11 @@ static ExitCode bench_measure(int m, const BenchRequest *request) {
     SingeError error = {.element = -1};
     BenchOptions options = request->options;
     char *svg = NULL;
-    size_t size = 0;
-    if (request->svg) options.drawing = open_memstream(&svg, &size);
+    if (request->svg) options.drawing = text_open(&svg);
 
     SingeResult result = measurements[m].run(&options, &table, &error);
     ExitCode code = EXIT_GOOD;
-    const bool drawn = options.drawing && text_stream_end(options.drawing, &svg);
-    if (request->svg && !drawn && !result) result = SINGE_ERROR_MEMORY;
+    if (request->svg) text_close(options.drawing, &svg);
 
     if (result) {
         fflush(stdout);
@@ -98,7 +96,7 @@ static ExitCode bench_measure(int m, const BenchRequest *request) {
 
     if (!result && request->json) table_write_json(&table, stdout);
     if (!result && request->csv) code = console_write_table(&console, request->csv, print_csv, &table);
-    if (!result && drawn && !code) code = console_write_table(&console, request->svg, print_text, svg);
+    if (!result && request->svg && !code) code = console_write_table(&console, request->svg, print_text, svg);
     free(svg);
     table_free(&table);
     return code;

@@ -148,12 +148,6 @@ typedef struct Effects {
 
 static double effect(double r_0, double r_45) { return sqrt(r_0 / r_45); }
 
-/// The standard error of the geometric mean; NaN of one seed.
-static double effects_error(const Effects *sum) {
-    const double n = sum->count, mean = sum->all / n;
-    return exp(mean) * sqrt(fmax(sum->squares / n - mean * mean, 0) / (n - 1));
-}
-
 /// The row of a seed, which it adds to the sums.
 static SingeResult isotropy_compare(const Burn *burn, BenchTable *table, Effects *sum, SingeError *error) {
     Wrinkles straight = {0}, turned = {0};
@@ -177,6 +171,7 @@ static SingeResult isotropy_compare(const Burn *burn, BenchTable *table, Effects
     const double cell = size / burn->cells, mass = cell * cell * (double)usual.grammage.value / 2;
     const double lean = (cell * cell / 2 + pow(burn->thickness, 2)) / pow(burn->thickness, 2);
     const double own = (2.5 + (double)solver.regularisation[SINGE_RED]) * h * h / mass * lean;
+    const double n = sum->count, mean = sum->all / n; // of the seeds so far, as are the three numbers behind it
     table_text(table, "outline", 8, burn->disc ? "disc" : "square");
     table_number(table, "cell_mm", "%.3g", 8, 1e3 * size / burn->cells);
     table_number(table, "thickness_mm", "%.3g", 13, 1e3 * burn->thickness);
@@ -187,8 +182,9 @@ static SingeResult isotropy_compare(const Burn *burn, BenchTable *table, Effects
     table_number(table, "r_0", "%.3f", 7, r_0);
     table_number(table, "r_45", "%.3f", 7, r_45);
     table_number(table, "effect", "%.3f", 7, effect(r_0, r_45));
-    table_number(table, "mean", "%.3f", 7, exp(sum->all / sum->count)); // of the seeds so far, as are the next three
-    table_number(table, "error", "%.3f", 7, effects_error(sum));
+    table_number(table, "mean", "%.3f", 7, exp(mean));
+    table_number(table, "error", "%.3f", 7,
+                 exp(mean) * sqrt(fmax(sum->squares / n - mean * mean, 0) / (n - 1))); // its standard one
     table_number(table, "gentle", "%.3f", 7, exp(sum->gentle / sum->count));
     table_number(table, "sharp", "%.3f", 7, exp(sum->sharp / sum->count));
     table_number(table, "bend_per_m", "%.2f", 11, bend / (2 * MOMENTS * size * size));

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/text.h"
 #include "formats/formats.h"
@@ -124,14 +125,11 @@ void plot_draw(const Plot *plot, FILE *file) {
 }
 
 SingeResult plot_write(const Plot *plot, const char *path, SingeError *error) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    SingeResult result = SINGE_ERROR_MEMORY;
-
-    if (file) plot_draw(plot, file);
-    if (text_stream_end(file, &text)) result = file_write(path, text, size, error);
-    if (result == SINGE_ERROR_MEMORY) *error = (SingeError){.code = result, .element = -1};
+    char *text;
+    FILE *file = text_open(&text);
+    plot_draw(plot, file);
+    text_close(file, &text);
+    SingeResult result = file_write(path, text, strlen(text), error);
     free(text);
     return result;
 }

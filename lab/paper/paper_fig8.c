@@ -54,11 +54,8 @@ typedef struct Fig8Count {
 static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, SingeError *error) {
     static const char *const names[] = {"red", "green", "blue", "yellow", "sum"};
     static const char *const inks[] = {"#d62728", "#2ca02c", "#1f77b4", "#d0a000", "#777777"};
-    char path[4096], title[80], *csv = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&csv, &size);
-    if (!file) return *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1}, error->code;
-
+    char path[4096], title[80], *csv;
+    FILE *file = text_open(&csv);
     fprintf(file, "step,red,green,blue,yellow,sum\n");
     for (int step = 0; step <= STEPS; step++) {
         fprintf(file, "%d", step);
@@ -66,10 +63,9 @@ static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, Sing
         fputc('\n', file);
     }
 
-    SingeResult result = SINGE_ERROR_MEMORY;
+    text_close(file, &csv);
     snprintf(path, sizeof path, "%s/fig8-%s.csv", report_folder(lab->report), state);
-    if (text_stream_end(file, &csv)) result = file_write(path, csv, size, error);
-    else *error = (SingeError){.code = result, .element = -1};
+    SingeResult result = file_write(path, csv, strlen(csv), error);
     free(csv);
     if (result) return result;
 

@@ -55,28 +55,22 @@ static bool scene_at(JsonText record, int frame, JsonText *scene, int *first) {
 /// Writes the member "from" of the new record.
 static char *lineage_text(const char *folder, int frame, JsonText scene) {
     static const char *const copied[] = {"scene_folder", "scene", "from"};
-    char *text = NULL, *whole = realpath(folder, NULL);
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    if (file) {
-        fputs("{\"folder\": ", file);
-        text_json_string(file, whole ? whole : folder);
-        fprintf(file, ", \"frame\": %d", frame);
-
-        for (size_t i = 0; i < sizeof copied / sizeof *copied; i++) {
-            JsonText value;
-            if (!text_json_member(scene, copied[i], &value)) continue;
-            fprintf(file, ", \"%s\": ", copied[i]);
-            fwrite(value.text, 1, value.size, file);
-        }
-
-        fputc('}', file);
+    char *text, *whole = realpath(folder, NULL);
+    FILE *file = text_open(&text);
+    fputs("{\"folder\": ", file);
+    text_json_string(file, whole ? whole : folder);
+    fprintf(file, ", \"frame\": %d", frame);
+    for (size_t i = 0; i < sizeof copied / sizeof *copied; i++) {
+        JsonText value;
+        if (!text_json_member(scene, copied[i], &value)) continue;
+        fprintf(file, ", \"%s\": ", copied[i]);
+        fwrite(value.text, 1, value.size, file);
     }
 
+    fputc('}', file);
     free(whole);
-    if (text_stream_end(file, &text)) return text;
-    free(text);
-    return NULL;
+    text_close(file, &text);
+    return text;
 }
 
 /// Reads the earlier run's record: names of its files, its scene at the frame, and the new record's lineage.
@@ -94,7 +88,6 @@ static ExitCode read_record(Run *run, const char *folder) {
             code = job_parse(&branch->job, run->console, record.path, scene, base, &(SetList){0},
                              run->job.hooks.thread_count);
             run->record.from = lineage_text(folder, branch->frame, at);
-            if (!run->record.from) code = EXIT_FAILED;
         } else code = job_record_refuse(&record, run->console);
     }
 

@@ -35,6 +35,18 @@ bool text_stream_end(FILE *stream, char **text) {
     return good && *text; // if memory ran out when it last grew there is no text, and no error
 }
 
+FILE *text_open(char **text) {
+    static _Thread_local size_t size; // texts end with a zero
+    *text = NULL;
+    FILE *stream = open_memstream(text, &size);
+    if (!stream) need(NULL);
+    return stream;
+}
+
+void text_close(FILE *stream, char **text) {
+    if (!text_stream_end(stream, text)) need(NULL);
+}
+
 void text_json_string(FILE *file, const char *text) {
     fputc('"', file);
     for (const char *c = text; *c;) {

@@ -16,6 +16,10 @@ char *text_shell_quote(const char *text);
 /// frees it either way.
 SINGE_NODISCARD bool text_stream_end(FILE *stream, char **text);
 
+/// A stream into a text from malloc, and its end. The program ends with EXIT_FAILED when out of memory.
+FILE *text_open(char **text);
+void text_close(FILE *stream, char **text);
+
 /// Writes a JSON string with its quotes. Bytes that are not UTF-8, which file names may contain, become \udc80 to
 /// \udcff: the output is always UTF-8, and text_json_unquote returns the same bytes (as do Python's file names).
 void text_json_string(FILE *file, const char *text);

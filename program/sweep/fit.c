@@ -270,28 +270,19 @@ static char *table_path(const Fit *fit) { return text_format("%s/fit.csv", fit->
 
 // ---- an evaluation
 
-/// A row's line in fit.csv, up to its error; NULL without memory.
-static char *noted_line(const Plan *plan, uint32_t row) {
-    char *line = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&line, &size);
-    if (file) fprintf(file, "%u", row + 1);
-
-    for (uint32_t p = 0; file && p < plan->parameter_count; p++) {
+/// The error of a row whose values are set: from fit.csv, or after running it.
+static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
+    // its line in fit.csv, up to its error
+    const Plan *plan = &fit->sweep->plan;
+    char *line;
+    FILE *file = text_open(&line);
+    fprintf(file, "%u", row + 1);
+    for (uint32_t p = 0; p < plan->parameter_count; p++) {
         fputc(',', file);
         text_csv_cell(file, plan_value(plan, row, p));
     }
-    if (file) fputc(',', file);
-
-    if (text_stream_end(file, &line)) return line;
-    free(line);
-    return NULL;
-}
-
-/// The error of a row whose values are set: from fit.csv, or after running it.
-static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
-    char *line = noted_line(&fit->sweep->plan, row);
-    if (!line) return EXIT_FAILED;
+    fputc(',', file);
+    text_close(file, &line);
 
     // the line that is there, after the header and the earlier rows
     const char *at = fit->noted;
@@ -413,21 +404,19 @@ static ExitCode search(Fit *fit) {
     Console *console = fit->sweep->console;
 
     // fit.csv: its header, or what an earlier fit has left
-    size_t size = 0;
-    FILE *file = open_memstream(&fit->noted, &size);
-    if (file) fputs("row", file);
-
-    for (unsigned p = 0; file && p < count; p++) {
+    FILE *file = text_open(&fit->noted);
+    fputs("row", file);
+    for (unsigned p = 0; p < count; p++) {
         fputc(',', file);
         text_csv_cell(file, plan->parameters[p].key);
     }
 
-    if (file) fputs(",error\n", file);
-    bool good = text_stream_end(file, &fit->noted);
+    fputs(",error\n", file);
+    text_close(file, &fit->noted);
     char *path = table_path(fit);
     Bytes bytes = {0};
     SingeError error = {0};
-    if (good && !file_read(path, (SingeAllocator){0}, &bytes, &error)) {
+    if (!file_read(path, (SingeAllocator){0}, &bytes, &error)) {
         free(fit->noted);
         fit->noted = text_format("%s", (const char *)bytes.data);
     }
@@ -439,10 +428,10 @@ static ExitCode search(Fit *fit) {
         nlopt_create(plan->search == PLAN_SEARCH_GLOBAL ? NLOPT_GN_DIRECT_L : NLOPT_LN_SBPLX, count);
 
     fit->errors = calloc(plan->evaluations, sizeof *fit->errors);
-    good = good && fit->errors && optimiser && nlopt_set_lower_bounds1(optimiser, 0) > 0 &&
-           nlopt_set_upper_bounds1(optimiser, 1) > 0 && nlopt_set_min_objective(optimiser, objective, fit) > 0 &&
-           nlopt_set_maxeval(optimiser, 10 * (int)plan->evaluations) > 0 && // including repeated points
-           nlopt_set_xtol_abs1(optimiser, parameter_tolerance) > 0 && nlopt_set_initial_step1(optimiser, 0.25) > 0;
+    bool good = fit->errors && optimiser && nlopt_set_lower_bounds1(optimiser, 0) > 0 &&
+                nlopt_set_upper_bounds1(optimiser, 1) > 0 && nlopt_set_min_objective(optimiser, objective, fit) > 0 &&
+                nlopt_set_maxeval(optimiser, 10 * (int)plan->evaluations) > 0 && // including repeated points
+                nlopt_set_xtol_abs1(optimiser, parameter_tolerance) > 0 && nlopt_set_initial_step1(optimiser, 0.25) > 0;
     if (!good) {
         console_error(console, "out of memory");
         return EXIT_FAILED;

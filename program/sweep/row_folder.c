@@ -107,11 +107,8 @@ static void put_cell(FILE *file, const char *text) {
 static char *plan_table(const Sweep *sweep) {
     const Plan *plan = &sweep->plan;
     const PlanTarget *target = &plan->target;
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    if (!file) return NULL;
-
+    char *text;
+    FILE *file = text_open(&text);
     fputs("row", file);
     for (uint32_t p = 0; p < plan->parameter_count; p++) put_cell(file, plan->parameters[p].key);
 
@@ -134,10 +131,8 @@ static char *plan_table(const Sweep *sweep) {
     }
 
     fputc('\n', file);
-    if (text_stream_end(file, &text)) return text;
-
-    free(text);
-    return NULL;
+    text_close(file, &text);
+    return text;
 }
 
 /// Compares a text with that of a file; if there is no file yet, writes it.
@@ -198,31 +193,22 @@ ExitCode sweep_note_plan(Sweep *sweep) {
         free(path);
     }
 
-    char *table = plan_table(sweep);
-    if (!result && !table) {
-        result = SINGE_ERROR_MEMORY;
-        error = (SingeError){.code = result};
-    }
-
     if (result) {
         console_result(sweep->console, &error);
         code = EXIT_FAILED;
     }
 
-    char *note = NULL;
-    size_t note_size = 0;
-    FILE *file = open_memstream(&note, &note_size);
-    if (file)
-        fprintf(file, "{\"frames\": %d, \"scene\": \"%016llx\", \"preview\": \"%016llx\"", frames,
-                (unsigned long long)hash.result, (unsigned long long)hash.looks);
-
-    if (file && sweep->plan.from.path) {
+    char *table = plan_table(sweep), *note;
+    FILE *file = text_open(&note);
+    fprintf(file, "{\"frames\": %d, \"scene\": \"%016llx\", \"preview\": \"%016llx\"", frames,
+            (unsigned long long)hash.result, (unsigned long long)hash.looks);
+    if (sweep->plan.from.path) {
         fputs(", \"from\": ", file);
         text_json_string(file, sweep->plan.from.path);
     }
 
-    if (file) fputs("}\n", file);
-    if (!text_stream_end(file, &note)) code = EXIT_FAILED;
+    fputs("}\n", file);
+    text_close(file, &note);
     if (!code) code = note_or_compare(sweep, "plan.csv", table, true);
     if (!code) code = note_or_compare(sweep, "sweep.json", note, false);
     free(note);

@@ -44,16 +44,14 @@ static char *write_job(const Sweep *sweep, JobKind kind, const char *rows, Singe
     char *program = text_shell_quote(sweep->program), *plan = text_shell_quote(sweep->plan_path);
     char *folder = text_shell_quote(sweep->folder), *line = sweep_row_line(sweep, "\"$SLURM_ARRAY_TASK_ID\"");
     char *name = sbatch_quote(sweep->plan.name, false), *log = sbatch_quote(sweep->folder, true);
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    if (file)
-        fprintf(file,
-                "#!/bin/bash\n#SBATCH --job-name=%s-%s\n#SBATCH --open-mode=append\n"
-                "#SBATCH --output=%s/slurm/%s%s.log\n",
-                name, what, log, what, kind == JOB_REPORT ? "" : "-%a");
-    for (int i = 0; file && i < o->slurm.count; i++) fprintf(file, "#SBATCH %s\n", o->slurm.items[i]);
+    FILE *file = text_open(&text);
+    fprintf(file,
+            "#!/bin/bash\n#SBATCH --job-name=%s-%s\n#SBATCH --open-mode=append\n"
+            "#SBATCH --output=%s/slurm/%s%s.log\n",
+            name, what, log, what, kind == JOB_REPORT ? "" : "-%a");
+    for (int i = 0; i < o->slurm.count; i++) fprintf(file, "#SBATCH %s\n", o->slurm.items[i]);
 
-    if (file && kind == JOB_ROWS) {
+    if (kind == JOB_ROWS) {
         fprintf(file, "#SBATCH --array=%s", rows);
         if (o->max_running) fprintf(file, "%%%d", o->max_running);
         fprintf(file,
@@ -62,7 +60,7 @@ static char *write_job(const Sweep *sweep, JobKind kind, const char *rows, Singe
                 "trap 'kill -TERM \"$row\"' TERM\n%s &\nrow=$!\nwait \"$row\"\ncode=$?\n"
                 "if [ \"$code\" -gt 128 ]; then wait \"$row\"; code=$?; fi\nexit \"$code\"\n",
                 o->threads, line);
-    } else if (file && kind == JOB_RENDER) {
+    } else if (kind == JOB_RENDER) {
         // an array over parts of rows: task t draws part t mod PARTS of row t / PARTS + 1
         uint32_t frames = 1;
         for (uint32_t row = 0; row < sweep->plan.row_count; row++)
@@ -79,13 +77,12 @@ static char *write_job(const Sweep *sweep, JobKind kind, const char *rows, Singe
                 "[ \"$first\" -le \"$frames\" ] || exit 0\n"
                 "exec %s render \"$dir\" --frames \"$first-$last\" --threads %d\n",
                 parts, parts, part, part - 1, folder, program, o->threads);
-    } else if (file) {
+    } else {
         fprintf(file, "exec %s sweep %s -o %s --report\n", program, plan, folder);
     }
 
-    SingeResult result = SINGE_ERROR_MEMORY;
-    if (text_stream_end(file, &text)) result = file_write(path, text, size, error);
-    else *error = (SingeError){.code = result, .stage = "slurm", .element = -1};
+    text_close(file, &text);
+    SingeResult result = file_write(path, text, strlen(text), error);
     char *const texts[] = {text, program, plan, folder, line, name, log, result ? path : NULL};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) free(texts[i]);
     return result ? NULL : path;

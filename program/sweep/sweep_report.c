@@ -131,14 +131,11 @@ static void put_member(FILE *file, const char *key, char *text) {
     free(text);
 }
 
-/// The data of the page as JSON, or NULL without memory.
+/// The data of the page as JSON.
 static char *page_data(const Report *report) {
     const Plan *plan = &report->sweep->plan;
-    char *json = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&json, &size);
-    if (!file) return NULL;
-
+    char *json;
+    FILE *file = text_open(&json);
     fputs("{\"name\": ", file);
     text_json_string(file, plan->name);
     fputs(", \"parameters\": [", file);
@@ -186,14 +183,12 @@ static char *page_data(const Report *report) {
     }
 
     fputs("]}", file);
-    if (text_stream_end(file, &json)) return json;
-    free(json);
-    return NULL;
+    text_close(file, &json);
+    return json;
 }
 
 static void write_page(const Report *report, FILE *page) {
     char *json = page_data(report);
-    if (!json) return;
 
     // the page, with the data in it: no '<' may end the script's element
     static const char mark[] = "{{DATA}}";
@@ -266,13 +261,13 @@ static void write_sheet(const Report *report, FILE *file) {
 // ---- all
 
 static bool write_file(const Report *report, const char *name, void (*write)(const Report *report, FILE *file)) {
-    char *path = text_format("%s/%s", report->sweep->folder, name), *text = NULL;
-    size_t size = 0;
-    SingeError error = {.code = SINGE_ERROR_MEMORY, .stage = "report", .element = -1};
-    FILE *file = open_memstream(&text, &size);
-    if (file) write(report, file);
+    char *path = text_format("%s/%s", report->sweep->folder, name), *text;
+    SingeError error = {0};
+    FILE *file = text_open(&text);
+    write(report, file);
+    text_close(file, &text);
 
-    const bool good = text_stream_end(file, &text) && !file_write(path, text, size, &error);
+    const bool good = !file_write(path, text, strlen(text), &error);
     if (!good) console_result(report->sweep->console, &error);
     free(text);
     free(path);
