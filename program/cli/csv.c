@@ -95,73 +95,39 @@ double *csv_numbers(const Csv *csv, int column, CsvLines lines, uint32_t *count)
 enum { FRAME, TIME, TRIANGLES, INVERTED, COLUMNS };
 static const char *const stats_names[COLUMNS] = {"frame", "time", "triangles", "inverted_cells"};
 
-/// Reads the header, which must name each of our columns once, and then all lines.
-static bool read_rows(StatsTable *table, Text *text) {
-    int column[COLUMNS] = {-1, -1, -1, -1};
-    bool once = true;
-
-    for (int i = 0; !text_at_line_end(text); i++) {
-        const uint8_t *begin, *end;
-        next_cell(text, &begin, &end);
-        for (int c = 0; c < COLUMNS; c++) {
-            if (!text_word_is(begin, end, stats_names[c])) continue;
-            once = once && column[c] < 0;
-            column[c] = i;
-        }
-    }
-
-    text_next_line(text);
-    for (int c = 0; c < COLUMNS; c++) once = once && column[c] >= 0;
-    if (!once) return false;
-
-    while (text->at < text->end) {
-        StatsRow *row = &table->rows[table->count++];
-        double *const values[COLUMNS] = {&row->frame, &row->time, &row->triangles, &row->inverted_cells};
-        int read = 0;
-        for (int i = 0; !text_at_line_end(text); i++) {
-            const uint8_t *begin, *end;
-            next_cell(text, &begin, &end);
-            for (int c = 0; c < COLUMNS; c++)
-                if (column[c] == i && number_double(&begin, end, values[c]) == NUMBER_OK && begin == end) read++;
-        }
-
-        text_next_line(text);
-        if (read != COLUMNS || !(row->inverted_cells >= 0) || !(row->triangles >= 0)) return false;
-    }
-
-    return true;
-}
-
 ExitCode stats_table_read(StatsTable *table, const char *path, Console *console) {
-    Bytes bytes = {0};
-    SingeError error = {0};
-
     if (access(path, F_OK) != 0 && errno == ENOENT) {
         console_warn(console, "%s is missing, so inverted cells cannot be counted", path);
         return EXIT_GOOD;
     }
 
-    const SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, &error);
-    if (result) {
-        console_result(console, &error);
-        return job_exit(result);
+    Csv csv;
+    ExitCode code = csv_read(&csv, path, console);
+    if (code) return code;
+
+    int column[COLUMNS];
+    bool good = true;
+    for (int c = 0; c < COLUMNS; c++) {
+        column[c] = csv_column(&csv, stats_names[c]);
+        good = good && column[c] >= 0;
     }
 
-    // lines are counted as they are read: the last need not end with a line feed
-    Text text = {bytes.data, bytes.data + bytes.size, 1};
-    size_t lines = 0;
-    for (Text walk = text; walk.at < walk.end; lines++) {
-        while (!text_at_line_end(&walk)) walk.at++;
-        text_next_line(&walk);
+    // a line of four numbers has seven bytes at least, and reading ends with the first that has not
+    Text text = csv_text(&csv);
+    table->rows = calloc(csv.bytes.size / 7 + 2, sizeof *table->rows);
+    if (good) text_next_line(&text);
+    while (good && table->rows && text.at < text.end) {
+        StatsRow *row = &table->rows[table->count++];
+        double *const values[COLUMNS] = {&row->frame, &row->time, &row->triangles, &row->inverted_cells};
+        for (int c = 0; c < COLUMNS && good; c++) good = cell_number(&text, column[c], values[c]);
+        good = good && row->inverted_cells >= 0 && row->triangles >= 0;
+        if (good) text_next_line(&text);
     }
 
-    table->rows = calloc(lines + 1, sizeof *table->rows);
-    const bool good = table->rows && read_rows(table, &text);
     if (!table->rows) console_error(console, "%s: out of memory", path);
-    else if (!good) console_error(console, "%s:%lld: expected a line of statistics", path, (long long)text.line - 1);
-    bytes_free(&bytes);
+    else if (!good) console_error(console, "%s:%lld: expected a line of statistics", path, (long long)text.line);
+    csv_free(&csv);
     if (!table->rows) return EXIT_FAILED;
-
     return good ? EXIT_GOOD : EXIT_INPUT;
 }
 
