@@ -10,16 +10,6 @@
 
 enum { FACE_SIZE = 1 + 3 * 4 };
 
-// clang-format off
-static const char *const names[CACHE_COLUMNS] = {
-    "x", "y", "z", "nx", "ny", "nz", "s", "t", "vx", "vy", "vz", "rest_x", "rest_y", "rest_z", "temperature",
-    "temperature_peak", "mass", "burn_rate", "char_fraction", "ash_fraction", "burnt", "time_ignited", "piece_id",
-    "vertex_id", "sheet"};
-// clang-format on
-
-const char *cache_column_name(int column) { return names[column]; }
-bool cache_column_is_integer(int column) { return column >= CACHE_PIECE; }
-
 float cache_value(const CacheFrame *frame, int column, uint32_t vertex) {
     float value = 0;
     if (!frame->there[column]) return value;
@@ -46,11 +36,9 @@ static SingeResult read_header(const Ply *ply, CacheFrame *frame) {
         if (property->is_list) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a vertex of a cache has no lists");
 
         for (int c = 0; c < CACHE_COLUMNS; c++) {
-            const PlyType type = cache_column_is_integer(c) ? PLY_INT32 : PLY_FLOAT32;
-            const bool named = text_word_is(property->name, property->name_end, names[c]) ||
-                               (strcmp(names[c], "burnt") == 0 && // it was `char` up to version 0.2
-                                text_word_is(property->name, property->name_end, "char"));
-            if (property->type != type || !named) continue;
+            const PlyType type = surface_columns[c].integer ? PLY_INT32 : PLY_FLOAT32;
+            if (property->type != type || !text_word_is(property->name, property->name_end, surface_columns[c].name))
+                continue;
             frame->there[c] = true;
             frame->offset[c] = frame->row;
         }
@@ -60,7 +48,8 @@ static SingeResult read_header(const Ply *ply, CacheFrame *frame) {
 
     for (int c = CACHE_X; c < CACHE_X + 3; c++)
         if (!frame->there[c])
-            return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertices have no property \"float %s\"", names[c]);
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertices have no property \"float %s\"",
+                              surface_columns[c].name);
 
     frame->time = (double)NAN;
     const uint8_t *end = ply->header.note_end;

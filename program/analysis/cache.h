@@ -2,21 +2,10 @@
 // counts.
 #pragma once
 
-#include "formats/formats.h"
+#include "formats/output.h"
 
-/// The properties that docs/formats.md promises, in its order.
-enum {
-    CACHE_X,
-    CACHE_NORMAL = 3,
-    CACHE_UV = 6,
-    CACHE_VELOCITY = 8,
-    CACHE_REST = 11,
-    CACHE_TEMPERATURE = 14,
-    CACHE_PIECE = 22,
-    CACHE_VERTEX,
-    CACHE_SHEET,
-    CACHE_COLUMNS
-};
+/// The properties that every cache has, and some of them.
+enum { CACHE_COLUMNS = SURFACE_COLUMNS - 1, CACHE_X = 0, CACHE_REST = 11, CACHE_SHEET = 24 };
 
 typedef struct CacheFrame {
     double time; ///< s, NaN if it is not in the header
@@ -29,9 +18,6 @@ typedef struct CacheFrame {
     size_t row, offset[CACHE_COLUMNS]; ///< bytes per vertex, and the offset of a property in them
     const uint8_t *rows;
 } CacheFrame;
-
-const char *cache_column_name(int column);
-bool cache_column_is_integer(int column);
 
 /// A value of a vertex as stored; of an integer, its bits. 0 if the property is missing.
 float cache_value(const CacheFrame *frame, int column, uint32_t vertex);

@@ -47,13 +47,14 @@ void findings_add(Findings *findings, Fault fault, const char *format, ...) {
 
 void check_values(const CacheFrame *frame, Findings *findings) {
     for (int c = 0; c < CACHE_COLUMNS; c++) {
+        const SurfaceField *column = &surface_columns[c];
         if (!frame->there[c])
             findings_add(findings, FAULT_MISSING, "vertices have no property \"%s %s\"",
-                         cache_column_is_integer(c) ? "int" : "float", cache_column_name(c));
-        if (!frame->there[c] || cache_column_is_integer(c)) continue;
+                         column->integer ? "int" : "float", column->name);
+        if (!frame->there[c] || column->integer) continue;
         for (uint32_t v = 0; v < frame->vertex_count; v++)
             if (!isfinite(cache_value(frame, c, v)))
-                findings_add(findings, FAULT_NOT_FINITE, "%s of vertex %u is not finite", cache_column_name(c), v);
+                findings_add(findings, FAULT_NOT_FINITE, "%s of vertex %u is not finite", column->name, v);
     }
 
     if (isnan(frame->time)) findings_add(findings, FAULT_MISSING, "the header has no \"comment singe ... time ...\"");

@@ -6,6 +6,40 @@
 #include <stdio.h>
 #include <string.h>
 
+#define VECTOR(name, member, width, index) \
+    { name, offsetof(SingeSurface, member), false, width, index }
+#define SCALAR(name, member, integer) \
+    { name, offsetof(SingeSurface, member), integer, 1, 0 }
+
+const SurfaceField surface_columns[SURFACE_COLUMNS] = {
+    VECTOR("x", position, 3, 0),
+    VECTOR("y", position, 3, 1),
+    VECTOR("z", position, 3, 2),
+    VECTOR("nx", normal, 3, 0),
+    VECTOR("ny", normal, 3, 1),
+    VECTOR("nz", normal, 3, 2),
+    VECTOR("s", uv, 2, 0),
+    VECTOR("t", uv, 2, 1),
+    VECTOR("vx", velocity, 3, 0),
+    VECTOR("vy", velocity, 3, 1),
+    VECTOR("vz", velocity, 3, 2),
+    VECTOR("rest_x", rest_position, 3, 0),
+    VECTOR("rest_y", rest_position, 3, 1),
+    VECTOR("rest_z", rest_position, 3, 2),
+    SCALAR("temperature", temperature, false),
+    SCALAR("temperature_peak", temperature_peak, false),
+    SCALAR("mass", mass, false),
+    SCALAR("burn_rate", burn_rate, false),
+    SCALAR("char_fraction", char_fraction, false),
+    SCALAR("ash_fraction", ash_fraction, false),
+    SCALAR("burnt", burn, false),
+    SCALAR("time_ignited", time_ignited, false),
+    SCALAR("piece_id", piece, true),
+    SCALAR("vertex_id", source_vertex, true),
+    SCALAR("sheet", sheet, true),
+    SCALAR("water", water, false), // only where a sheet holds water
+};
+
 #define OUTPUT_ROW(name, ...) {#name, __VA_ARGS__},
 const OutputFormat output_formats[OUTPUT_COUNT] = {OUTPUT_FORMATS(OUTPUT_ROW)};
 

@@ -173,31 +173,21 @@ typedef struct SurfaceField {
     const char *name;
     size_t array; ///< offset of the array's pointer in SingeSurface
     bool integer;
+    uint8_t width, index; ///< values a vertex in that array, and which of them
 } SurfaceField;
 
-/// Scalar fields; each format has names of its own for vectors.
-static const SurfaceField surface_fields[] = {
-    {"temperature", offsetof(SingeSurface, temperature), false},
-    {"temperature_peak", offsetof(SingeSurface, temperature_peak), false},
-    {"mass", offsetof(SingeSurface, mass), false},
-    {"burn_rate", offsetof(SingeSurface, burn_rate), false},
-    {"char_fraction", offsetof(SingeSurface, char_fraction), false},
-    {"ash_fraction", offsetof(SingeSurface, ash_fraction), false},
-    {"burnt", offsetof(SingeSurface, burn), false},
-    {"time_ignited", offsetof(SingeSurface, time_ignited), false},
-    {"piece_id", offsetof(SingeSurface, piece), true},
-    {"vertex_id", offsetof(SingeSurface, source_vertex), true},
-    {"sheet", offsetof(SingeSurface, sheet), true},
-    {"water", offsetof(SingeSurface, water), false}, // only where a sheet held water at the start
-};
-enum { SURFACE_FIELDS = sizeof surface_fields / sizeof *surface_fields };
+/// The columns of the cache: vectors first, then scalar fields, which every format has. Each has names of
+/// its own for vectors.
+enum { SURFACE_VECTORS = 14, SURFACE_FIELDS = 12, SURFACE_COLUMNS = SURFACE_VECTORS + SURFACE_FIELDS };
+extern const SurfaceField surface_columns[SURFACE_COLUMNS];
+#define surface_fields (surface_columns + SURFACE_VECTORS)
 
 /// How many of them there are.
 static inline int surface_field_count(bool wet) { return wet ? SURFACE_FIELDS : SURFACE_FIELDS - 1; }
 
 /// The values of a field: floats or int32_t.
-static inline const void *surface_field(const SingeSurface *surface, const SurfaceField *field) {
-    const void *array;
+static inline void *surface_field(const SingeSurface *surface, const SurfaceField *field) {
+    void *array;
     memcpy(&array, (const char *)surface + field->array, sizeof array);
     return array;
 }

@@ -1,5 +1,6 @@
 // The cache: a surface as a binary little-endian PLY file, one table for the writer and the reader.
 #include "formats/number.h"
+#include "formats/output.h"
 #include "formats/ply.h"
 #include "common/store.h"
 
@@ -7,58 +8,10 @@
 #include <stddef.h>
 #include <stdio.h>
 
-// A property of a vertex: a column of one of the surface's arrays.
-typedef struct Column {
-    const char *name;
-    size_t array;  // offset of the array's pointer in SingeSurface
-    uint8_t width; // 4-byte values a vertex in that array
-    uint8_t index; // which of them
-    bool integer;
-} Column;
-
-#define COLUMN(name, member, width, index) \
-    { name, offsetof(SingeSurface, member), width, index, false }
-#define INTEGER(name, member) \
-    { name, offsetof(SingeSurface, member), 1, 0, true }
-
-static const Column columns[] = {
-    COLUMN("x", position, 3, 0),
-    COLUMN("y", position, 3, 1),
-    COLUMN("z", position, 3, 2),
-    COLUMN("nx", normal, 3, 0),
-    COLUMN("ny", normal, 3, 1),
-    COLUMN("nz", normal, 3, 2),
-    COLUMN("s", uv, 2, 0),
-    COLUMN("t", uv, 2, 1),
-    COLUMN("vx", velocity, 3, 0),
-    COLUMN("vy", velocity, 3, 1),
-    COLUMN("vz", velocity, 3, 2),
-    COLUMN("rest_x", rest_position, 3, 0),
-    COLUMN("rest_y", rest_position, 3, 1),
-    COLUMN("rest_z", rest_position, 3, 2),
-    COLUMN("temperature", temperature, 1, 0),
-    COLUMN("temperature_peak", temperature_peak, 1, 0),
-    COLUMN("mass", mass, 1, 0),
-    COLUMN("burn_rate", burn_rate, 1, 0),
-    COLUMN("char_fraction", char_fraction, 1, 0),
-    COLUMN("ash_fraction", ash_fraction, 1, 0),
-    COLUMN("burnt", burn, 1, 0),
-    COLUMN("time_ignited", time_ignited, 1, 0),
-    INTEGER("piece_id", piece),
-    INTEGER("vertex_id", source_vertex),
-    INTEGER("sheet", sheet),
-    COLUMN("water", water, 1, 0), // only where a sheet holds water
-};
-
-enum { COLUMNS = sizeof columns / sizeof *columns };
 enum { FACE_SIZE = 1 + 3 * 4, HEADER_LIMIT = 2048 };
 
-static size_t column_count(const SingeSurface *surface) { return surface->wet ? COLUMNS : COLUMNS - 1; }
-
-static uint8_t *column_array(const SingeSurface *surface, const Column *column) {
-    uint8_t *array;
-    memcpy(&array, (const uint8_t *)surface + column->array, sizeof array);
-    return array;
+static size_t column_count(const SingeSurface *surface) {
+    return SURFACE_VECTORS + (size_t)surface_field_count(surface->wet);
 }
 
 /// Allocates the arrays. False when out of memory; those before it are there.
@@ -66,9 +19,9 @@ static bool surface_arrays(SingeSurface *surface) {
     surface->vertex_capacity = surface->vertex_count ? surface->vertex_count : 1;
     surface->triangle_capacity = surface->triangle_count ? surface->triangle_count : 1;
     for (size_t i = 0; i < column_count(surface); i++) {
-        if (columns[i].index) continue;
-        void *array = store_new(surface->allocator, surface->vertex_capacity, 4 * (size_t)columns[i].width);
-        memcpy((uint8_t *)surface + columns[i].array, &array, sizeof array);
+        if (surface_columns[i].index) continue;
+        void *array = store_new(surface->allocator, surface->vertex_capacity, 4 * (size_t)surface_columns[i].width);
+        memcpy((uint8_t *)surface + surface_columns[i].array, &array, sizeof array);
         if (!array) return false;
     }
 
@@ -84,8 +37,9 @@ bool surface_new(SingeSurface *surface, uint32_t vertices, uint32_t triangles) {
     }
 
     for (size_t i = 0; i < column_count(surface); i++)
-        if (!columns[i].index)
-            memset(column_array(surface, &columns[i]), 0, 4 * (size_t)columns[i].width * surface->vertex_capacity);
+        if (!surface_columns[i].index)
+            memset(surface_field(surface, &surface_columns[i]), 0,
+                   4 * (size_t)surface_columns[i].width * surface->vertex_capacity);
     memset(surface->triangles, 0, surface->triangle_capacity * sizeof *surface->triangles);
     return true;
 }
@@ -119,22 +73,24 @@ SingeResult ply_write_surface(const char *path, const SingeSurface *surface, dou
 
     const size_t count = column_count(surface);
     for (size_t i = 0; i < count; i++)
-        n += (size_t)snprintf(text + n, HEADER_LIMIT - n, "property %s %s\n", columns[i].integer ? "int" : "float",
-                              columns[i].name);
+        n += (size_t)snprintf(text + n, HEADER_LIMIT - n, "property %s %s\n",
+                              surface_columns[i].integer ? "int" : "float", surface_columns[i].name);
     n += (size_t)snprintf(text + n, HEADER_LIMIT - n,
                           "element face %u\nproperty list uchar int vertex_indices\nend_header\n",
                           surface->triangle_count);
 
     uint8_t *out = bytes + n;
-    const uint8_t *source[COLUMNS];
+    const uint8_t *source[SURFACE_COLUMNS];
     for (size_t i = 0; i < count; i++)
-        source[i] = surface->vertex_count ? column_array(surface, &columns[i]) + 4 * columns[i].index : NULL;
+        source[i] = surface->vertex_count
+                        ? (uint8_t *)surface_field(surface, &surface_columns[i]) + 4 * surface_columns[i].index
+                        : NULL;
 
     for (uint32_t v = 0; v < surface->vertex_count; v++)
         for (size_t i = 0; i < count; i++, out += 4) {
             uint32_t bits;
             memcpy(&bits, source[i], sizeof bits);
-            source[i] += 4 * columns[i].width;
+            source[i] += 4 * surface_columns[i].width;
             store_u32_little(out, bits);
         }
 
@@ -162,19 +118,18 @@ static SingeResult surface_check_header(const Ply *ply, SingeSurface *surface, d
         return ply_refuse(ply, SINGE_ERROR_FORMAT,
                           "not a cache of Singe: the header has no \"comment singe ... time ...\"");
 
-    // the columns, and triangles; `burnt` was called `char`, which shading languages reserve, before version 0.2
+    // the columns, and triangles
     const PlyElement *vertices = ply_element(ply, "vertex"), *faces = ply_element(ply, "face");
     bool fits = header->format == PLY_LITTLE && header->element_count == 2 && vertices == &header->elements[0] &&
                 faces && faces->property_count == 1;
-    surface->wet = fits && vertices->property_count == COLUMNS;
+    surface->wet = fits && vertices->property_count == SURFACE_COLUMNS;
     const size_t count = column_count(surface);
     fits = fits && vertices->property_count == count;
 
     for (size_t i = 0; fits && i < count; i++) {
         const PlyProperty *property = &header->properties[vertices->first_property + i];
-        fits = !property->is_list && property->type == (columns[i].integer ? PLY_INT32 : PLY_FLOAT32) &&
-               (text_word_is(property->name, property->name_end, columns[i].name) ||
-                (strcmp(columns[i].name, "burnt") == 0 && text_word_is(property->name, property->name_end, "char")));
+        fits = !property->is_list && property->type == (surface_columns[i].integer ? PLY_INT32 : PLY_FLOAT32) &&
+               text_word_is(property->name, property->name_end, surface_columns[i].name);
     }
 
     const PlyProperty *list = fits ? &header->properties[faces->first_property] : NULL;
@@ -195,18 +150,19 @@ static SingeResult surface_check_header(const Ply *ply, SingeSurface *surface, d
 }
 
 static SingeResult surface_unpack(Ply *ply, SingeSurface *surface) {
-    uint8_t *target[COLUMNS];
+    uint8_t *target[SURFACE_COLUMNS];
     const size_t count = column_count(surface);
-    for (size_t i = 0; i < count; i++) target[i] = column_array(surface, &columns[i]) + 4 * columns[i].index;
+    for (size_t i = 0; i < count; i++)
+        target[i] = (uint8_t *)surface_field(surface, &surface_columns[i]) + 4 * surface_columns[i].index;
 
     for (uint32_t v = 0; v < surface->vertex_count; v++)
         for (size_t i = 0; i < count; i++, ply->text.at += 4) {
             uint32_t bits = load_u32_little(ply->text.at);
-            if (!columns[i].integer && (bits & 0x7f800000) == 0x7f800000)
-                return ply_refuse(ply, SINGE_ERROR_FORMAT, "%s of vertex %u is not a finite number", columns[i].name,
-                                  v);
+            if (!surface_columns[i].integer && (bits & 0x7f800000) == 0x7f800000)
+                return ply_refuse(ply, SINGE_ERROR_FORMAT, "%s of vertex %u is not a finite number",
+                                  surface_columns[i].name, v);
             memcpy(target[i], &bits, sizeof bits);
-            target[i] += 4 * columns[i].width;
+            target[i] += 4 * surface_columns[i].width;
         }
 
     for (uint32_t f = 0; f < surface->triangle_count; f++) {

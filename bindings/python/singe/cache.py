@@ -19,7 +19,7 @@ from .views import Drawn
 _TYPES = {"float": "<f4", "int": "<i4", "uchar": "u1"}
 _VECTORS = {"position": "x y z", "normal": "nx ny nz", "uv": "s t", "velocity": "vx vy vz",
             "rest_position": "rest_x rest_y rest_z"}
-_RENAMED = {"piece_id": "piece", "vertex_id": "source_vertex", "burnt": "burn", "char": "burn"}
+_RENAMED = {"piece_id": "piece", "vertex_id": "source_vertex", "burnt": "burn"}
 
 
 class Frame(Drawn):
