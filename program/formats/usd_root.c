@@ -1,6 +1,7 @@
 // The root of the USD format, as text: a stage that takes sheets from the frames by value clips and gas from the VDB
 // files, and has the camera, the lights, the ground, colliders with their motion and materials. The lights have the
 // preview's intensities, in units in which white paper under them is nearly white.
+#include "common/float3.h"
 #include "formats/burn_colour.h"
 #include "formats/usd.h"
 
@@ -84,8 +85,6 @@ static void put_triple(Root *r, const char *before, float x, float y, float z) {
     put(r, "\n");
 }
 
-static float dot(const float a[3], const float b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 // ---- names of files
 
 static void put_file(Root *r, const char *folder, int frame, const char *ending) {
@@ -168,34 +167,20 @@ static void put_gas(Root *r) {
 
 // ---- camera and lights
 
-static void cross(const float a[3], const float b[3], float c[3]) {
-    for (int i = 0; i < 3; i++) c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-static void unit(float v[3]) {
-    const float length = sqrtf(dot(v, v));
-    for (int i = 0; i < 3; i++) v[i] = length > 0 ? v[i] / length : (float)(i == 2);
-}
-
 /// A transform at `position` with z axis `back` and an x axis that is level with respect to `up`.
-static void put_frame(Root *r, const float back[3], const float up[3], const float position[3]) {
-    float x[3], y[3], z[3] = {back[0], back[1], back[2]};
-    unit(z);
-    cross(up, z, x);
+static void put_frame(Root *r, Float3 back, const float up[3], const float position[3]) {
+    const Float3 z = float3_length(back) > 0 ? float3_unit(back) : float3(0, 0, 1);
+    Float3 x = float3_cross(float3_load(up), z);
+    if (float3_dot(x, x) < 1e-12f) x = float3_cross(float3(1, 0, 0), z);
+    x = float3_unit(x);
 
-    if (dot(x, x) < 1e-12f) {
-        const float other[3] = {1, 0, 0};
-        cross(other, z, x);
-    }
-
-    unit(x);
-    cross(z, x, y);
-    const float rows[4][4] = {{x[0], x[1], x[2], 0},
-                              {y[0], y[1], y[2], 0},
-                              {z[0], z[1], z[2], 0},
-                              {position[0], position[1], position[2], 1}};
+    float rows[4][4] = {{0}};
+    float3_store(rows[0], x);
+    float3_store(rows[1], float3_cross(z, x));
+    float3_store(rows[2], z);
+    float3_store(rows[3], float3_load(position));
+    rows[3][3] = 1;
     put(r, "        matrix4d xformOp:transform = (");
-
     for (int i = 0; i < 4; i++) {
         put(r, i ? ", " : " ");
         put_numbers(r, rows[i], 4);
@@ -207,14 +192,12 @@ static void put_frame(Root *r, const float back[3], const float up[3], const flo
 static void put_camera(Root *r) {
     const OutputScene *s = r->scene;
     const float height = 36 / s->aspect, focal = 0.5f * height / tanf(0.5f * s->fov);
-    float back[3];
-
-    for (int i = 0; i < 3; i++) back[i] = s->eye[i] - s->target[i];
+    const Float3 back = float3_sub(float3_load(s->eye), float3_load(s->target));
     put(r, "\n    def Camera \"camera\"\n    {\n        float2 clippingRange = (0.01, 1000)\n");
     put_float(r, "        float focalLength = ", focal);
     put(r, "        float horizontalAperture = 36\n");
     put_float(r, "        float verticalAperture = ", height);
-    put_float(r, "        float focusDistance = ", s->focus > 0 ? s->focus : sqrtf(dot(back, back)));
+    put_float(r, "        float focusDistance = ", s->focus > 0 ? s->focus : float3_length(back));
     put_float(r, "        float fStop = ", s->aperture > 0 ? 1e-3f * focal / s->aperture : 0);
     put_frame(r, back, s->up, s->eye);
     put(r, "    }\n");
@@ -364,9 +347,8 @@ static void put_props(Root *r) {
     put(r, "\n    def Xform \"props\"\n    {");
     if (isfinite(r->scene->ground_height)) {
         const OutputScene *s = r->scene;
-        float far_off[3];
-        for (int i = 0; i < 3; i++) far_off[i] = s->eye[i] - s->target[i];
-        const float half = 20 * sqrtf(dot(far_off, far_off)), x = s->target[0], y = s->target[1], z = s->ground_height;
+        const Float3 away = float3_sub(float3_load(s->eye), float3_load(s->target));
+        const float half = 20 * float3_length(away), x = s->target[0], y = s->target[1], z = s->ground_height;
         const float corners[12] = {x - half, y - half, z, x + half, y - half, z,
                                    x + half, y + half, z, x - half, y + half, z};
         static const uint32_t indices[4] = {0, 1, 2, 3};
@@ -509,7 +491,7 @@ void usd_put_root(Sink *sink, const OutputScene *scene) {
     put_float(r, "        float inputs:angle = ", 2 * s->light_angle * 180 / PI);
     put_triple(r, "        color3f inputs:color = ", s->light_colour[0], s->light_colour[1], s->light_colour[2]);
     put_float(r, "        float inputs:intensity = ", PI * FILM_SPEED);
-    put_frame(r, s->light_direction, up, nowhere);
+    put_frame(r, float3_load(s->light_direction), up, nowhere);
     put(r, "    }\n\n    def DomeLight \"sky\"\n    {\n");
     put_triple(r, "        color3f inputs:color = ", s->sky[0], s->sky[1], s->sky[2]);
     put_float(r, "        float inputs:intensity = ", FILM_SPEED);
