@@ -13,28 +13,71 @@
 #include "common/store.h"
 #include "formats/formats.h"
 
+/// The columns of stats.csv: COLUMN(name, unit, printf's format, value), of the frame, its statistics `s`, its `cost` and
+/// the `totals` so far. Whole numbers are exact as doubles.
+#define STATS_COLUMNS(COLUMN)                                             \
+    COLUMN(frame, "", "%.0f", frame)                                      \
+    COLUMN(time, "s", "%.9g", s->time)                                    \
+    COLUMN(particles, "", "%.0f", s->particles)                           \
+    COLUMN(springs, "", "%.0f", s->springs)                               \
+    COLUMN(triangles, "", "%.0f", cost->triangles)                        \
+    COLUMN(pieces, "", "%.0f", s->pieces)                                 \
+    COLUMN(mass, "kg", "%.9g", s->mass)                                   \
+    COLUMN(burnt_fraction, "", "%.9g", s->burnt_fraction)                 \
+    COLUMN(temperature_max, "K", "%.7g", s->temperature_max)              \
+    COLUMN(heat_in, "J", "%.9g", s->heat_in)                              \
+    COLUMN(heat_lost, "J", "%.9g", s->heat_lost)                          \
+    COLUMN(heat_of_combustion, "J", "%.9g", s->heat_of_combustion)        \
+    COLUMN(heat_stored, "J", "%.9g", s->heat_stored)                      \
+    COLUMN(ledger_error, "", "%.4g", s->ledger_error)                     \
+    COLUMN(strain_mean, "", "%.6g", s->strain_mean)                       \
+    COLUMN(strain_p99, "", "%.6g", s->strain_p99)                         \
+    COLUMN(strain_max, "", "%.6g", s->strain_max)                         \
+    COLUMN(inverted_cells, "", "%.0f", s->inverted_cells)                 \
+    COLUMN(ms_heat, "ms", "%.3f", cost->stage[SINGE_STAGE_HEAT])          \
+    COLUMN(ms_burn, "ms", "%.3f", cost->stage[SINGE_STAGE_BURN])          \
+    COLUMN(ms_ablate, "ms", "%.3f", cost->stage[SINGE_STAGE_ABLATE])      \
+    COLUMN(ms_dynamics, "ms", "%.3f", cost->stage[SINGE_STAGE_DYNAMICS])  \
+    COLUMN(ms_gas, "ms", "%.3f", cost->stage[SINGE_STAGE_GAS])            \
+    COLUMN(ms_output, "ms", "%.3f", cost->output)                         \
+    COLUMN(speed_rms_unburnt, "m/s", "%.6g", s->speed_rms_unburnt)        \
+    COLUMN(mass_ledger_error, "", "%.4g", s->mass_ledger_error)           \
+    COLUMN(ignited, "", "%.0f", totals->ignited)                          \
+    COLUMN(holes_opened, "", "%.0f", totals->holes_opened)                \
+    COLUMN(pieces_freed, "", "%.0f", totals->pieces_freed)                \
+    COLUMN(front_speed, "m/s of the fire's time", "%.6g", s->front_speed) \
+    COLUMN(triangles_fine, "", "%.0f", cost->fine_triangles)              \
+    COLUMN(ms_surface, "ms", "%.3f", cost->surface)                       \
+    COLUMN(tears, "", "%.0f", s->tears)                                   \
+    COLUMN(contact_halts, "", "%.0f", totals->contact_halts)              \
+    COLUMN(arrival_error, "s", "%.6g", s->arrival_error)                  \
+    COLUMN(arrival_missed, "", "%.0f", s->arrival_missed)                 \
+    COLUMN(pace, "", "%.6g", s->pace)                                     \
+    COLUMN(water, "kg", "%.9g", s->water)                                 \
+    COLUMN(ms_contact, "ms", "%.3f", cost->contact)                       \
+    COLUMN(energy_kinetic, "J", "%.6g", s->energy_kinetic)                \
+    COLUMN(energy_elastic, "J", "%.6g", s->energy_elastic)                \
+    COLUMN(energy_gravity, "J", "%.6g", s->energy_gravity)                \
+    COLUMN(energy_lost, "J", "%.6g", s->energy_lost)
+
+static const struct {
+    const char *name, *unit, *format;
+} stats_columns[] = {
+#define AS_COLUMN(name, unit, format, value) {#name, unit, "," format},
+    STATS_COLUMNS(AS_COLUMN)};
+enum { STATS = sizeof stats_columns / sizeof *stats_columns };
+
+#define AS_HEADER(name, ...) "," #name
 static const char *const headers[TABLE_COUNT] = {
-    [TABLE_STATS] =
-        "frame,time,particles,springs,triangles,pieces,mass,burnt_fraction,temperature_max,heat_in,heat_lost,"
-        "heat_of_combustion,heat_stored,ledger_error,strain_mean,strain_p99,strain_max,inverted_cells,ms_heat,ms_burn,"
-        "ms_ablate,ms_dynamics,ms_gas,ms_output,speed_rms_unburnt,mass_ledger_error,ignited,holes_opened,pieces_freed,"
-        "front_speed,triangles_fine,ms_surface,tears,contact_halts,arrival_error,arrival_missed,pace,water,ms_contact,"
-        "energy_kinetic,energy_elastic,energy_gravity,energy_lost\n",
+    [TABLE_STATS] = &(STATS_COLUMNS(AS_HEADER) "\n")[1],
     [TABLE_PROBES] =
         "frame,time,probe,sheet,there,x,y,z,temperature,temperature_peak,mass,burn_rate,time_ignited,piece\n",
     [TABLE_EVENTS] = "frame,time,event,element,x,y,z,u,v\n",
 };
 
 const char *tables_unit(const char *column) {
-    static const struct {
-        const char *begins, *unit;
-    } units[] = {
-        {"time", "s"},          {"mass_ledger", ""}, {"mass", "kg"},    {"temperature_", "K"},
-        {"heat_", "J"},         {"ms_", "ms"},       {"speed_", "m/s"}, {"front_speed", "m/s of the fire's time"},
-        {"arrival_error", "s"}, {"water", "kg"},     {"energy_", "J"}};
-
-    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-        if (strncmp(column, units[i].begins, strlen(units[i].begins)) == 0) return units[i].unit;
+    for (int i = 0; i < STATS; i++)
+        if (strcmp(column, stats_columns[i].name) == 0) return stats_columns[i].unit;
     return "";
 }
 
@@ -321,20 +364,12 @@ SingeResult tables_write_frame(Tables *tables, int frame, const SingeStats *s, c
     tables->lines = NULL;
     if (result) return result;
 
-    char line[1024];
-    int length = snprintf(
-        line, sizeof line,
-        "%d,%.9g,%" PRIu32 ",%" PRIu32 ",%" PRIu64 ",%" PRIu32
-        ",%.9g,%.9g,%.7g,%.9g,%.9g,%.9g,%.9g,%.4g,%.6g,%.6g,%.6g,%" PRIu32
-        ",%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.6g,%.4g,%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%.6g,%" PRIu64 ",%.3f,%" PRIu32
-        ",%" PRIu64 ",%.6g,%" PRIu32 ",%.6g,%.9g,%.3f,%.6g,%.6g,%.6g,%.6g\n",
-        frame, s->time, s->particles, s->springs, cost->triangles, s->pieces, s->mass, s->burnt_fraction,
-        (double)s->temperature_max, s->heat_in, s->heat_lost, s->heat_of_combustion, s->heat_stored, s->ledger_error,
-        s->strain_mean, s->strain_p99, s->strain_max, s->inverted_cells, cost->stage[SINGE_STAGE_HEAT],
-        cost->stage[SINGE_STAGE_BURN], cost->stage[SINGE_STAGE_ABLATE], cost->stage[SINGE_STAGE_DYNAMICS],
-        cost->stage[SINGE_STAGE_GAS], cost->output, s->speed_rms_unburnt, s->mass_ledger_error, totals->ignited,
-        totals->holes_opened, totals->pieces_freed, s->front_speed, cost->fine_triangles, cost->surface, s->tears,
-        totals->contact_halts, s->arrival_error, s->arrival_missed, (double)s->pace, s->water, cost->contact,
-        s->energy_kinetic, s->energy_elastic, s->energy_gravity, s->energy_lost);
+#define AS_VALUE(name, unit, format, value) (double)(value),
+    const double values[STATS] = {STATS_COLUMNS(AS_VALUE)};
+    char line[24 * STATS];
+    int length = 0;
+    for (int i = 0; i < STATS; i++)
+        length += snprintf(line + length, sizeof line - (size_t)length, stats_columns[i].format + !i, values[i]);
+    line[length++] = '\n';
     return lines_append(&tables->files[TABLE_STATS], line, (size_t)length, error);
 }
