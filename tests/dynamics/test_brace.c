@@ -13,7 +13,7 @@ static SingeSimDef braced_def(int threads) {
 /// While two sheets burn, tear and crease.
 TEST(bytes_do_not_depend_on_threads_or_saving) {
     SingeSimDef def = braced_def(1), hooks = braced_def(3);
-    Scene scene = scene_make(&def, 14);
+    TestScene scene = scene_make(&def, 14);
     test_steps(scene.sim, 60);
     SingeSim *other = test_reload(&hooks, scene.sim);
     static float flux = 2000; // the scene's

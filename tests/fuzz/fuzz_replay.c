@@ -29,7 +29,7 @@ static Tape make_recording(int which) {
     def.solver.substeps = 2;
     def.contact.enabled = def.solver.tearing = def.solver.creases = which == 2;
 
-    Scene scene;
+    TestScene scene;
     if (scene_build(&def, 3, &scene)) abort();
     scene_every_call(&scene);
     singe_sim_destroy(scene.sim);

@@ -24,7 +24,7 @@ static Saved make_snapshot(int which) {
     def.gas.enabled = which == 1, def.gas.cell_size = 0.05f, def.gas.height = 0.1f;
     def.contact.enabled = def.solver.tearing = def.solver.creases = which == 2;
 
-    Scene scene;
+    TestScene scene;
     if (scene_build(&def, 3, &scene)) abort();
     if (which != MESHED && singe_sim_remove_collider(scene.sim, scene.mesh)) abort();
     for (int i = 0; i < 6; i++)

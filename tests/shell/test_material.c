@@ -23,10 +23,10 @@ static const struct {
 #define SINGE_PARAM_BACK SINGE_PARAM
 #define COLOUR(number, name, colour, ...) \
     {AT(name[colour]), number + colour, AT_BOTH, __VA_ARGS__, MATTER(name[colour])},
-#define SINGE_PARAM_COLOURS(number, NAME, name, range, text)                         \
-    COLOUR(number, name, SINGE_RED, range)                                           \
-    COLOUR(number, name, SINGE_GREEN, range) COLOUR(number, name, SINGE_BLUE, range) \
-        COLOUR(number, name, SINGE_YELLOW, range)
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text) \
+    COLOUR(number, name, SINGE_RED, range)                   \
+    COLOUR(number, name, SINGE_GREEN, range)                 \
+    COLOUR(number, name, SINGE_BLUE, range) COLOUR(number, name, SINGE_YELLOW, range)
 #include "singe/material.def"
 };
 enum { VARYING = sizeof varying / sizeof varying[0] };

@@ -41,7 +41,7 @@ void scene_flux(void *context, const struct SingeView *view, float *flux, float 
     }
 }
 
-static SingeResult scene_sheets(Scene *scene, uint32_t cells) {
+static SingeResult scene_sheets(TestScene *scene, uint32_t cells) {
     const float side = 0.2f;
     TestMesh grid = test_grid(cells, cells, side / (float)cells, side / (float)cells),
              tube = test_cylinder(8, 5, 0.03f, 0.1f);
@@ -73,7 +73,7 @@ static SingeResult scene_sheets(Scene *scene, uint32_t cells) {
         if (result_) return result_;  \
     } while (0)
 
-static SingeResult scene_sources(Scene *scene) {
+static SingeResult scene_sources(TestScene *scene) {
     SingeSim *sim = scene->sim;
     SingePoseKey path[] = {test_key(0, 0, 0.1f, 0.01f), test_key(0.5f, 0.2f, 0.1f, 0.01f)};
     SingeSourceDef def = singe_default_source();
@@ -103,7 +103,7 @@ static SingeResult scene_sources(Scene *scene) {
     return singe_sim_add_source(sim, &def, &scene->callback);
 }
 
-static SingeResult scene_colliders(Scene *scene) {
+static SingeResult scene_colliders(TestScene *scene) {
     SingeSim *sim = scene->sim;
     SingePoseKey path[] = {test_key(0, 0.1f, 0.05f, -0.02f), {0.4f, {0.1f, 0.12f, 0}, {0.3f, 0, 0, 0.9f}}};
     SingeColliderDef def = singe_default_collider();
@@ -134,7 +134,7 @@ static SingeResult scene_colliders(Scene *scene) {
     return singe_sim_add_collider(sim, &def, &scene->heightfield);
 }
 
-static SingeResult scene_pins(Scene *scene) {
+static SingeResult scene_pins(TestScene *scene) {
     SingePinDef def = singe_default_pin();
     const float points[] = {0, 0, 0, 0.2f, 0, 0};
     def.sheet = scene->sheets[0];
@@ -151,7 +151,7 @@ static SingeResult scene_pins(Scene *scene) {
     return singe_sim_add_pin(scene->sim, &def, &scene->vertices);
 }
 
-SingeResult scene_build(const SingeSimDef *def, uint32_t cells, Scene *scene) {
+SingeResult scene_build(const SingeSimDef *def, uint32_t cells, TestScene *scene) {
     SingeError error;
     memset(scene, 0, sizeof *scene);
     SCENE_TRY(singe_sim_create(def, &scene->sim, &error));
@@ -162,7 +162,7 @@ SingeResult scene_build(const SingeSimDef *def, uint32_t cells, Scene *scene) {
     return scene_pins(scene);
 }
 
-SingeResult scene_build_early(const SingeSimDef *def, uint32_t cells, Scene *scene) {
+SingeResult scene_build_early(const SingeSimDef *def, uint32_t cells, TestScene *scene) {
     SingeError error;
     memset(scene, 0, sizeof *scene);
     SCENE_TRY(singe_sim_create(def, &scene->sim, &error));
@@ -173,8 +173,8 @@ SingeResult scene_build_early(const SingeSimDef *def, uint32_t cells, Scene *sce
     return singe_sim_commit(scene->sim);
 }
 
-Scene scene_make(const SingeSimDef *def, uint32_t cells) {
-    Scene scene;
+TestScene scene_make(const SingeSimDef *def, uint32_t cells) {
+    TestScene scene;
     SingeSimDef standard = scene_def();
     SingeResult result = scene_build(def ? def : &standard, cells, &scene);
     test_ok(scene.sim, result);
@@ -183,7 +183,7 @@ Scene scene_make(const SingeSimDef *def, uint32_t cells) {
 
 // ---- every call
 
-static void scene_set(const Scene *scene) {
+static void scene_set(const TestScene *scene) {
     SingeSim *sim = scene->sim;
     test_steps(sim, 4);
     const float down[3] = {0, 1, -9};
@@ -218,7 +218,7 @@ static void scene_set(const Scene *scene) {
     test_steps(sim, 2);
 }
 
-static void scene_move(const Scene *scene) {
+static void scene_move(const TestScene *scene) {
     SingeSim *sim = scene->sim;
     const SingePoseKey to[2] = {test_key(0, 0, 0, 0.01f), test_key(1, 0.02f, 0, 0.01f)};
     test_ok(sim, singe_sim_move_source(sim, scene->ball, 2, to));
@@ -251,7 +251,7 @@ static void scene_deform(SingeSim *sim) {
     test_steps(sim, 2);
 }
 
-void scene_every_call(const Scene *scene) {
+void scene_every_call(const TestScene *scene) {
     SingeSim *sim = scene->sim, *copy;
     scene_set(scene);
     scene_move(scene);

@@ -7,7 +7,7 @@
 /// The order in which sheets, objects and the commit come does not matter.
 TEST(the_order_does_not_matter) {
     SingeSimDef def = scene_def();
-    Scene late, early;
+    TestScene late, early;
     test_ok(NULL, scene_build(&def, 9, &late));
 
     SingeResult result = scene_build_early(&def, 9, &early);
@@ -218,7 +218,7 @@ TEST(user_data_is_the_callers) {
 TEST(every_allocation_fails_once) {
     TestAllocator count = {0};
     SingeSimDef def = scene_def();
-    Scene scene;
+    TestScene scene;
     def.allocator = test_allocator(&count);
     test_ok(NULL, scene_build_early(&def, 3, &scene));
     singe_sim_destroy(scene.sim);

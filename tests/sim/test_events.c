@@ -13,7 +13,7 @@ static SingeSimDef calm(void) {
 }
 
 TEST(a_particle_ignites_once) {
-    Scene scene = scene_make(NULL, 14);
+    TestScene scene = scene_make(NULL, 14);
     SingeView view = singe_sim_view(scene.sim);
     unsigned char *seen = calloc(view.particle_count, 1);
 

@@ -14,7 +14,7 @@ static void poison(void *context, const struct SingeView *view, float *flux, flo
 }
 
 TEST(a_failed_step_changes_nothing) {
-    Scene scene = scene_make(NULL, 12), twin = scene_make(NULL, 12);
+    TestScene scene = scene_make(NULL, 12), twin = scene_make(NULL, 12);
     SingeSim *sim = scene.sim;
     test_steps(sim, 15);
     test_steps(twin.sim, 15);
@@ -53,7 +53,7 @@ TEST(a_failed_step_changes_nothing) {
 /// A pin drags a particle out of the world: the dynamics fails after other stages have run, and their changes are
 /// undone.
 TEST(a_failure_late_in_the_step_changes_nothing) {
-    Scene scene = scene_make(NULL, 10);
+    TestScene scene = scene_make(NULL, 10);
     SingeSim *sim = scene.sim;
     test_steps(sim, 30);
 
@@ -173,7 +173,7 @@ TEST(steps_allocate_nothing) {
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
 
-    Scene scene = scene_make(&def, 14);
+    TestScene scene = scene_make(&def, 14);
     long calls = hook.calls, frees = hook.frees;
     size_t events = 0;
     for (int i = 0; i < 100; i++) {
@@ -192,7 +192,7 @@ TEST(steps_allocate_nothing) {
     assert_int_equal(hook.blocks, 0);
 }
 
-static SingeResult whole_life(const SingeSimDef *def, Scene *scene, SingeSurface *surface) {
+static SingeResult whole_life(const SingeSimDef *def, TestScene *scene, SingeSurface *surface) {
 #define LIFE(call)                    \
     do {                              \
         SingeResult result_ = (call); \
@@ -233,7 +233,7 @@ static long allocations(void) {
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
 
-    Scene scene;
+    TestScene scene;
     SingeSurface surface = {.allocator = def.allocator};
     test_ok(scene.sim, whole_life(&def, &scene, &surface));
     singe_surface_free(&surface);
@@ -254,7 +254,7 @@ TEST(every_allocation_fails_once) {
         SingeSimDef def = scene_def();
         def.allocator = test_allocator(&hook);
 
-        Scene scene;
+        TestScene scene;
         SingeSurface surface = {.allocator = def.allocator};
         SingeResult result = whole_life(&def, &scene, &surface);
         if (result != SINGE_ERROR_MEMORY)

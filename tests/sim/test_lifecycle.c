@@ -281,7 +281,7 @@ TEST(pins_that_miss_their_sheet_are_logged) {
 }
 
 TEST(timers_and_time_grow) {
-    Scene scene = scene_make(NULL, 10);
+    TestScene scene = scene_make(NULL, 10);
     SingeTimers last = singe_sim_timers(scene.sim);
     assert_int_equal(last.steps, 0);
 
@@ -380,7 +380,7 @@ TEST(every_byte_is_counted_and_freed) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
-    Scene scene = scene_make(&def, 8);
+    TestScene scene = scene_make(&def, 8);
     assert_int_equal(singe_sim_counts(scene.sim).memory, hook.bytes);
     test_steps(scene.sim, 3);
 

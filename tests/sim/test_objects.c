@@ -21,7 +21,7 @@ static float mean_height(SingeSim *sim) {
 }
 
 TEST(handles_go_stale) {
-    Scene scene = scene_make(NULL, 8);
+    TestScene scene = scene_make(NULL, 8);
     SingeSim *sim = scene.sim;
     SingePoseKey key = test_key(0, 0, 0, 0);
     SingeSourceDef source = singe_default_source();
@@ -64,7 +64,7 @@ TEST(handles_go_stale) {
 }
 
 TEST(refused_moves_change_nothing) {
-    Scene scene = scene_make(NULL, 8), other = scene_make(NULL, 8);
+    TestScene scene = scene_make(NULL, 8), other = scene_make(NULL, 8);
     SingeSim *sim = scene.sim;
     SingePoseKey bad = test_key(0, NAN, 0, 0), good = test_key(0, 0, 0, 0);
 

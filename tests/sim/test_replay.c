@@ -26,7 +26,7 @@ static SingeReplay replay_all(const Tape *tape) { return replay_some(tape, tape-
 
 /// Ends the simulation.
 static void live(const SingeSimDef *def) {
-    Scene scene = scene_make(def, 10);
+    TestScene scene = scene_make(def, 10);
     scene_every_call(&scene);
     singe_sim_destroy(scene.sim);
 }
@@ -61,7 +61,7 @@ TEST(a_replay_makes_every_call_and_ends_in_the_same_bits) {
 TEST(a_recording_changes_nothing) {
     Tape tape = {0};
     const SingeSimDef def = scene_def(), with = recorded(def, &tape);
-    Scene a = scene_make(&def, 10), b = scene_make(&with, 10);
+    TestScene a = scene_make(&def, 10), b = scene_make(&with, 10);
     test_ok(a.sim, singe_sim_set_ambient_temperature(a.sim, 280));
     test_ok(b.sim, singe_sim_set_ambient_temperature(b.sim, 280)); // rebuilt, and still recorded
 
@@ -96,7 +96,7 @@ TEST(recordings_differ_only_in_the_number_of_threads) {
 }
 
 TEST(recordings_may_begin_with_a_snapshot) {
-    Scene scene = scene_make(NULL, 8);
+    TestScene scene = scene_make(NULL, 8);
     test_steps(scene.sim, 3);
 
     Tape tape = {0};
@@ -119,7 +119,7 @@ TEST(what_was_given_up_is_given_up_again) {
     bool gives_up = false;
     SingeSimDef def = recorded(scene_def(), &tape);
     def.cancel = (SingeCancel){yes_if, &gives_up};
-    Scene scene = scene_make(&def, 8);
+    TestScene scene = scene_make(&def, 8);
     test_steps(scene.sim, 3);
     gives_up = true;
     test_refused(scene.sim, SINGE_ERROR_CANCELLED, singe_sim_step(scene.sim));
@@ -325,7 +325,7 @@ TEST(a_failing_writer_ends_only_the_recording) {
     SingeSimDef def = recorded(scene_def(), &tape);
     def.log = (SingeLog){count_warning, &warnings};
 
-    Scene scene = scene_make(&def, 10);
+    TestScene scene = scene_make(&def, 10);
     test_steps(scene.sim, 3);
     singe_sim_destroy(scene.sim);
     assert_int_equal(warnings, 1);

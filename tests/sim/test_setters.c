@@ -6,8 +6,8 @@
 #include <string.h>
 
 /// A scene without its callback, which a load does not have.
-static Scene quiet_scene(uint32_t cells) {
-    Scene scene = scene_make(NULL, cells);
+static TestScene quiet_scene(uint32_t cells) {
+    TestScene scene = scene_make(NULL, cells);
     test_ok(scene.sim, singe_sim_remove_source(scene.sim, scene.callback));
     return scene;
 }
@@ -27,7 +27,7 @@ TEST(set_at_once_is_set_in_the_def) {
     const float gravity[3] = {1, 0, -3};
     for (int k = 0; k < 3; k++) {
         SingeSimDef def = scene_def(), other = def;
-        Scene set, made;
+        TestScene set, made;
         test_ok(NULL, scene_build(&def, 8, &set));
         if (k == 0) test_ok(set.sim, singe_sim_set_gravity(set.sim, gravity));
         if (k == 1) test_ok(set.sim, singe_sim_set_pace(set.sim, 1.5f * def.pace));
@@ -46,7 +46,7 @@ TEST(set_at_once_is_set_in_the_def) {
 TEST(set_later_is_saved) {
     const float gravity[3] = {0.5f, 0, -20};
     for (int k = 0; k < 3; k++) {
-        Scene scene = quiet_scene(8), twin = quiet_scene(8);
+        TestScene scene = quiet_scene(8), twin = quiet_scene(8);
         test_steps(scene.sim, 30);
         test_steps(twin.sim, 30);
         if (k == 0) test_ok(scene.sim, singe_sim_set_gravity(scene.sim, gravity));
@@ -98,7 +98,7 @@ TEST(warmer_air_warms) {
 }
 
 TEST(refused_numbers_change_nothing) {
-    Scene scene = quiet_scene(8), twin = quiet_scene(8);
+    TestScene scene = quiet_scene(8), twin = quiet_scene(8);
     SingeSim *sim = scene.sim;
     const float nowhere[3] = {0, NAN, 0}, sideways[3] = {20, 0, -1}, fast[3] = {0, 1e5f, 0}, share[4] = {0};
     SingeMaterialDef material = singe_default_material();
@@ -210,7 +210,7 @@ TEST(velocities_throw) {
 // ---- materials
 
 TEST(the_same_material_changes_nothing) {
-    Scene scene = quiet_scene(8), twin = quiet_scene(8);
+    TestScene scene = quiet_scene(8), twin = quiet_scene(8);
     SingeMaterialDef material = scene_quick_material();
     material.mass_rate = singe_param_field(material.mass_rate.value, 0.12f,
                                            &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.03f, 3, 5}});
@@ -262,7 +262,7 @@ TEST(any_material_can_be_set_at_any_time) {
     SingeSimDef def = scene_def();
     def.solver.tearing = true;
 
-    Scene scene;
+    TestScene scene;
     test_ok(NULL, scene_build(&def, 12, &scene));
     test_ok(scene.sim, singe_sim_remove_source(scene.sim, scene.callback));
     test_steps(scene.sim, 60);
@@ -291,7 +291,7 @@ TEST(without_memory_nothing_changes) {
     TestAllocator hook = {0};
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
-    Scene scene;
+    TestScene scene;
     test_ok(NULL, scene_build(&def, 4, &scene));
     test_steps(scene.sim, 5);
 
@@ -325,7 +325,7 @@ TEST(without_memory_nothing_changes) {
 
 /// A frame of any length has the steps that fit into it; its remainder is neither lost nor simulated twice.
 TEST(frames_may_have_any_length) {
-    Scene advanced = quiet_scene(8), stepped = quiet_scene(8);
+    TestScene advanced = quiet_scene(8), stepped = quiet_scene(8);
     const double h = (double)scene_def().time_step, frames[] = {0.4, 1.7, 0, 3.1, 0.8, 12.5, 0.05};
     double sum = 0;
     uint32_t done = 0, events = 0;

@@ -16,7 +16,7 @@ static float flux_strength = 2000;
 TEST(resumed_runs_are_the_same) {
     static const int saves[] = {0, 1, 17, 45, 80};
     for (size_t k = 0; k < sizeof saves / sizeof *saves; k++) {
-        Scene scene = scene_make(NULL, 14);
+        TestScene scene = scene_make(NULL, 14);
         test_steps(scene.sim, saves[k]);
 
         SingeSim *resumed = test_reload(NULL, scene.sim);
@@ -41,7 +41,7 @@ TEST(resumed_runs_are_the_same) {
 
 /// The bytes depend on the simulation alone, not on padding or addresses.
 TEST(bytes_are_the_same) {
-    Scene a = scene_make(NULL, 9);
+    TestScene a = scene_make(NULL, 9);
     TestAllocator hook = {0}; // fills fresh blocks with rubbish
     SingeSimDef def;
 
@@ -49,7 +49,7 @@ TEST(bytes_are_the_same) {
     SingeSimDef standard = scene_def();
     memcpy(&def, &standard, sizeof def);
     def.allocator = test_allocator(&hook);
-    Scene b = scene_make(&def, 9);
+    TestScene b = scene_make(&def, 9);
 
     test_steps_alike(a.sim, b.sim, 12);
 
@@ -65,7 +65,7 @@ TEST(bytes_are_the_same) {
 }
 
 TEST(handles_keep_their_values) {
-    Scene scene = scene_make(NULL, 8);
+    TestScene scene = scene_make(NULL, 8);
     test_ok(scene.sim, singe_sim_remove_source(scene.sim, scene.ball));
     test_ok(scene.sim, singe_sim_remove_collider(scene.sim, scene.sphere));
     test_ok(scene.sim, singe_sim_remove_pin(scene.sim, scene.points));
@@ -104,7 +104,7 @@ TEST(handles_keep_their_values) {
 }
 
 TEST(clones_are_independent) {
-    Scene scene = scene_make(NULL, 10);
+    TestScene scene = scene_make(NULL, 10);
     test_steps(scene.sim, 20);
     SingeSim *copy;
     test_ok(scene.sim, singe_sim_clone(scene.sim, &copy));
@@ -145,7 +145,7 @@ static void refuse(uint8_t *bytes, size_t size, const char *what) {
 }
 
 static TestBytes small_snapshot(void) {
-    Scene scene = scene_make(NULL, 4);
+    TestScene scene = scene_make(NULL, 4);
     test_steps(scene.sim, 6);
     TestBytes bytes = test_save(scene.sim);
     singe_sim_destroy(scene.sim);
@@ -406,7 +406,7 @@ TEST(impossible_numbers_are_refused) {
 #undef ROW
     SingeSimDef def = scene_def();
     def.contact.enabled = def.solver.tearing = def.solver.creases = true;
-    Scene scene = scene_make(&def, 5);
+    TestScene scene = scene_make(&def, 5);
     test_steps(scene.sim, 6);
     assert_true(scene.sim->state.ablate.spring_flags[SINGE_GREEN][GREEN] && !scene.sim->state.dynamics.pinned[VERTEX]);
     TestBytes good = test_save(scene.sim);
@@ -444,7 +444,7 @@ TEST(other_versions_are_refused) {
 
 /// Time step, gravity and the rest come from the bytes, not from the hooks.
 TEST(hooks_are_only_hooks) {
-    Scene scene = scene_make(NULL, 8);
+    TestScene scene = scene_make(NULL, 8);
     test_steps(scene.sim, 5);
 
     SingeSimDef hooks = singe_default_sim();

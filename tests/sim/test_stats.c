@@ -7,7 +7,7 @@
 #include <string.h>
 
 TEST(ledgers_close) {
-    Scene scene = scene_make(NULL, 20);
+    TestScene scene = scene_make(NULL, 20);
     double worst_heat = 0, worst_mass = 0;
     for (int i = 0; i < 250; i++) {
         test_ok(scene.sim, singe_sim_step(scene.sim));
@@ -198,7 +198,7 @@ static int ascending(const void *a, const void *b) {
 }
 
 TEST(statistics_match_the_view) {
-    Scene scene = scene_make(NULL, 12);
+    TestScene scene = scene_make(NULL, 12);
     const float mass_loss = scene_quick_material().mass_loss.value;
     for (int round = 0; round < 6; round++) {
         test_steps(scene.sim, 20);

@@ -11,7 +11,7 @@ enum { CELLS = 44, STEPS = 40, THREADS_MAX = 8 };
 #endif
 
 static TestBytes run(SingeSimDef def) {
-    Scene scene = scene_make(&def, CELLS);
+    TestScene scene = scene_make(&def, CELLS);
     test_steps(scene.sim, STEPS);
     SingeStats stats = singe_sim_stats(scene.sim);
     assert_true(stats.mass_burnt > 0 && stats.mass_removed > 0);
