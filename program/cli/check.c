@@ -205,19 +205,6 @@ static SingeResult report_materials(const Scene *scene, float thickening, SingeE
     return result;
 }
 
-/// What a run writes, with pictures and without other formats.
-static void report_disk(const Scene *scene, const CheckTimes *times) {
-    const double frames = scene->frames, pictures = pixel_bytes * pixels_of(&scene->preview.def);
-    const SceneCheckpoints *keep = &scene->checkpoints;
-    const double most = keep->megabytes > 0 ? 1e6 * (double)keep->megabytes : INFINITY;
-    const double kept = fmin(floor(frames / (keep->every ? keep->every : 10)) * times->checkpoint, most);
-    const double low = frames * (times->mesh + pictures);
-    printf("disk          about %.3g to %.3g MB", 1e-6 * (low + kept),
-           1e-6 * (low + frames * ((mesh_growth - 1) * times->mesh + times->gas) + kept));
-    if (kept > 0) printf(", %.3g MB of them checkpoints", 1e-6 * kept);
-    printf("\n");
-}
-
 static void report_size(const Job *job, const SceneAssets *assets, double pictures) {
     SceneSize size = scene_size(job->scene, assets);
     printf("needs         about %.2f GB of memory for %" PRIu64 " cells", 1e-9 * (size.memory + pictures), size.cells);
@@ -273,7 +260,17 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
                scene->steps, 1e3 * (double)scene->sim.time_step);
         printf("time          about %s: a step %.2f ms, a surface %.2f ms, a picture %.0f ms, with %d threads\n", text,
                1e3 * times.step, 1e3 * times.surface, 1e3 * times.picture, job.hooks.thread_count);
-        report_disk(scene, &times);
+
+        // what a run writes, with pictures and without other formats
+        const double frames = scene->frames, pictures = pixel_bytes * pixels_of(&scene->preview.def);
+        const SceneCheckpoints *keep = &scene->checkpoints;
+        const double most = keep->megabytes > 0 ? 1e6 * (double)keep->megabytes : INFINITY;
+        const double kept = fmin(floor(frames / (keep->every ? keep->every : 10)) * times.checkpoint, most);
+        const double low = frames * (times.mesh + pictures) + kept;
+        printf("disk          about %.3g to %.3g MB", 1e-6 * low,
+               1e-6 * (low + frames * ((mesh_growth - 1) * times.mesh + times.gas)));
+        if (kept > 0) printf(", %.3g MB of them checkpoints", 1e-6 * kept);
+        printf("\n");
         printf("%s: good\n", shown_path(path).text); // only now, after its first steps
     }
 

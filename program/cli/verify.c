@@ -251,25 +251,6 @@ static ExitCode verify_all(Verify *verify) {
 
 // ---- the cache
 
-/// The name of the run's files, from its record; and whether the run has reported that it began with crossings.
-static ExitCode find_folder(Verify *verify, const char *path) {
-    JobRecord record;
-    ExitCode code = job_record_open(&record, &verify->console, path);
-    if (!code) {
-        JsonText totals, crossed;
-        char *name = text_json_words(record.json, "name");
-        if (name) verify->folder = folder_name(path, name);
-        else code = job_record_refuse(&record, &verify->console);
-        verify->crossed = text_json_member(record.json, "totals", &totals) &&
-                          text_json_member(totals, "crossed_at_start", &crossed) && crossed.size &&
-                          *crossed.text >= '1' && *crossed.text <= '9';
-        free(name);
-    }
-
-    job_record_close(&record);
-    return code;
-}
-
 int command_verify(int argc, char **argv) {
     Verify verify = {.console = console_make(false), .stretch = 2};
     ExitCode code;
@@ -279,7 +260,22 @@ int command_verify(int argc, char **argv) {
     verify.findings = (Findings){.report = verify_report, .context = &verify.console, .stretch = verify.stretch};
     verify.first = verify.frames[0];
     verify.last = verify.frames[1];
-    code = find_folder(&verify, verify.path);
+
+    // the name of the run's files, from its record; and whether the run has reported that it began with crossings
+    JobRecord record;
+    code = job_record_open(&record, &verify.console, verify.path);
+    if (!code) {
+        JsonText totals, crossed;
+        char *name = text_json_words(record.json, "name");
+        if (name) verify.folder = folder_name(verify.path, name);
+        else code = job_record_refuse(&record, &verify.console);
+        verify.crossed = text_json_member(record.json, "totals", &totals) &&
+                         text_json_member(totals, "crossed_at_start", &crossed) && crossed.size &&
+                         *crossed.text >= '1' && *crossed.text <= '9';
+        free(name);
+    }
+    job_record_close(&record);
+
     if (!code) code = folder_span(&verify.folder, &verify.console, &verify.first, &verify.last);
     if (!code) code = stats_table_read(&verify.stats, verify.folder.stats, &verify.console);
     if (!code) code = verify_all(&verify);

@@ -26,20 +26,6 @@ typedef struct Canvas {
     float corners[3][TEXTURE_CHANNELS]; ///< of the triangle that is drawn
 } Canvas;
 
-static bool canvas_make(Canvas *c, SingeAllocator a, int size) {
-    *c = (Canvas){.size = size, .pixels = (size_t)size * (size_t)size};
-    c->values = store_new(a, c->pixels, TEXTURE_CHANNELS * sizeof(float));
-    c->covered = store_new(a, c->pixels, 1);
-    c->chart = store_new(a, c->pixels, 1);
-    c->nearest = store_new(a, c->pixels, 4);
-    c->queue = store_new(a, c->pixels, 4);
-    if (!c->values || !c->covered || !c->chart || !c->nearest || !c->queue) return false;
-
-    memset(c->values, 0, c->pixels * TEXTURE_CHANNELS * sizeof(float));
-    memset(c->covered, 0, c->pixels), memset(c->chart, 0, c->pixels);
-    return true;
-}
-
 static void draw_values(void *context, size_t pixel, const float weight[3]) {
     Canvas *c = context;
     c->covered[pixel] = c->chart[pixel] = 1;
@@ -107,18 +93,29 @@ static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const Ou
                               const char *path, SingeError *error) {
     static const char letters[] = "RGBA";
     const SingeAllocator a = frame->surface->allocator;
-    Canvas canvas;
-    const bool made = canvas_make(&canvas, a, scene->texture_size);
-
+    const size_t pixels = (size_t)scene->texture_size * (size_t)scene->texture_size;
+    const size_t bytes = TEXTURE_CHANNELS * sizeof(float);
+    Canvas canvas = {.size = scene->texture_size,
+                     .pixels = pixels,
+                     .values = store_new(a, pixels, bytes),
+                     .covered = store_new(a, pixels, 1),
+                     .chart = store_new(a, pixels, 1),
+                     .nearest = store_new(a, pixels, 4),
+                     .queue = store_new(a, pixels, 4)};
+    const bool made = canvas.values && canvas.covered && canvas.chart && canvas.nearest && canvas.queue;
     if (made) {
+        memset(canvas.values, 0, pixels * bytes);
+        memset(canvas.covered, 0, pixels);
+        memset(canvas.chart, 0, pixels);
         canvas_draw(&canvas, scene, frame, sheet);
         layers->values[layers->count] = canvas.values;
     }
 
-    if (!made) store_free(a, canvas.values, canvas.pixels, TEXTURE_CHANNELS * sizeof(float));
-    store_free(a, canvas.covered, canvas.pixels, 1), store_free(a, canvas.chart, canvas.pixels, 1);
-    store_free(a, canvas.nearest, canvas.pixels, 4), store_free(a, canvas.queue, canvas.pixels, 4);
-
+    if (!made) store_free(a, canvas.values, pixels, bytes);
+    store_free(a, canvas.covered, pixels, 1);
+    store_free(a, canvas.chart, pixels, 1);
+    store_free(a, canvas.nearest, pixels, 4);
+    store_free(a, canvas.queue, pixels, 4);
     if (!made) return refuse_memory(error, "textures", path);
     char prim[USD_NAME];
     usd_sheet_name(scene, sheet, prim);

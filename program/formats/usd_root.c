@@ -188,21 +188,6 @@ static void put_frame(Root *r, Float3 back, const float up[3], const float posit
     put(r, " )\n        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n");
 }
 
-/// Lens lengths are in millimetres for a film 36 mm wide, as programs expect.
-static void put_camera(Root *r) {
-    const OutputScene *s = r->scene;
-    const float height = 36 / s->aspect, focal = 0.5f * height / tanf(0.5f * s->fov);
-    const Float3 back = float3_sub(float3_load(s->eye), float3_load(s->target));
-    put(r, "\n    def Camera \"camera\"\n    {\n        float2 clippingRange = (0.01, 1000)\n");
-    put_float(r, "        float focalLength = ", focal);
-    put(r, "        float horizontalAperture = 36\n");
-    put_float(r, "        float verticalAperture = ", height);
-    put_float(r, "        float focusDistance = ", s->focus > 0 ? s->focus : float3_length(back));
-    put_float(r, "        float fStop = ", s->aperture > 0 ? 1e-3f * focal / s->aperture : 0);
-    put_frame(r, back, s->up, s->eye);
-    put(r, "    }\n");
-}
-
 // ---- props
 
 static void put_points(Root *r, const float *vertices, uint32_t count) {
@@ -483,10 +468,21 @@ void usd_put_root(Sink *sink, const OutputScene *scene) {
     put(r, "    }\n");
 
     if (scene->gas) put_gas(r);
-    put_camera(r);
+
+    // lens lengths are in millimetres for a film 36 mm wide, as programs expect
+    const OutputScene *s = r->scene;
+    const float height = 36 / s->aspect, focal = 0.5f * height / tanf(0.5f * s->fov);
+    const Float3 back = float3_sub(float3_load(s->eye), float3_load(s->target));
+    put(r, "\n    def Camera \"camera\"\n    {\n        float2 clippingRange = (0.01, 1000)\n");
+    put_float(r, "        float focalLength = ", focal);
+    put(r, "        float horizontalAperture = 36\n");
+    put_float(r, "        float verticalAperture = ", height);
+    put_float(r, "        float focusDistance = ", s->focus > 0 ? s->focus : float3_length(back));
+    put_float(r, "        float fStop = ", s->aperture > 0 ? 1e-3f * focal / s->aperture : 0);
+    put_frame(r, back, s->up, s->eye);
+    put(r, "    }\n");
 
     static const float nowhere[3] = {0, 0, 0}, up[3] = {0, 0, 1};
-    const OutputScene *s = r->scene;
     put(r, "\n    def DistantLight \"sun\"\n    {\n        bool inputs:normalize = 1\n");
     put_float(r, "        float inputs:angle = ", 2 * s->light_angle * 180 / PI);
     put_triple(r, "        color3f inputs:color = ", s->light_colour[0], s->light_colour[1], s->light_colour[2]);
