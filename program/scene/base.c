@@ -69,11 +69,11 @@ static SceneText *base_builtin(Reader *reader, const YamlNode *node) {
     }
 
     char seen[NODE_WORDS], hint[80], names[160];
-    message_add(reader->messages, reader->text, node->location,
-                "there is no material %s; the built-in ones are %s; a file of your own needs its extension "
-                "(mine.yaml)%s",
-                node_describe(node, seen, sizeof seen), base_names(names, sizeof names),
-                nearest_hint(&nearest, hint, sizeof hint));
+    complain(reader, node->location,
+             "there is no material %s; the built-in ones are %s; a file of your own needs its extension "
+             "(mine.yaml)%s",
+             node_describe(node, seen, sizeof seen), base_names(names, sizeof names),
+             nearest_hint(&nearest, hint, sizeof hint));
 
     return NULL;
 }
@@ -90,7 +90,7 @@ static SceneText *base_file(Reader *reader, const SchemaRow *row, const YamlNode
     if ((text = base_known(reader, file->path))) return text;
 
     if (file_read_max(file->path, SCENE_BYTES_MAX, (SingeAllocator){0}, &bytes, &error))
-        message_add(reader->messages, reader->text, node->location, "a material cannot be read: %s", error.message);
+        complain(reader, node->location, "a material cannot be read: %s", error.message);
     else text = base_text(reader, file->path, (const char *)bytes.data, bytes.size);
     bytes_free(&bytes);
 
@@ -103,14 +103,13 @@ static bool chain_open(Reader *reader, const YamlNode *node, const SceneFile *fi
     for (const BaseChain *outer = link->outer; outer; outer = outer->outer)
         if (outer->text == link->text || (file->path && outer->status.st_ino == link->status.st_ino &&
                                           outer->status.st_dev == link->status.st_dev)) {
-            message_add(reader->messages, reader->text, node->location, "%s is based on itself, through %s",
-                        shown_path(link->text->name).text, shown_path(reader->chain->text->name).text);
+            complain(reader, node->location, "%s is based on itself, through %s", shown_path(link->text->name).text,
+                     shown_path(reader->chain->text->name).text);
             return false;
         }
     if (link->depth <= BASES_MAX) return true;
 
-    message_add(reader->messages, reader->text, node->location, "more than %d materials are based on one another",
-                BASES_MAX);
+    complain(reader, node->location, "more than %d materials are based on one another", BASES_MAX);
     return false;
 }
 
@@ -140,8 +139,8 @@ void read_base(Reader *reader, const SchemaRow *row, const YamlNode *node, Scene
 
     char seen[NODE_WORDS];
     if (root->kind != NODE_MAP) {
-        message_add(reader->messages, reader->text, root->location, "a material must be a map (key: value), not %s",
-                    node_describe(root, seen, sizeof seen));
+        complain(reader, root->location, "a material must be a map (key: value), not %s",
+                 node_describe(root, seen, sizeof seen));
         return;
     }
 

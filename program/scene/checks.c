@@ -7,10 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void complain(Reader *reader, SceneLocation location, const char *what) {
-    message_add(reader->messages, reader->text, location, "%s", what);
-}
-
 void check_times(Reader *reader, const YamlNode *list, const void *items, size_t size, uint32_t count) {
     const YamlNode *node = list && list->kind == NODE_LIST ? list->first : NULL;
     float before = -1;
@@ -28,8 +24,8 @@ static bool check_path(Reader *reader, const YamlNode *map, const SceneKey *keys
     const YamlNode *path = node_find(map, "path"), *position = node_find(map, "position");
     const YamlNode *rotation = node_find(map, "rotation"), *other = position ? position : rotation;
     if (path && other)
-        message_add(reader->messages, reader->text, other->key_location,
-                    "'%s' stands for a path of one entry; give either it or 'path'", other->key);
+        complain(reader, other->key_location, "'%s' stands for a path of one entry; give either it or 'path'",
+                 other->key);
     if (path && path->kind == NODE_LIST && path->count == 0)
         complain(reader, path->location, "a path needs at least one entry");
     check_times(reader, path, keys, sizeof *keys, count);
@@ -50,8 +46,7 @@ void finish_material(Reader *reader, const YamlNode *map, void *object) {
 
     for (int i = 0; i < 3; i++)
         if (measured && node_find(measured, keys[i]) && ranges[i][0] > ranges[i][1])
-            message_add(reader->messages, reader->text, node_find(measured, keys[i])->location,
-                        "%s must be a range from low to high", keys[i]);
+            complain(reader, node_find(measured, keys[i])->location, "%s must be a range from low to high", keys[i]);
 
     const YamlNode *thickening = node_find(map, "thickening");
     float value = material->def.thickening;
@@ -172,8 +167,8 @@ static void check_names(Reader *reader, const YamlNode *list, const char *what, 
             const char *other = *(char **)(void *)((char *)items + j * size + offset);
             if (!other || strcmp(other, *name) != 0) continue;
             const YamlNode *given = node_find(node, "name");
-            message_add(reader->messages, reader->text, given ? given->location : node->location,
-                        "two %ss are called '%s'; give each its own name", what, shown(*name).text);
+            complain(reader, given ? given->location : node->location,
+                     "two %ss are called '%s'; give each its own name", what, shown(*name).text);
             break;
         }
     }
@@ -199,8 +194,8 @@ static void resolve_sheet(Reader *reader, const YamlNode *node, const Scene *sce
 
     const YamlNode *sheet = node_find(node, "sheet");
     char hint[80];
-    message_add(reader->messages, reader->text, sheet ? sheet->location : node->location, "there is no sheet '%s'%s",
-                shown(word).text, nearest_hint(&nearest, hint, sizeof hint));
+    complain(reader, sheet ? sheet->location : node->location, "there is no sheet '%s'%s", shown(word).text,
+             nearest_hint(&nearest, hint, sizeof hint));
 }
 
 /// How many there are, their names, and the sheets that they name.
@@ -214,8 +209,7 @@ static void check_objects(Reader *reader, const YamlNode *map, Scene *scene) {
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
         const YamlNode *list = node_find(map, lists[i]);
         if (!list || list->kind != NODE_LIST || list->count <= SCENE_OBJECTS_MAX) continue;
-        message_add(reader->messages, reader->text, list->location, "a scene has at most %d %s", SCENE_OBJECTS_MAX,
-                    lists[i]);
+        complain(reader, list->location, "a scene has at most %d %s", SCENE_OBJECTS_MAX, lists[i]);
         many = true;
     }
     if (many) return;
@@ -249,13 +243,13 @@ void finish_scene(Reader *reader, const YamlNode *map, void *object) {
     // the step of the simulation is 1/(fps * steps) seconds; the library takes 1e-9 to 10
     double rate = (double)scene->fps * scene->steps;
     if (!(rate >= 0.1 * (1 - 1e-6) && rate <= 1e9 * (1 + 1e-6)))
-        message_add(reader->messages, reader->text,
-                    (fps     ? fps
-                     : steps ? steps
-                             : map)
-                        ->location,
-                    "%.6g frames a second of %d steps each are %.6g steps a second, which must be 0.1 to 1e9",
-                    (double)scene->fps, scene->steps, rate);
+        complain(reader,
+                 (fps     ? fps
+                  : steps ? steps
+                          : map)
+                     ->location,
+                 "%.6g frames a second of %d steps each are %.6g steps a second, which must be 0.1 to 1e9",
+                 (double)scene->fps, scene->steps, rate);
     scene->sim.solver.tearing = scene->tearing && scene->sim.solver.method == SINGE_SOLVER_STRAND;
 
     const YamlNode *isotropic = node_find(node_find(map, "solver"), "isotropic");

@@ -25,9 +25,9 @@ static void take_name(Reader *reader, const YamlNode *root) {
     row_expected(&row, expected, sizeof expected);
     reader->scene->name = name;
     if (name && !node_find(root, "name") && !value_names_files(name))
-        message_add(reader->messages, reader->text, (SceneLocation){.line = 1, .column = 1},
-                    "the outputs cannot have the file's name, '%s'; give the scene a name: %s", shown(name).text,
-                    expected);
+        complain(reader, (SceneLocation){.line = 1, .column = 1},
+                 "the outputs cannot have the file's name, '%s'; give the scene a name: %s", shown(name).text,
+                 expected);
 }
 
 static SingeResult parse_into(SceneArena *arena, const SceneText *given, const char *base_dir, Scene **result,

@@ -26,8 +26,7 @@ static void read_list(Reader *reader, const SchemaRow *row, const YamlNode *node
     }
 
     if (keyed && !node->count)
-        message_add(reader->messages, reader->text, node->location,
-                    "'%s' is an empty list: it needs at least one entry", row->key);
+        complain(reader, node->location, "'%s' is an empty list: it needs at least one entry", row->key);
 
     char *items = list_new(reader, object, row, node->count, schema->size);
     for (const YamlNode *child = node->first; items && child; child = child->next, items += schema->size) {
@@ -38,8 +37,8 @@ static void read_list(Reader *reader, const SchemaRow *row, const YamlNode *node
             schema_read(reader, schema, child, items);
         } else {
             char seen[NODE_WORDS];
-            message_add(reader->messages, reader->text, child->location, "an entry of '%s' must be a map, not %s",
-                        row->key, node_describe(child, seen, sizeof seen));
+            complain(reader, child->location, "an entry of '%s' must be a map, not %s", row->key,
+                     node_describe(child, seen, sizeof seen));
         }
     }
 }
@@ -72,8 +71,7 @@ static int read_field(Reader *reader, const SchemaRow *row, const YamlNode *map,
         SchemaRow part = {.key = "texture", .type = ROW_FILE};
         const bool numbered = texture->kind == NODE_VALUE && texture->text && strchr(texture->text, '#');
         if (numbered && scene_param_lasts(row->key))
-            message_add(reader->messages, reader->text, texture->location,
-                        "%s is fixed at the start: it accepts one picture only", row->key);
+            complain(reader, texture->location, "%s is fixed at the start: it accepts one picture only", row->key);
         if (numbered) part.flags = ROW_NUMBERED;
         field->kind = SINGE_FIELD_TEXTURE;
         value_file(reader, &part, texture, file);
@@ -91,8 +89,7 @@ static int read_field(Reader *reader, const SchemaRow *row, const YamlNode *map,
         field->kind = SINGE_FIELD_NOISE;
         file->location = noise->location;
         if (noise->kind != NODE_MAP)
-            message_add(reader->messages, reader->text, noise->location,
-                        "%s.noise must be a map {scale: , octaves: , seed: }", row->key);
+            complain(reader, noise->location, "%s.noise must be a map {scale: , octaves: , seed: }", row->key);
         else if (default_noise(reader->arena, &field->noise)) schema_read(reader, &schema_noise, noise, &field->noise);
     }
 
@@ -115,8 +112,7 @@ static void read_keys(Reader *reader, const SchemaRow *row, const YamlNode *list
         .flags = ROW_KEYED, .sub = &schema};
 
     if (scene_param_lasts(row->key))
-        message_add(reader->messages, reader->text, list->location, "%s is fixed at the start: it accepts no keys",
-                    row->key);
+        complain(reader, list->location, "%s is fixed at the start: it accepts no keys", row->key);
     read_list(reader, &keys, list, followed);
     check_times(reader, list, followed->keys, sizeof *followed->keys, followed->key_count);
     if (!followed->key_count) return;
@@ -154,11 +150,9 @@ static void read_param(Reader *reader, const SchemaRow *row, const YamlNode *nod
 
         char hint[80], key[NODE_WORDS];
         if (i == 5)
-            message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
-                        node_key(child, key, sizeof key), row->key, nearest_hint(&nearest, hint, sizeof hint));
-        else if (given & 1u << i)
-            message_add(reader->messages, reader->text, child->key_location, "'%s' is given twice in %s", keys[i],
-                        row->key);
+            complain(reader, child->key_location, "unknown key%s in %s%s", node_key(child, key, sizeof key), row->key,
+                     nearest_hint(&nearest, hint, sizeof hint));
+        else if (given & 1u << i) complain(reader, child->key_location, "'%s' is given twice in %s", keys[i], row->key);
         else given |= 1u << i;
     }
 
@@ -175,8 +169,8 @@ static void read_param(Reader *reader, const SchemaRow *row, const YamlNode *nod
     int fields = read_field(reader, row, node, field, &followed->texture);
     result.field = field;
     if (!from || !to || fields != 1)
-        message_add(reader->messages, reader->text, node->location,
-                    "%s as a map needs 'from', 'to' and one of 'texture', 'attribute' and 'noise'", row->key);
+        complain(reader, node->location, "%s as a map needs 'from', 'to' and one of 'texture', 'attribute' and 'noise'",
+                 row->key);
     else if (good) *param = result;
 }
 
@@ -279,20 +273,19 @@ static void read_child(Reader *reader, const Schema *schema, unsigned kind, cons
         }
 
         if (*given & 1ull << i)
-            message_add(reader->messages, reader->text, child->key_location, "'%s' is given twice in %s", row->key,
-                        schema->title);
+            complain(reader, child->key_location, "'%s' is given twice in %s", row->key, schema->title);
         else read_row(reader, row, child, object);
         *given |= 1ull << i;
         return;
     }
 
     if (reader->messages->left_out) { // the message will not be shown
-        message_add(reader->messages, reader->text, child->key_location, "unknown key");
+        complain(reader, child->key_location, "unknown key");
     } else if (other) {
         const char *const *names = schema->rows[0].names; // the row "kind" is the first
         int mine = 0;
         while (kind > 1u << mine) mine++;
-        message_add(reader->messages, reader->text, child->key_location, "a %s has no '%s'", names[mine], other->key);
+        complain(reader, child->key_location, "a %s has no '%s'", names[mine], other->key);
     } else {
         char hint[80], key[NODE_WORDS];
         Nearest nearest = {.word = child->key};
@@ -301,8 +294,8 @@ static void read_child(Reader *reader, const Schema *schema, unsigned kind, cons
         nearest_hint(&nearest, hint, sizeof hint);
         if (!nearest.best && (strcmp(child->key, "color") == 0 || strcmp(child->key, "colour") == 0))
             snprintf(hint, sizeof hint, "; sheets and colliders have a 'colour'");
-        message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
-                    node_key(child, key, sizeof key), schema->title, hint);
+        complain(reader, child->key_location, "unknown key%s in %s%s", node_key(child, key, sizeof key), schema->title,
+                 hint);
     }
 }
 
@@ -331,8 +324,7 @@ void schema_read(Reader *reader, const Schema *schema, const YamlNode *map, void
         const SchemaRow *row = &schema->rows[i];
         bool due = (row->flags & ROW_REQUIRED) && row_allowed(row, kind) && (kind != ~0u || !row->kinds);
         if (due && !(given & 1ull << i))
-            message_add(reader->messages, reader->text, map->location, "%s needs '%s': %s", schema->title, row->key,
-                        row->doc);
+            complain(reader, map->location, "%s needs '%s': %s", schema->title, row->key, row->doc);
     }
 
     if (schema->finish) schema->finish(reader, map, object);

@@ -67,6 +67,9 @@ typedef struct Reader {
     Scene *scene;
 } Reader;
 
+/// Adds an error at a location of the text that is read; printf's arguments follow.
+#define complain(reader, location, ...) message_add((reader)->messages, (reader)->text, location, __VA_ARGS__)
+
 enum {
     SCENE_BYTES_MAX = 1 << 20, ///< of a scene or a material file
     SCENE_OBJECTS_MAX = 1000,  ///< sheets, and so on, each

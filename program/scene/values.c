@@ -13,8 +13,8 @@
 void value_wrong(Reader *reader, const YamlNode *node, const SchemaRow *row) {
     char expected[240], seen[NODE_WORDS];
     row_expected(row, expected, sizeof expected);
-    message_add(reader->messages, reader->text, node->location, "%s must be %s, not %s", row->key, expected,
-                node_describe(node, seen, sizeof seen));
+    complain(reader, node->location, "%s must be %s, not %s", row->key, expected,
+             node_describe(node, seen, sizeof seen));
 }
 
 // ---- numbers
@@ -28,8 +28,8 @@ static void out_of_range(Reader *reader, const SchemaRow *row, const YamlNode *n
     char range[80], seen[NODE_WORDS];
     const char *unit = quantity_unit(row->dimension);
     row_range(row, range, sizeof range);
-    message_add(reader->messages, reader->text, node->location, "%s is out of range: %s must be %s%s%s",
-                node_describe(node, seen, sizeof seen), row->key, range, unit[0] ? " " : "", unit);
+    complain(reader, node->location, "%s is out of range: %s must be %s%s%s", node_describe(node, seen, sizeof seen),
+             row->key, range, unit[0] ? " " : "", unit);
 }
 
 bool value_float(Reader *reader, const SchemaRow *row, const YamlNode *node, float *result) {
@@ -52,10 +52,9 @@ bool value_float(Reader *reader, const SchemaRow *row, const YamlNode *node, flo
     if (fault == NUMBER_BAD_UNIT) {
         char units[80], seen[NODE_WORDS];
         quantity_units(row->dimension, units, sizeof units);
-        message_add(reader->messages, reader->text, node->location,
-                    "%s has an unknown unit for %s %s; possible are: %s", node_describe(node, seen, sizeof seen),
-                    quantity_article(row->dimension), quantity_name(row->dimension),
-                    units[0] ? units : "none, only a bare number");
+        complain(reader, node->location, "%s has an unknown unit for %s %s; possible are: %s",
+                 node_describe(node, seen, sizeof seen), quantity_article(row->dimension),
+                 quantity_name(row->dimension), units[0] ? units : "none, only a bare number");
         return false;
     }
 
@@ -177,8 +176,8 @@ bool value_word(Reader *reader, const SchemaRow *row, const YamlNode *node, cons
     choice.type = ROW_ENUM;
     choice.names = names;
     row_expected(&choice, expected, sizeof expected);
-    message_add(reader->messages, reader->text, node->location, "%s must be %s, not %s%s", row->key, expected,
-                node_describe(node, seen, sizeof seen), nearest_hint(&nearest, hint, sizeof hint));
+    complain(reader, node->location, "%s must be %s, not %s%s", row->key, expected,
+             node_describe(node, seen, sizeof seen), nearest_hint(&nearest, hint, sizeof hint));
     return false;
 }
 
@@ -193,8 +192,8 @@ void value_order(Reader *reader, const SchemaRow *row, const YamlNode *node, Sin
         int colour = 0;
         if (!value_word(reader, row, child, enum_words.SingeColour, &colour)) return;
         if (seen & 1 << colour) {
-            message_add(reader->messages, reader->text, child->location, "'%s' is repeated; each colour comes once",
-                        enum_words.SingeColour[colour]);
+            complain(reader, child->location, "'%s' is repeated; each colour comes once",
+                     enum_words.SingeColour[colour]);
             return;
         }
 
@@ -217,7 +216,7 @@ void value_formats(Reader *reader, const SchemaRow *row, const YamlNode *node, O
         int format = 0;
         if (!value_word(reader, row, child, names, &format)) return;
         if (output_has(set, format)) {
-            message_add(reader->messages, reader->text, child->location, "'%s' is repeated", names[format]);
+            complain(reader, child->location, "'%s' is repeated", names[format]);
             return;
         }
         set |= 1u << format;
@@ -258,9 +257,8 @@ void value_file(Reader *reader, const SchemaRow *row, const YamlNode *node, Scen
     }
 
     if (row->flags & ROW_NUMBERED && !sequence_name_fits(node->text)) {
-        message_add(reader->messages, reader->text, node->location,
-                    "%s: the file's name needs one run of # for the number of the frame, as in 'body.####.ply'",
-                    row->key);
+        complain(reader, node->location,
+                 "%s: the file's name needs one run of # for the number of the frame, as in 'body.####.ply'", row->key);
         return;
     }
 
@@ -276,9 +274,6 @@ void value_file(Reader *reader, const SchemaRow *row, const YamlNode *node, Scen
     if (stat(field->path, &status)) fault = "there is no such file";
     else if (S_ISDIR(status.st_mode)) fault = "this is a folder";
     else if (access(field->path, R_OK)) fault = "the file cannot be read";
-    if (fault && node->location.file)
-        message_add(reader->messages, reader->text, node->location, "%s: %s", row->key, fault);
-    else if (fault)
-        message_add(reader->messages, reader->text, node->location, "%s: %s (%s)", row->key, fault,
-                    shown_path(field->path).text);
+    if (fault && node->location.file) complain(reader, node->location, "%s: %s", row->key, fault);
+    else if (fault) complain(reader, node->location, "%s: %s (%s)", row->key, fault, shown_path(field->path).text);
 }

@@ -16,8 +16,7 @@ enum { PLAN_BYTES_MAX = 1 << 20, PLAN_KEYS_MAX = 1000 };
 /// Reports an error: what was expected at a node, and what it is.
 static void plan_complain(Reader *reader, const YamlNode *node, const char *key, const char *expected) {
     char seen[NODE_WORDS];
-    message_add(reader->messages, reader->text, node->location, "%s: expected %s, got %s", key, expected,
-                node_describe(node, seen, sizeof seen));
+    complain(reader, node->location, "%s: expected %s, got %s", key, expected, node_describe(node, seen, sizeof seen));
 }
 
 // ---- tables of keys
@@ -31,8 +30,7 @@ static const Schema schema_curve = {.title = "a curve", .size = sizeof(PlanTarge
 static void finish_target(Reader *reader, const YamlNode *map, void *object) {
     PlanTarget *target = object;
     const YamlNode *speed = node_find(map, "front_speed");
-    if (!map->count)
-        message_add(reader->messages, reader->text, map->location, "a target needs front_speed, temperature or masks");
+    if (!map->count) complain(reader, map->location, "a target needs front_speed, temperature or masks");
     if (target->speed_text && (quantity_read(target->speed_text, DIM_SPEED, &target->front_speed) ||
                                !(target->front_speed > 0 && target->front_speed < 1e3)))
         plan_complain(reader, speed, "front_speed", "a speed above 0 such as 2.5 mm/s");
@@ -129,14 +127,13 @@ static char *flow_text(Plan *plan, const YamlNode *node, const char *prefix) {
 static bool check_once(Reader *reader, const YamlNode *map, const char *what) {
     const uint32_t before = message_total(reader->messages);
     if (map->count > PLAN_KEYS_MAX)
-        message_add(reader->messages, reader->text, map->location, "%s has %u keys; at most %d are possible", what,
-                    (unsigned)map->count, PLAN_KEYS_MAX);
+        complain(reader, map->location, "%s has %u keys; at most %d are possible", what, (unsigned)map->count,
+                 PLAN_KEYS_MAX);
 
     for (const YamlNode *node = map->count > PLAN_KEYS_MAX ? NULL : map->first; node; node = node->next) {
         const YamlNode *last = node_find(map, node->key);
         if (last == node) continue;
-        message_add(reader->messages, reader->text, last->key_location, "'%s' is given twice in %s",
-                    shown(node->key).text, what);
+        complain(reader, last->key_location, "'%s' is given twice in %s", shown(node->key).text, what);
     }
 
     return message_total(reader->messages) == before;
@@ -166,11 +163,10 @@ static void read_range(Reader *reader, const YamlNode *map, PlanParameter *param
 
     parameter->unit = unit;
     if (strcmp(unit, other) != 0)
-        message_add(reader->messages, reader->text, map->location,
-                    "a range needs one unit: 'from' has %s and 'to' has %s", *unit ? shown(unit).text : "none",
-                    *other ? shown(other).text : "none");
+        complain(reader, map->location, "a range needs one unit: 'from' has %s and 'to' has %s",
+                 *unit ? shown(unit).text : "none", *other ? shown(other).text : "none");
     else if (parameter->logarithmic && !(parameter->from > 0 && parameter->to > 0))
-        message_add(reader->messages, reader->text, map->location, "a logarithmic range must be above 0");
+        complain(reader, map->location, "a logarithmic range must be above 0");
 }
 
 static void read_sets(Reader *reader, Plan *plan) {
@@ -204,8 +200,7 @@ static void read_parameters(Reader *reader, Plan *plan) {
         parameter->key = child->key;
         parameter->location = child->location;
         parameter->key_location = child->key_location;
-        if (strcmp(child->key, "name") == 0)
-            message_add(reader->messages, reader->text, child->key_location, "all rows have the scene's name");
+        if (strcmp(child->key, "name") == 0) complain(reader, child->key_location, "all rows have the scene's name");
 
         if (child->kind == NODE_MAP) {
             read_range(reader, child, parameter);
@@ -271,21 +266,19 @@ static void check_overlaps(Reader *reader, const Plan *plan) {
             const YamlNode *word = inside ? path_blocked(given, plan->sets[i], parameter->key) : NULL;
 
             if (path_covers(parameter->key, plan->sets[i]))
-                message_add(reader->messages, reader->text, parameter->key_location,
-                            "'%s' is already set in line %d; remove one", shown(parameter->key).text,
-                            plan->set_locations[i].line);
+                complain(reader, parameter->key_location, "'%s' is already set in line %d; remove one",
+                         shown(parameter->key).text, plan->set_locations[i].line);
             if (word)
-                message_add(reader->messages, reader->text, word->location,
-                            "'%s' sets a part of this, so 'set' must give a map (of a material: {base: %s})",
-                            shown(parameter->key).text, shown(word->text).text);
+                complain(reader, word->location,
+                         "'%s' sets a part of this, so 'set' must give a map (of a material: {base: %s})",
+                         shown(parameter->key).text, shown(word->text).text);
         }
 
         for (uint32_t q = 0; q < p; q++)
             if (path_covers(parameter->key, plan->parameters[q].key) ||
                 path_covers(plan->parameters[q].key, parameter->key))
-                message_add(reader->messages, reader->text, parameter->key_location,
-                            "'%s' and '%s' set the same value; give one of them", shown(parameter->key).text,
-                            shown(plan->parameters[q].key).text);
+                complain(reader, parameter->key_location, "'%s' and '%s' set the same value; give one of them",
+                         shown(parameter->key).text, shown(plan->parameters[q].key).text);
     }
 }
 
