@@ -54,7 +54,8 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     const float flaming = (a->flaming + b->flaming + c->flaming) / 3,
                 starved = (a->starved + b->starved + c->starved) / 3;
     const float line = overlap > 0 ? ember_activity(rate) * overlap / maxf(high - low, 2 * half) : 0;
-    const float glowing = line + LEAF_LIT * ember_leaf(rate - flaming, starved, (a->burn + b->burn + c->burn) / 3);
+    const float leaf = ember_leaf(rate - flaming, starved, (a->burn + b->burn + c->burn) / 3);
+    const float glowing = cloth_weave(preview, a->sheet) ? CLOTH_LIT * leaf : line + LEAF_LIT * leaf;
     if (glowing <= 0) return;
 
     Float3 pa = float3_load(scene->positions[t[0]]), pb = float3_load(scene->positions[t[1]]),

@@ -76,7 +76,7 @@ typedef struct Cloth {
     float at[2];     ///< threads from the origin of uv, as the burnt ones lie
     float across[2]; ///< from the middle of each thread, -1 and 1 at its sides
     float tone[2];   ///< of each thread, -0.5 to 0.5
-    float end[2];    ///< 1 at the burnt end of each, 0 some threads away from it
+    float left;      ///< to where cloth ends, but for strands that stand out there
     bool gone[2];
     int top; ///< the thread that is seen
 } Cloth;
@@ -95,8 +95,12 @@ bool cloth_is_hole(const Cloth *cloth);
 /// Tilts the normal; returns a factor on the albedo.
 float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *cloth, Point *point);
 
-/// Char and ash in its bundles of threads, and what glows there. `threads`: from cloth_shade.
-void cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth, float burn, float threads,
+/// Char and ash in its bundles of threads; returns how deep it lies there, 0 to 1. `threads`: from cloth_shade.
+float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth, float burn, float threads,
+                 Point *point);
+
+/// What glows of it.
+void cloth_glow(const Preview *preview, const Weave *weave, const PaperState *state, const Cloth *cloth, float deep,
                 Point *point);
 
 /// False at a hole.
@@ -104,7 +108,9 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 
 #define EMBER_WIDTH 0.00042f ///< m, of the glowing line
 #define EMBER_GAIN 3.4f
-#define LEAF_LIT 0.1f ///< a leaf's mean radiance, of one that glows all over at its temperature
+#define EMBER_MOST 6.0f  ///< radiance of the brightest channel, which none reaches
+#define LEAF_LIT 0.1f    ///< a leaf's mean radiance, of one that glows all over at its temperature
+#define CLOTH_LIT 0.027f ///< the same of cloth
 
 /// The glowing skin is hotter than the simulation's mean over the sheet's thickness.
 static inline float ember_temperature(float mean) { return mean + 110; }

@@ -18,6 +18,8 @@
 #define HOLE_SLOPE 30.0f ///< threads from there to where it is 1 more
 #define CLOSED 0.5f      ///< half a thread's width over the pitch, of whole cloth
 #define SHRUNKEN 0.36f   ///< the same of char
+#define RIM_GLOW 2.0f    ///< threads, half the width of the line that glows along a burnt edge
+#define RIM_HOT 1190.0f  ///< K, of that line at most
 
 // ---- the threads of a sheet
 
@@ -132,7 +134,7 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
     const float x = state->uv[0] * weave->threads[0], y = state->uv[1] * weave->threads[1];
     const float hot = ember_activity(state->burn_rate) * stepf(600, 760, state->temperature);
     const float edge = state->edge / weave->pitch;
-    *cloth = (Cloth){.shown = clampf(1.9f - 3.6f * wide, 0, 1), .burnt = burnt};
+    *cloth = (Cloth){.shown = clampf(1.9f - 3.6f * wide, 0, 1), .burnt = burnt, .left = CLOTH_EDGE};
 
     float at[2];
     cloth_bend(x, y, burnt, 0, wide, at);
@@ -144,6 +146,7 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
     const float worn = WORN - 0.4f * stepf(0.45f, 0.9f, burn);
     const float bite = burnt * FRAY * (1 - 0.75f * hot) * maxf(0.6f + 1.5f * damage, 0.1f);
     const float left = minf((worn - damage) * HOLE_SLOPE, edge < CLOTH_EDGE ? edge - bite : INFINITY);
+    cloth->left = left;
     const float loose = burnt * (1 - stepf(-REACH, 4, left));
     const bool firm = burnt <= 0 || left > 0.85f * REACH;
     if (loose > 0) cloth_bend(x, y, burnt, loose, wide, at);
@@ -164,7 +167,6 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
         }
         cloth->across[k] = (within - 0.5f) / half;
         cloth->tone[k] = own - 0.5f;
-        cloth->end[k] = 1 - stepf(0, 3, left);
         cloth->gone[k] = fabsf(cloth->across[k]) > 1;
         if (!firm)
             cloth->gone[k] = cloth->gone[k] || edge < 0.5f ||
@@ -202,8 +204,8 @@ float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *clot
     return (1 + slub) * mixf(1, 1.12f * tone, cloth->shown);
 }
 
-void cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth, float burn, float threads,
-                Point *point) {
+float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth, float burn, float threads,
+                 Point *point) {
     const float wide = point->footprint / weave->pitch;
     float bundle[2], relief[2];
     for (int k = 0; k < 2; k++) {
@@ -247,11 +249,46 @@ void cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth,
     Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, -0.55f * charred), point->normal);
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
 
-    const float glows =
-        mixf(1, 0.15f + 1.4f * stepf(-0.05f, 0.55f, top + 0.3f * wrinkle), charred); // embers creep along strands
     point->albedo = float3_scale(point->albedo, threads);
-    point->glow =
-        float3_scale(point->glow, glows * mixf(1, threads, cloth->shown) * (1 + 1.5f * cloth->end[cloth->top]));
+    return 1 - stepf(-0.4f, 0.3f, up);
+}
+
+/// How much burns there, 0 to 1: most of a rim is dead for some centimetres, and the rest of it varies.
+static float cloth_life(const float at[2], float wide, float t) {
+    const float far[2] = {at[0] + 0.9f * t, at[1] - 0.6f * t}, near[2] = {at[0] - 1.7f * t, at[1] + 1.1f * t};
+    const float n = 0.75f * oblique(far, 90, wide, 201) + 0.5f * oblique(near, 34, wide, 202);
+    return stepf(-0.05f, 0.5f, n + 0.2f * oblique(near, 12, wide, 203));
+}
+
+/// A line so far from its middle, in threads; narrower than a pixel it is drawn a pixel wide and paler.
+static float cloth_line(float distance, float width, float wide) {
+    const float seen = maxf(width, 0.6f * wide), x = distance / seen;
+    return width / seen * expf(-x * x);
+}
+
+/// What glows of char: its rim, in a line broken in length and brightness, where it still burns; some lines that creep over it;
+/// and between them, dully, what lies deep. Below a flame it is dark.
+void cloth_glow(const Preview *preview, const Weave *weave, const PaperState *state, const Cloth *cloth, float deep,
+                Point *point) {
+    const float line = stepf(CHAR_LEAF, EMBER_BURN, state->burn) * ember_activity(state->burn_rate);
+    const float alone = maxf(ember_activity(state->glowing), line);
+    const float starved = ember_starved(state->starved, state->burn, alone);
+    const float mean = ember_temperature(state->temperature), wide = point->footprint / weave->pitch;
+    point->glow = float3(0, 0, 0);
+    if (alone + starved < 0.02f || mean < BLACKBODY_MIN) return;
+
+    const float t = (float)fmod(preview->time, 4096.0), life = cloth_life(cloth->at, wide, t);
+    const float rim = cloth_line(cloth->left, RIM_GLOW * (0.5f + life), wide);
+    const float bow = 5 * oblique(cloth->at, 9, wide, 207), at[2] = {cloth->at[0] + bow - 0.8f * t, cloth->at[1] - bow};
+    const float creeping = life > 0 ? cloth_line(32 * fabsf(oblique(at, 80, wide, 205)), 0.9f, wide) : 0;
+    const float hot = 1.5f * life * maxf(rim, 0.35f * creeping);
+    const float temperature = minf(mean, RIM_HOT) + 140 * (life - 0.6f);
+    Float3 bright = blackbody_glow(preview->blackbody, temperature);
+    Float3 dull = blackbody_glow(preview->blackbody, temperature - 130);
+    Float3 glow = float3_scale(bright, hot * (alone + 0.3f * starved));
+    glow = float3_mad(glow, dull, alone * (0.03f + 0.3f * life) * deep);
+    glow = float3_scale(glow, EMBER_GAIN * ember_air(preview, point->position));
+    point->glow = float3_scale(glow, 1 / (1 + maxf(glow.x, maxf(glow.y, glow.z)) / EMBER_MOST));
 }
 
 // ---- cloth over a shape

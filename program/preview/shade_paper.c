@@ -192,7 +192,6 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 // wander over the ash.
 
 #define EMBER_HOT 1180.0f ///< K
-#define EMBER_MOST 6.0f   ///< radiance of the brightest channel, which none reaches
 
 /// Of a leaf's glow: what is neither thread nor speck, and these.
 #define LEAF_DULL 0.27f
@@ -493,7 +492,7 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     char_shade(&bent, burnt, print, point);
     if (coating > 0) coat(coating, &bent, point);
     ash_shade(state, &bent, print, point);
-    ember_shade(preview, state, &bent, point);
-    if (weave) cloth_char(weave, state, &cloth, bent.burn, threads, point);
+    if (!weave) ember_shade(preview, state, &bent, point);
+    else cloth_glow(preview, weave, state, &cloth, cloth_char(weave, state, &cloth, bent.burn, threads, point), point);
     return true;
 }

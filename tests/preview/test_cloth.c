@@ -150,7 +150,8 @@ TEST(burnt_cloth_frays_into_threads) {
 
 enum { SEEN = 240, SIDE = 40, GRID = SIDE * SIDE };
 static struct Char {
-    float position[GRID][3], normal[GRID][3], uv[GRID][2], temperature[GRID], peak[GRID], burn[GRID], rate[GRID];
+    float position[GRID][3], normal[GRID][3], uv[GRID][2], temperature[GRID], peak[GRID], burn[GRID], rate[GRID],
+        charred[GRID], ash[GRID];
     int32_t sheet[GRID];
     uint32_t triangles[2 * GRID][3];
     SingeSurface surface;
@@ -203,20 +204,20 @@ static int hole_fill(int pixel) {
 }
 
 /// Burnt cloth of threads of 0.4 mm, in pixels of 0.8 mm, into `seen` and `bare`.
-static void draw_holes(const SingeSurface *surface) {
+static void draw_holes(const SingeSurface *surface, float (*glow)[3]) {
     const PreviewLook look = {.weave = 4e-4f};
     const PreviewStart start = {4, 1, A4, QUAD, A4_UV, NULL};
     PreviewDef def = above();
     def.width = def.height = SEEN, def.samples = 4, def.camera.fov = 0.376f; // 19 cm
     def.looks = &look, def.starts = &start, def.sheet_count = 1, def.ground_height = -INFINITY;
-    const PreviewLayers layers = {.coverage = seen};
+    const PreviewLayers layers = {.coverage = seen, .glow = glow};
     draw_layers(&def, surface, NULL, 30, &layers);
     for (int i = 0; i < SEEN * SEEN; i++) bare[i] = seen[i] < 0.5f;
 }
 
 TEST(holes_in_burnt_cloth_are_of_many_sizes) {
     char_make(0.7f);
-    draw_holes(&burnt.surface);
+    draw_holes(&burnt.surface, NULL);
     int small = 0, large = 0, total = 0; // 2 mm2 and less, 2 cm2 and more
     for (int i = 0; i < SEEN * SEEN; i++) {
         const int size = bare[i] ? hole_fill(i) : 0;
@@ -235,7 +236,7 @@ TEST(burnt_borders_of_cloth_have_no_stairs) {
     SingeSurface sheet;
     assert_true(synthetic_make(SYNTHETIC_COLD, 84, 0.001f, &sheet));
     for (uint32_t i = 0; i < sheet.vertex_count; i++) sheet.burn[i] = 0.7f;
-    draw_holes(&sheet);
+    draw_holes(&sheet, NULL);
     synthetic_free(&sheet);
     int border = 0, straight = 0;
     for (int axis = 0; axis < 2; axis++)
@@ -255,7 +256,7 @@ TEST(burnt_borders_of_cloth_have_no_stairs) {
 /// which cloth ends, over 5 pixels, is 1 where all of them are along the threads, in steps, and 0 where they are any.
 TEST(holes_in_burnt_cloth_are_no_lattice) {
     char_make(0.7f);
-    draw_holes(&burnt.surface);
+    draw_holes(&burnt.surface, NULL);
     double sum = 0, weight = 0;
     for (int y = 2; y + 2 < SEEN; y++)
         for (int x = 2; x + 2 < SEEN; x++) {
@@ -271,4 +272,21 @@ TEST(holes_in_burnt_cloth_are_no_lattice) {
         }
     print_message("holes end along the threads by %.3f\n", sum / weight);
     assert_true(weight > 1000 && fabs(sum / weight) < 0.06); // 0.15: slits along the threads
+}
+
+/// Char that glows does so in lines some centimetres long, along the rims that its holes have and over it, and is black between
+/// them: specks of light under 5 mm2, to a square decimetre, and the share of it that glows at all.
+TEST(char_of_cloth_glows_in_lines_and_not_in_specks) {
+    static float glow[SEEN * SEEN][3];
+    char_make(0.7f);
+    for (int i = 0; i < GRID; i++) burnt.charred[i] = 0.25f, burnt.rate[i] = 0.4f, burnt.temperature[i] = 1050;
+    SingeSurface hot = burnt.surface;
+    hot.mass = hot.char_fraction = burnt.charred, hot.ash_fraction = burnt.ash;
+    draw_holes(&hot, glow);
+    int specks = 0, glows = 0;
+    for (int i = 0; i < SEEN * SEEN; i++) glows += bare[i] = glow[i][0] > 0.25f;
+    for (int i = 0; i < SEEN * SEEN; i++) specks += bare[i] && hole_fill(i) < 8;
+    const double share = 100.0 * glows / (SEEN * SEEN), area = SEEN * SEEN * 64e-6;
+    print_message("%.1f %% glows, in %.0f specks to a square decimetre\n", share, specks / area);
+    assert_true(share > 3 && share < 15 && specks < 50 * area); // 31, 105: threads and specks all over
 }
