@@ -38,6 +38,7 @@ typedef struct PaperVertex {
 } PaperVertex;
 
 #define CLOTH_EDGE 24.0f
+#define CLOTH_WARM 293.5f ///< K, peak above which cloth may yellow
 
 /// The interpolated fields that determine the appearance of a hit.
 typedef struct PaperState {
@@ -94,6 +95,9 @@ bool cloth_is_hole(const Cloth *cloth);
 
 /// Tilts the normal; returns a factor on the albedo.
 float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *cloth, Point *point);
+
+/// How brown it is, 0 to 1.
+float cloth_scorch(const Weave *weave, const PaperState *state, float footprint);
 
 /// Char and ash in its bundles of threads; returns how deep it lies there, 0 to 1. `threads`: from cloth_shade.
 float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth, float burn, float threads,

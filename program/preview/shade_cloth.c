@@ -21,6 +21,10 @@
 #define RIM_GLOW 2.0f    ///< threads, half the width of the line that glows along a burnt edge
 #define RIM_HOT 1190.0f  ///< K, of that line at most
 
+#define SCORCH_FIRST 2.5f  ///< K, at which cloth yellows
+#define SCORCH_LAST 420.0f ///< K, at which it is as brown as heat alone makes it
+#define SCORCH_MOST 0.74f  ///< how brown that is
+
 // ---- the threads of a sheet
 
 /// Lengths of the cell's first and last side, and how far they go along u and v.
@@ -202,6 +206,19 @@ float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *clot
     const float a2 = across * across, dip = over * over;
     const float tone = 1 + 0.16f * cloth->tone[top] - 0.30f * a2 * a2 - 0.22f * dip * dip;
     return (1 + slub) * mixf(1, 1.12f * tone, cloth->shown);
+}
+
+/// Cloth browns by the logarithm of its heat, which falls off evenly from a front: a fire's vapour condenses on cloth that is
+/// hardly warm. Along threads all this spreads farther.
+float cloth_scorch(const Weave *weave, const PaperState *state, float footprint) {
+    const float above = maxf(state->peak, state->temperature) - CLOTH_WARM, wide = footprint / weave->pitch;
+    if (above <= 0) return 0;
+    const float at[2] = {state->uv[0] * weave->threads[0], state->uv[1] * weave->threads[1]};
+    float uneven = 0.5f * oblique(at, 90, wide, 211) + 0.2f * oblique(at, 30, wide, 212);
+    for (int k = 0; k < 2; k++)
+        uneven += 0.3f * resolved(4, wide) * noise2(at[k] / 4, at[1 - k] / 60, 213 + (uint32_t)k);
+    const float by_heat = (logf(above / SCORCH_FIRST) + uneven) / logf(SCORCH_LAST / SCORCH_FIRST);
+    return 1 - (1 - SCORCH_MOST * powf(clampf(by_heat, 0, 1), 0.8f)) * expf(-4 * maxf(state->burn, 0));
 }
 
 float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth, float burn, float threads,

@@ -290,3 +290,32 @@ TEST(char_of_cloth_glows_in_lines_and_not_in_specks) {
     print_message("%.1f %% glows, in %.0f specks to a square decimetre\n", share, specks / area);
     assert_true(share > 3 && share < 15 && specks < 50 * area); // 31, 105: threads and specks all over
 }
+
+/// Cloth browns by and by before a front whose heat falls off to a third in 8 mm: how much of it is neither white nor black, in
+/// mm, between 90 and 25 % of the light of what is whole.
+TEST(cloth_browns_over_centimetres) {
+    enum { ROWS = 60 };
+    char_make(0);
+    for (int i = 0; i < GRID; i++) {
+        const float ahead = burnt.position[i][0] + 0.02f; // of the front
+        burnt.peak[i] = 293 + 560 * expf(-fmaxf(ahead, 0) / 0.008f);
+        burnt.burn[i] = fminf(fmaxf(-ahead / 0.02f, 0), 0.6f);
+    }
+    const PreviewLook look = {.weave = 4e-4f};
+    const PreviewStart start = {4, 1, A4, QUAD, A4_UV, NULL};
+    static float beauty[SEEN * SEEN][3];
+    PreviewDef def = above();
+    def.width = def.height = SEEN, def.samples = 4, def.camera.fov = 0.376f; // 19 cm
+    def.looks = &look, def.starts = &start, def.sheet_count = 1, def.ground_height = -INFINITY;
+    const PreviewLayers layers = {.beauty = beauty};
+    draw_layers(&def, &burnt.surface, NULL, 30, &layers);
+    int brown = 0;
+    for (int y = 0; y < ROWS; y++) {
+        const float(*row)[3] = beauty + (y + (SEEN - ROWS) / 2) * SEEN;
+        for (int x = 0; x < SEEN; x++)
+            brown += row[x][1] < 0.9f * row[SEEN - 12][1] && row[x][1] > 0.25f * row[SEEN - 12][1];
+    }
+    const double mm = brown * 0.8 / ROWS;
+    print_message("cloth is brown over %.1f mm\n", mm);
+    assert_true(mm > 20 && mm < 50);
+}
