@@ -157,6 +157,10 @@ SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError 
 SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error);
 void tracer_free(Preview *preview);
 
+// rumple.c
+/// Moves the scene's vertices of burnt cloth, once their fields are known.
+void rumple_char(Preview *preview);
+
 // tracer.c
 SingeResult tracer_build(Preview *preview, SingeError *error);
 

@@ -263,6 +263,7 @@ SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError 
     }
 
     find_edges(preview);
+    rumple_char(preview);
     measure(preview);
     return SINGE_OK;
 }

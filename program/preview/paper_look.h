@@ -96,8 +96,8 @@ bool cloth_is_hole(const Cloth *cloth);
 /// Tilts the normal; returns a factor on the albedo.
 float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *cloth, Point *point);
 
-/// How brown it is, 0 to 1.
-float cloth_scorch(const Weave *weave, const PaperState *state, float footprint);
+/// How brown it is, 0 to 1. Its dye fades.
+float cloth_scorch(const Weave *weave, const PaperState *state, Point *point);
 
 /// Char and ash in its bundles of threads; returns how deep it lies there, 0 to 1. `threads`: from cloth_shade.
 float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth, float burn, float threads,

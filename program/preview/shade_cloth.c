@@ -210,15 +210,17 @@ float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *clot
 
 /// Cloth browns by the logarithm of its heat, which falls off evenly from a front: a fire's vapour condenses on cloth that is
 /// hardly warm. Along threads all this spreads farther.
-float cloth_scorch(const Weave *weave, const PaperState *state, float footprint) {
-    const float above = maxf(state->peak, state->temperature) - CLOTH_WARM, wide = footprint / weave->pitch;
+float cloth_scorch(const Weave *weave, const PaperState *state, Point *point) {
+    const float above = maxf(state->peak, state->temperature) - CLOTH_WARM, wide = point->footprint / weave->pitch;
     if (above <= 0) return 0;
     const float at[2] = {state->uv[0] * weave->threads[0], state->uv[1] * weave->threads[1]};
     float uneven = 0.5f * oblique(at, 90, wide, 211) + 0.2f * oblique(at, 30, wide, 212);
     for (int k = 0; k < 2; k++)
         uneven += 0.3f * resolved(4, wide) * noise2(at[k] / 4, at[1 - k] / 60, 213 + (uint32_t)k);
     const float by_heat = (logf(above / SCORCH_FIRST) + uneven) / logf(SCORCH_LAST / SCORCH_FIRST);
-    return 1 - (1 - SCORCH_MOST * powf(clampf(by_heat, 0, 1), 0.8f)) * expf(-4 * maxf(state->burn, 0));
+    const float scorch = 1 - (1 - SCORCH_MOST * powf(clampf(by_heat, 0, 1), 0.8f)) * expf(-4 * maxf(state->burn, 0));
+    point->albedo = float3_mix(point->albedo, float3(0.66f, 0.65f, 0.62f), 0.8f * stepf(0.2f, 0.7f, scorch));
+    return scorch;
 }
 
 float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth, float burn, float threads,
@@ -260,10 +262,10 @@ float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth
         charred * stepf(0.42f, 0.7f, burn) * stepf(0.15f, 0.95f, top) * (1 - stepf(520, 760, state->temperature));
     const float brown = charred * (1 - stepf(0.45f, 0.75f, burn)) * stepf(-0.4f, 0.6f, up);
     point->albedo = float3_mix(point->albedo, float3(0.060f, 0.030f, 0.015f), 0.7f * brown);
-    point->albedo = float3_scale(point->albedo, 1 + charred * clampf(0.75f * up, -0.6f, 0.9f));
-    point->albedo = float3_mix(point->albedo, float3(0.155f, 0.150f, 0.143f), 0.75f * ash);
+    point->albedo = float3_scale(point->albedo, 1 + charred * clampf(0.5f * up, -0.5f, 0.6f));
+    point->albedo = float3_mix(point->albedo, float3(0.155f, 0.150f, 0.143f), 0.6f * ash);
     Float3 lean = float3_mad(float3_scale(point->across[0], relief[0]), point->across[1], relief[1]);
-    Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, -0.55f * charred), point->normal);
+    Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, -0.36f * charred), point->normal);
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
 
     point->albedo = float3_scale(point->albedo, threads);

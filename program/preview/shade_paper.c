@@ -483,10 +483,7 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
         if (!touched) return true;
     } else if (is_hole(state, &bent, point->footprint)) return false;
 
-    const float scorch =
-        weave ? cloth_scorch(weave, state, point->footprint) : scorch_amount(state, &bent, point->footprint);
-    if (weave) // dye fades as its threads scorch
-        point->albedo = float3_mix(point->albedo, float3(0.66f, 0.65f, 0.62f), 0.8f * stepf(0.2f, 0.7f, scorch));
+    const float scorch = weave ? cloth_scorch(weave, state, point) : scorch_amount(state, &bent, point->footprint);
     float ink = 1 - clampf(float3_luminance(point->albedo), 0, 1);
     const float print = (weave ? DYE_LEFT : 1) * stepf(0.3f, 0.75f, ink);
     Float3 burnt = float3_mul(scorch_colour(scorch),

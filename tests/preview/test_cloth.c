@@ -291,6 +291,35 @@ TEST(char_of_cloth_glows_in_lines_and_not_in_specks) {
     assert_true(share > 3 && share < 15 && specks < 50 * area); // 31, 105: threads and specks all over
 }
 
+/// The depth of burnt cloth that lies at 0, seen from above, as its root mean square in mm; returns the pixels that show it.
+static int char_depth(float ground, double *rms) {
+    static float depth[SEEN * SEEN];
+    static int32_t sheet[SEEN * SEEN];
+    char_make(0.5f);
+    const PreviewLook look = {.weave = 4e-4f};
+    const PreviewStart start = {4, 1, A4, QUAD, A4_UV, NULL};
+    PreviewDef def = above();
+    def.width = def.height = SEEN, def.samples = 4, def.camera.fov = 0.376f;
+    def.looks = &look, def.starts = &start, def.sheet_count = 1, def.ground_height = ground;
+    const PreviewLayers layers = {.depth = depth, .sheet = sheet};
+    draw_layers(&def, &burnt.surface, NULL, 30, &layers);
+    double sum = 0, squares = 0;
+    int count = 0;
+    for (int i = 0; i < SEEN * SEEN; i++)
+        if (sheet[i] >= 0) sum += (double)depth[i], squares += (double)depth[i] * (double)depth[i], count++;
+    *rms = 1000 * sqrt(squares / count - sum / count * (sum / count));
+    return count;
+}
+
+TEST(char_of_cloth_buckles_and_sinks_into_nothing) {
+    double hangs, lies;
+    const int free = char_depth(-INFINITY, &hangs), above_ground = char_depth(-0.0008f, &lies);
+    print_message("char stands out by %.2f mm, %.2f on the ground, of which %.1f %% is seen\n", hangs, lies,
+                  100.0 * above_ground / free);
+    assert_true(hangs > 1.5 && hangs < 5 && lies > 0.8); // 0: flat
+    assert_true(above_ground > 0.99 * free);
+}
+
 /// Cloth browns by and by before a front whose heat falls off to a third in 8 mm: how much of it is neither white nor black, in
 /// mm, between 90 and 25 % of the light of what is whole.
 TEST(cloth_browns_over_centimetres) {
