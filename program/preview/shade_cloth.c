@@ -220,6 +220,8 @@ float cloth_scorch(const Weave *weave, const PaperState *state, Point *point) {
     const float by_heat = (logf(above / SCORCH_FIRST) + uneven) / logf(SCORCH_LAST / SCORCH_FIRST);
     const float scorch = 1 - (1 - SCORCH_MOST * powf(clampf(by_heat, 0, 1), 0.8f)) * expf(-4 * maxf(state->burn, 0));
     point->albedo = float3_mix(point->albedo, float3(0.66f, 0.65f, 0.62f), 0.8f * stepf(0.2f, 0.7f, scorch));
+    Float3 warm = float3_mix(float3(1, 1, 1), float3(1.06f, 0.93f, 0.86f), stepf(0.05f, 0.4f, scorch)); // less green
+    point->albedo = float3_mul(point->albedo, warm);
     return scorch;
 }
 
@@ -258,12 +260,14 @@ float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth
     // charred it is brown
     const float charred = stepf(0.2f, 0.45f, burn), top = maxf(bundle[0], bundle[1]),
                 up = top - 0.25f + 0.35f * wrinkle;
-    const float ash =
-        charred * stepf(0.42f, 0.7f, burn) * stepf(0.15f, 0.95f, top) * (1 - stepf(520, 760, state->temperature));
+    const float cold = charred * (1 - stepf(520, 760, state->temperature));
+    const float ash = cold * stepf(0.42f, 0.7f, burn) * stepf(0.15f, 0.95f, top);
+    const float torn = charred * (1 - stepf(0.5f, 5, cloth->left)) * stepf(-0.3f, 0.3f, wrinkle); // rims are paler
     const float brown = charred * (1 - stepf(0.45f, 0.75f, burn)) * stepf(-0.4f, 0.6f, up);
     point->albedo = float3_mix(point->albedo, float3(0.060f, 0.030f, 0.015f), 0.7f * brown);
     point->albedo = float3_scale(point->albedo, 1 + charred * clampf(0.5f * up, -0.5f, 0.6f));
     point->albedo = float3_mix(point->albedo, float3(0.155f, 0.150f, 0.143f), 0.6f * ash);
+    point->albedo = float3_mix(point->albedo, float3(0.230f, 0.222f, 0.210f), 0.8f * torn);
     Float3 lean = float3_mad(float3_scale(point->across[0], relief[0]), point->across[1], relief[1]);
     Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, -0.36f * charred), point->normal);
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
@@ -300,7 +304,7 @@ void cloth_glow(const Preview *preview, const Weave *weave, const PaperState *st
     const float rim = cloth_line(cloth->left, RIM_GLOW * (0.5f + life), wide);
     const float bow = 5 * oblique(cloth->at, 9, wide, 207), at[2] = {cloth->at[0] + bow - 0.8f * t, cloth->at[1] - bow};
     const float creeping = life > 0 ? cloth_line(32 * fabsf(oblique(at, 80, wide, 205)), 0.9f, wide) : 0;
-    const float hot = 1.5f * life * maxf(rim, 0.35f * creeping);
+    const float hot = 1.5f * life * maxf(rim, 0.22f * creeping);
     const float temperature = minf(mean, RIM_HOT) + 140 * (life - 0.6f);
     Float3 bright = blackbody_glow(preview->blackbody, temperature);
     Float3 dull = blackbody_glow(preview->blackbody, temperature - 130);

@@ -204,20 +204,20 @@ static int hole_fill(int pixel) {
 }
 
 /// Burnt cloth of threads of 0.4 mm, in pixels of 0.8 mm, into `seen` and `bare`.
-static void draw_holes(const SingeSurface *surface, float (*glow)[3]) {
+static void draw_holes(const SingeSurface *surface, float (*glow)[3], float (*beauty)[3]) {
     const PreviewLook look = {.weave = 4e-4f};
     const PreviewStart start = {4, 1, A4, QUAD, A4_UV, NULL};
     PreviewDef def = above();
     def.width = def.height = SEEN, def.samples = 4, def.camera.fov = 0.376f; // 19 cm
     def.looks = &look, def.starts = &start, def.sheet_count = 1, def.ground_height = -INFINITY;
-    const PreviewLayers layers = {.coverage = seen, .glow = glow};
+    const PreviewLayers layers = {.coverage = seen, .glow = glow, .beauty = beauty};
     draw_layers(&def, surface, NULL, 30, &layers);
     for (int i = 0; i < SEEN * SEEN; i++) bare[i] = seen[i] < 0.5f;
 }
 
 TEST(holes_in_burnt_cloth_are_of_many_sizes) {
     char_make(0.7f);
-    draw_holes(&burnt.surface, NULL);
+    draw_holes(&burnt.surface, NULL, NULL);
     int small = 0, large = 0, total = 0; // 2 mm2 and less, 2 cm2 and more
     for (int i = 0; i < SEEN * SEEN; i++) {
         const int size = bare[i] ? hole_fill(i) : 0;
@@ -236,7 +236,7 @@ TEST(burnt_borders_of_cloth_have_no_stairs) {
     SingeSurface sheet;
     assert_true(synthetic_make(SYNTHETIC_COLD, 84, 0.001f, &sheet));
     for (uint32_t i = 0; i < sheet.vertex_count; i++) sheet.burn[i] = 0.7f;
-    draw_holes(&sheet, NULL);
+    draw_holes(&sheet, NULL, NULL);
     synthetic_free(&sheet);
     int border = 0, straight = 0;
     for (int axis = 0; axis < 2; axis++)
@@ -256,7 +256,7 @@ TEST(burnt_borders_of_cloth_have_no_stairs) {
 /// which cloth ends, over 5 pixels, is 1 where all of them are along the threads, in steps, and 0 where they are any.
 TEST(holes_in_burnt_cloth_are_no_lattice) {
     char_make(0.7f);
-    draw_holes(&burnt.surface, NULL);
+    draw_holes(&burnt.surface, NULL, NULL);
     double sum = 0, weight = 0;
     for (int y = 2; y + 2 < SEEN; y++)
         for (int x = 2; x + 2 < SEEN; x++) {
@@ -282,13 +282,32 @@ TEST(char_of_cloth_glows_in_lines_and_not_in_specks) {
     for (int i = 0; i < GRID; i++) burnt.charred[i] = 0.25f, burnt.rate[i] = 0.4f, burnt.temperature[i] = 1050;
     SingeSurface hot = burnt.surface;
     hot.mass = hot.char_fraction = burnt.charred, hot.ash_fraction = burnt.ash;
-    draw_holes(&hot, glow);
+    draw_holes(&hot, glow, NULL);
     int specks = 0, glows = 0;
     for (int i = 0; i < SEEN * SEEN; i++) glows += bare[i] = glow[i][0] > 0.25f;
     for (int i = 0; i < SEEN * SEEN; i++) specks += bare[i] && hole_fill(i) < 8;
     const double share = 100.0 * glows / (SEEN * SEEN), area = SEEN * SEEN * 64e-6;
     print_message("%.1f %% glows, in %.0f specks to a square decimetre\n", share, specks / area);
     assert_true(share > 3 && share < 15 && specks < 50 * area); // 31, 105: threads and specks all over
+}
+
+/// Ash clings to rims of cold char: its light within 1.6 mm of a hole over that elsewhere.
+TEST(rims_of_holes_in_cloth_are_pale) {
+    static float beauty[SEEN * SEEN][3];
+    char_make(0.7f);
+    draw_holes(&burnt.surface, NULL, beauty);
+    double light[2] = {0, 0};
+    int count[2] = {0, 0};
+    for (int y = 2; y + 2 < SEEN; y++)
+        for (int x = 2; x + 2 < SEEN; x++) {
+            const int at = y * SEEN + x;
+            if (seen[at] < 1) continue;
+            const bool rim = seen[at - 2] < 1 || seen[at + 2] < 1 || seen[at - 2 * SEEN] < 1 || seen[at + 2 * SEEN] < 1;
+            light[rim] += (double)beauty[at][1], count[rim]++;
+        }
+    const double ratio = light[1] / count[1] / (light[0] / count[0]);
+    print_message("rims of holes are %.2f times as bright as other char\n", ratio);
+    assert_true(ratio > 1.15); // 1.01
 }
 
 /// The depth of burnt cloth that lies at 0, seen from above, as its root mean square in mm; returns the pixels that show it.
