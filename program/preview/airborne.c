@@ -14,66 +14,90 @@
 
 // ---- embers
 
-void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]) {
-    const PreviewScene *scene = &preview->scene;
-    memset(sites, 0, SITE_LIMIT * sizeof *sites);
-    for (uint32_t t = 0; t < scene->triangle_count; t++) {
-        const PaperVertex *v[3];
-        for (int k = 0; k < 3; k++) v[k] = &scene->vertices[scene->triangles[t][k]];
-        float hottest = maxf(v[0]->temperature, maxf(v[1]->temperature, v[2]->temperature));
-        float high = maxf(v[0]->burn, maxf(v[1]->burn, v[2]->burn));
-        if (hottest < 600 || high < 0.15f) continue; // most are neither
+/// What a triangle adds to its site. False: nothing.
+static bool ember_of(const PreviewScene *scene, uint32_t t, float size, EmberSite *add) {
+    const PaperVertex *v[3];
+    for (int k = 0; k < 3; k++) v[k] = &scene->vertices[scene->triangles[t][k]];
+    float hottest = maxf(v[0]->temperature, maxf(v[1]->temperature, v[2]->temperature));
+    float high = maxf(v[0]->burn, maxf(v[1]->burn, v[2]->burn));
+    if (hottest < 600 || high < 0.15f) return false; // most are neither
 
-        Float3 position = {0, 0, 0}, rest = {0, 0, 0};
-        float low = 1, burn = 0, rate = 0, flaming = 0, starved = 0, gradient = 0;
-        for (int k = 0; k < 3; k++) {
-            low = minf(low, v[k]->burn);
-            rate += v[k]->burn_rate / 3;
-            flaming += v[k]->flaming / 3;
-            starved += v[k]->starved / 3;
-            burn += v[k]->burn / 3;
-            gradient += v[k]->gradient / 3;
-            rest = float3_mad(rest, float3_load(v[k]->rest), 1.0f / 3);
-            position = float3_mad(position, float3_load(scene->positions[scene->triangles[t][k]]), 1.0f / 3);
-        }
-
-        // the glowing line runs where burn is EMBER_BURN; leaves of char glow as a whole, with threads
-        const float *p[3];
-        for (int k = 0; k < 3; k++) p[k] = scene->positions[scene->triangles[t][k]];
-        Float3 a = float3_sub(float3_load(p[1]), float3_load(p[0])),
-               b = float3_sub(float3_load(p[2]), float3_load(p[0]));
-        const Float3 normal = float3_cross(a, b);
-        float area = 0.5f * float3_length(normal), live = ember_activity(rate);
-        float length = low < EMBER_BURN && high > EMBER_BURN ? area * maxf(gradient, 20) / maxf(high - low, 0.02f) : 0;
-        length = live * minf(length, 2 * sqrtf(area)) + ember_leaf(rate - flaming, starved, burn) * area / LEAF_WIDTH;
-        if (hottest < BLACKBODY_MIN) length = 0;
-        float smoulder = area * stepf(600, 760, hottest) * (1 - stepf(0.02f, 0.2f, flaming));
-        if (length + smoulder <= 0) continue;
-
-        float rests[3], within;
-        float3_store(rests, rest);
-        uint32_t key = hash_u32((uint32_t)v[0]->sheet + 1);
-        for (int c = 0; c < 3; c++) key = hash_u32(key ^ (uint32_t)noise_floor(rests[c] / size + 0.37f, &within));
-        key |= 1;
-        for (uint32_t i = 0; i < SITE_LIMIT; i++) {
-            EmberSite *site = &sites[(key + i) & (SITE_LIMIT - 1)];
-            if (site->key && site->key != key) continue;
-            float weight = length + 0.1f * smoulder / size;
-            site->key = key;
-            site->length += length;
-            site->flaming += rate > 0 ? length * flaming / rate : 0;
-            site->smoulder += smoulder;
-            site->weight += weight;
-            site->level += area > 0 ? 0.5f * weight * fabsf(normal.z) / area : 0;
-            site->position = float3_mad(site->position, position, weight);
-            break;
-        }
+    Float3 position = {0, 0, 0}, rest = {0, 0, 0};
+    float low = 1, burn = 0, rate = 0, flaming = 0, starved = 0, gradient = 0;
+    for (int k = 0; k < 3; k++) {
+        low = minf(low, v[k]->burn);
+        rate += v[k]->burn_rate / 3;
+        flaming += v[k]->flaming / 3;
+        starved += v[k]->starved / 3;
+        burn += v[k]->burn / 3;
+        gradient += v[k]->gradient / 3;
+        rest = float3_mad(rest, float3_load(v[k]->rest), 1.0f / 3);
+        position = float3_mad(position, float3_load(scene->positions[scene->triangles[t][k]]), 1.0f / 3);
     }
 
+    // the glowing line runs where burn is EMBER_BURN; leaves of char glow as a whole, with threads
+    const float *p[3];
+    for (int k = 0; k < 3; k++) p[k] = scene->positions[scene->triangles[t][k]];
+    Float3 a = float3_sub(float3_load(p[1]), float3_load(p[0])), b = float3_sub(float3_load(p[2]), float3_load(p[0]));
+    const Float3 normal = float3_cross(a, b);
+    float area = 0.5f * float3_length(normal), live = ember_activity(rate);
+    float length = low < EMBER_BURN && high > EMBER_BURN ? area * maxf(gradient, 20) / maxf(high - low, 0.02f) : 0;
+    length = live * minf(length, 2 * sqrtf(area)) + ember_leaf(rate - flaming, starved, burn) * area / LEAF_WIDTH;
+    if (hottest < BLACKBODY_MIN) length = 0;
+    float smoulder = area * stepf(600, 760, hottest) * (1 - stepf(0.02f, 0.2f, flaming));
+    if (length + smoulder <= 0) return false;
+
+    float rests[3], within, weight = length + 0.1f * smoulder / size;
+    float3_store(rests, rest);
+    uint32_t key = hash_u32((uint32_t)v[0]->sheet + 1);
+    for (int c = 0; c < 3; c++) key = hash_u32(key ^ (uint32_t)noise_floor(rests[c] / size + 0.37f, &within));
+    *add = (EmberSite){.key = key | 1,
+                       .length = length,
+                       .flaming = rate > 0 ? length * flaming / rate : 0,
+                       .smoulder = smoulder,
+                       .weight = weight,
+                       .level = area > 0 ? 0.5f * weight * fabsf(normal.z) / area : 0,
+                       .position = position};
+    return true;
+}
+
+/// The site with a key, or an empty one for it; NULL: all are taken.
+static EmberSite *site_of(EmberSite sites[SITE_LIMIT], uint32_t key) {
+    for (uint32_t i = 0; i < SITE_LIMIT; i++) {
+        EmberSite *site = &sites[(key + i) & (SITE_LIMIT - 1)];
+        if (!site->key || site->key == key) return site;
+    }
+    return NULL;
+}
+
+void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]) {
+    const PreviewScene *scene = &preview->scene;
+    EmberSite add, *site;
+    memset(sites, 0, SITE_LIMIT * sizeof *sites);
+    for (uint32_t t = 0; t < scene->triangle_count; t++) {
+        if (!ember_of(scene, t, size, &add) || !(site = site_of(sites, add.key))) continue;
+        site->key = add.key;
+        site->length += add.length;
+        site->flaming += add.flaming;
+        site->smoulder += add.smoulder;
+        site->weight += add.weight;
+        site->level += add.level;
+        site->position = float3_mad(site->position, add.position, add.weight);
+    }
+
+    float nearest[SITE_LIMIT];
     for (int i = 0; i < SITE_LIMIT; i++) {
+        nearest[i] = INFINITY;
         if (!(sites[i].weight > 0)) continue;
         sites[i].position = float3_scale(sites[i].position, 1 / sites[i].weight);
         sites[i].level /= sites[i].weight;
+    }
+    for (uint32_t t = 0; t < scene->triangle_count; t++) {
+        if (!ember_of(scene, t, size, &add) || !(site = site_of(sites, add.key))) continue;
+        const float glow = add.length * LEAF_WIDTH / (add.smoulder + 1e-9f);
+        const float distance =
+            float3_length(float3_sub(add.position, site->position)) + 0.4f * size * (1 - stepf(0, 0.5f, glow));
+        if (distance < nearest[site - sites]) nearest[site - sites] = distance, site->ember = add.position;
     }
 }
 

@@ -20,6 +20,7 @@ typedef struct EmberSite {
     float level;     ///< 1 on level sheets, 0 on upright ones
     float weight;    ///< of `position`, a mean
     Float3 position; ///< m
+    Float3 ember;    ///< m, of these the nearest to it
 } EmberSite;
 
 /// What is drawn over the picture at a pixel: light, and the depth of the smoke.

@@ -3,33 +3,42 @@
 // The air over an ember rises in a smooth thread, h(a) = RISE a + SPEEDING a^2 above it at the age a. What left it at the
 // moment s = t - a keeps a part of the swing that the air had then, so that with smooth noises N of the moment
 //
-//     p(a) = p0 + z h(a) + (N1(s), N2(s), N3(s)) g(a),   g growing as a^2:
+//     p(a) = p0 + z h(a) + (N1(s), N2(s), N3(s)) g(a),   g = 0 up to the age LAMINAR, then growing:
 //
-// a thread is straight at first, then bends, and curls where what left later overtakes what left before. A wisp is a
-// ribbon of THREADS of these, whose swings differ a little: where the ribbon turns its edge or folds it is denser. Each
-// thread is a row of soft dots.
+// a thread is straight for some centimetres, then buckles, and rolls where what left later overtakes what left before. A
+// wisp is a ribbon of THREADS of these, which is as narrow as its ember below and whose swings differ a little: where the
+// ribbon turns its edge or folds it is denser. Smoke hardly diffuses, so its sheets stay sharp. Each thread is a row of soft
+// dots.
 
 #include "preview/airborne.h"
 
 enum {
-    THREADS = 40,
-    COVER = 9, ///< cm above an ember within which flames burn its smoke
+    THREADS = 56,
+    KNOTS = 150, ///< of a thread, between which it is straight
+    SIGHTS = 3,  ///< times SIGHT_POINTS places of a thread where it is known whether it is seen; most are low
+    LIGHTS = 12, ///< places of a wisp where its light is known
 };
 #define WISP_CELL 0.025f  ///< m, of the sites
 #define WISP_LIFE 1.5f    ///< s
 #define RISE 0.12f        ///< m/s
 #define SPEEDING 0.13f    ///< m/s2
 #define RIBBON 0.0045f    ///< m, half of its width at half a second
-#define KINDLING 0.28f    ///< s, in which it is seen more and more: vapour becomes droplets as it cools
-#define THREAD 0.0009f    ///< m, radius there
-#define WISP_DEPTH 13e-3f ///< m, optical depth across a wisp times its width
-#define SMOKING 6.0f      ///< sites of which half smoke
-#define WISP_AREA 2.5e-5f ///< m2 that smoulder and give half of the densest wisp
-#define FORWARD 0.45f     ///< g of the phase function
+#define LAMINAR 0.16f     ///< s, in the mean
+#define THREAD 0.0005f    ///< m, radius at the ember
+#define WISP_DEPTH 10e-3f ///< m, optical depth across a wisp times its width
+#define FLAME_FAINT 0.08f ///< of a cell whose flame burns smoke
+#define AHEAD 0.5f        ///< of what it takes from the light behind it, that goes on nearly straight is not missed
+#define SMOKING 10.0f     ///< sites of which half smoke
+#define WISP_AREA 1.0e-5f ///< m2 that smoulder and give half of the densest wisp
 
 typedef struct Wisp {
-    Float3 from, across;
+    Float3 path[KNOTS + 1]; ///< m, where the air carries what leaves the ember
+    Float3 across;
     float strength, now;
+    float laminar; ///< s
+    float burnt;   ///< s, age at which it comes to a flame
+    float wide;    ///< times RIBBON
+    Float3 light[LIGHTS];
     uint32_t seed;
 } Wisp;
 
@@ -39,84 +48,147 @@ static inline float swing(const Wisp *wisp, float moment, float often, float pla
     return n + 0.4f * noise2(2.3f * moment * often, 1.1f * place + 7, wisp->seed + which);
 }
 
+/// The drift of the gas per m of rise at p along x and y, linear between cells, and the flame of the cell there.
+static void gas_at(const Fire *fire, Float3 p, float drift[2], float *flame) {
+    int low[3];
+    float f[3], at[3];
+    float3_store(at, float3_scale(float3_sub(p, fire->origin), 1 / fire->cell));
+    drift[0] = drift[1] = *flame = 0;
+    for (int c = 0; c < 3; c++) {
+        low[c] = noise_floor(at[c], &f[c]);
+        if (low[c] < 0 || low[c] > fire->size[c] - 2) return;
+    }
+    for (int k = 0; k < 8; k++) {
+        size_t cell = 0;
+        float share = 1;
+        for (int c = 2; c >= 0; c--) {
+            const int next = k >> c & 1;
+            cell = cell * (size_t)fire->size[c] + (size_t)(low[c] + next);
+            share *= next ? f[c] : 1 - f[c];
+        }
+        for (int c = 0; c < 2; c++) drift[c] += share * fire->source[cell][c];
+        *flame = maxf(*flame, fire->cells[cell].flame);
+    }
+}
+
+/// Follows the air from an ember: smoke rises by itself, drifts with the gas, and burns in flames.
+static void wisp_follow(const Fire *fire, Wisp *wisp) {
+    const float step = WISP_LIFE / KNOTS;
+    wisp->burnt = WISP_LIFE;
+    for (int k = 0; k < KNOTS; k++) {
+        float drift[2] = {0, 0}, flame = 0;
+        const float rise = (RISE + 2 * SPEEDING * step * ((float)k + 0.5f)) * step;
+        if (fire->size[0] && fire->visible) gas_at(fire, wisp->path[k], drift, &flame);
+        if (flame > FLAME_FAINT) wisp->burnt = minf(wisp->burnt, step * (float)k);
+        wisp->path[k + 1] = float3_add(wisp->path[k], float3(rise * drift[0], rise * drift[1], rise));
+    }
+}
+
+/// Where a thread's smoke of an age is. `place`: of the thread across the ribbon, -1 to 1.
 static Float3 wisp_at(const Wisp *wisp, float age, float place) {
-    const float moment = wisp->now - age, early = age * age / (0.14f + age), late = early * age;
-    const float neck = 0.12f + 0.5f * age / (0.15f + age) + 2.2f * age * age; // a point of the ember feeds it
-    const float turn = 1.2f * age + 1.6f * noise2(moment * 1.3f, 3, wisp->seed), c = cosf(turn), s = sinf(turn);
-    const float side = RIBBON * place * neck;
-    Float3 p = wisp->from;
-    p.x += side * (c * wisp->across.x - s * wisp->across.y) + 0.085f * early * swing(wisp, moment, 2.6f, place, 11);
-    p.y += side * (s * wisp->across.x + c * wisp->across.y) + 0.085f * early * swing(wisp, moment, 2.6f, place, 12);
-    p.x += 0.36f * late * swing(wisp, moment, 8, 1.7f * place, 13);
-    p.y += 0.36f * late * swing(wisp, moment, 8, 1.7f * place, 14);
-    p.z += (RISE + SPEEDING * age) * age + 0.36f * late * swing(wisp, moment, 7, 1.7f * place, 15);
+    const float moment = wisp->now - age, loose = maxf(age - wisp->laminar, 0);
+    const float bend = 0.20f * loose * loose / (0.08f + loose), roll = 0.50f * loose * loose * loose / (0.1f + loose);
+    const float neck = 0.08f + 0.5f * age + 1.5f * loose + 1.4f * loose * loose; // a point of the ember feeds it
+    const float turn = 3 * age + 1.8f * noise2(moment * 1.3f, 3, wisp->seed), c = cosf(turn), s = sinf(turn);
+    const float side = wisp->wide * RIBBON * place * neck, drift = 0.045f * age;
+    const float x = age * (KNOTS / WISP_LIFE);
+    const int knot = (int)minf(x, KNOTS - 1);
+    Float3 p = float3_mix(wisp->path[knot], wisp->path[knot + 1], x - (float)knot);
+    p.x +=
+        side * (c * wisp->across.x - s * wisp->across.y) + drift * noise2(1.7f * moment, 0.2f * place, wisp->seed + 21);
+    p.y +=
+        side * (s * wisp->across.x + c * wisp->across.y) + drift * noise2(1.7f * moment, 0.2f * place, wisp->seed + 22);
+    p.x += bend * swing(wisp, moment, 3.4f, 0.6f * place, 11) + roll * swing(wisp, moment, 8, 1.5f * place, 13);
+    p.y += bend * swing(wisp, moment, 3.4f, 0.6f * place, 12) + roll * swing(wisp, moment, 8, 1.5f * place, 14);
+    p.z += 0.6f * bend * swing(wisp, moment + 0.07f, 3.4f, 0.6f * place, 11);
+    p.z += roll * swing(wisp, moment + 0.03f, 8, 1.5f * place, 13);
     return p;
 }
 
-static void thread_draw(Preview *preview, const Wisp *wisp, float place) {
-    Float3 points[SIGHT_POINTS], light = {0, 0, 0};
-    float seen[SIGHT_POINTS], at[2], depth, edge = 1 - 0.6f * place * place;
-    for (int i = 0; i < SIGHT_POINTS; i++) points[i] = wisp_at(wisp, WISP_LIFE * (float)i / SIGHT_POINTS, place);
-    airborne_sight(preview, points, SIGHT_POINTS, seen);
+/// The age of place k of `count` where something is known of a thread, denser near the ember.
+static float age_of(int k, int count) {
+    const float part = (float)k / (float)(count - 1);
+    return WISP_LIFE * part * part;
+}
 
-    int lit = -1;
-    for (float age = 0.004f; age < WISP_LIFE;) {
-        const int i = (int)(age / WISP_LIFE * SIGHT_POINTS);
-        const float open =
-            mixf(seen[i], seen[i + 1 < SIGHT_POINTS ? i + 1 : i], age / WISP_LIFE * SIGHT_POINTS - (float)i);
-        Float3 p = wisp_at(wisp, age, place);
+/// The number of the place below that, and how far it is to the next.
+static int place_of(float age, int count, float *part) {
+    const float at = sqrtf(age / WISP_LIFE) * (float)(count - 1);
+    const int i = (int)minf(at, (float)(count - 2));
+    *part = at - (float)i;
+    return i;
+}
+
+static void thread_draw(Preview *preview, const Wisp *wisp, float place) {
+    Float3 knots[KNOTS + 1], points[SIGHT_POINTS];
+    float seen[SIGHTS * SIGHT_POINTS], at[2], depth;
+    for (int k = 0; k <= KNOTS; k++) knots[k] = wisp_at(wisp, WISP_LIFE * (float)k / KNOTS, place);
+    for (int k = 0; k < SIGHTS; k++) {
+        for (int i = 0; i < SIGHT_POINTS; i++)
+            points[i] = wisp_at(wisp, age_of(k * SIGHT_POINTS + i, SIGHTS * SIGHT_POINTS), place);
+        airborne_sight(preview, points, SIGHT_POINTS, seen + k * SIGHT_POINTS);
+    }
+
+    const float edge = 1 - 0.6f * place * place;
+    for (float age = 0.002f; age < WISP_LIFE;) {
+        const float x = age * (KNOTS / WISP_LIFE);
+        const int knot = (int)minf(x, KNOTS - 1);
+        const Float3 p = float3_mix(knots[knot], knots[knot + 1], x - (float)knot);
         if (!airborne_project(preview, p, at, &depth)) return;
-        if (i != lit) light = smoke_light(preview, p);
-        lit = i;
+        float part;
+        int i = place_of(age, SIGHTS * SIGHT_POINTS, &part);
+        const float open = mixf(seen[i], seen[i + 1], part);
+        i = place_of(age, LIGHTS, &part);
+        const Float3 light = float3_mix(wisp->light[i], wisp->light[i + 1], part);
 
         // steps of half of a dot; what rises faster is thinner
         const float pixel = preview->camera.pixel * depth, fast = RISE + 2 * SPEEDING * age;
-        const float wide = THREAD + (0.0020f + 0.0075f * age) * age;
+        const float loose = maxf(age - wisp->laminar, 0), wide = THREAD + 0.0008f * age + 0.0032f * loose * loose;
         const float radius = maxf(wide / pixel + camera_blur(&preview->camera, depth), 1.1f);
         const float step = minf(0.45f * radius * pixel / (1.4f * fast), 0.02f), left = 1 - age / WISP_LIFE;
-        const float patchy = clampf(0.9f + 0.5f * swing(wisp, wisp->now - age, 3, 0.6f * place, 17), 0, 2);
-        float dense = WISP_DEPTH * wisp->strength * edge * left * left * patchy * stepf(0, KINDLING, age) * open;
-        dense *= RISE * step / (pixel * pixel * THREADS);
-        airborne_dot(preview, at, radius, float3_scale(light, dense), dense);
+        const float patchy = clampf(0.85f + 0.8f * swing(wisp, wisp->now - age, 4, 1.1f * place, 17), 0.1f, 2);
+        float dense = WISP_DEPTH * wisp->strength * edge * left * left * patchy * open;
+        dense *= 1 - stepf(wisp->burnt - 0.15f, wisp->burnt, age);
+        dense *= stepf(0, 0.06f, age) * mixf(0.3f, 1, stepf(0, 0.4f, age)) * RISE * step / (pixel * pixel * THREADS);
+        airborne_dot(preview, at, radius, float3_scale(light, dense), AHEAD * dense);
         age += step;
     }
 }
 
 void wisps_draw(Preview *preview) {
     EmberSite sites[SITE_LIMIT];
-    const Fire *fire = &preview->fire;
+    float strength[SITE_LIMIT];
     if (preview->def.wisps <= 0) return;
     ember_sites(preview, WISP_CELL, sites);
 
     // of many only some smoke at a time
     int count = 0;
-    for (int i = 0; i < SITE_LIMIT; i++) count += sites[i].smoulder > 0.2f * WISP_AREA;
+    for (int i = 0; i < SITE_LIMIT; i++) {
+        const float area = sites[i].smoulder, upright = 1 - stepf(0.2f, 0.5f, sites[i].level); // there it spreads
+        strength[i] = 0;
+        if (!(area > 0)) continue;
+        Wisp wisp = {.path = {sites[i].ember}};
+        wisp_follow(&preview->fire, &wisp);
+        strength[i] = area / (area + WISP_AREA) * (1 - upright) * stepf(0.05f, 0.4f, wisp.burnt);
+        count += strength[i] > 0.15f;
+    }
     const float still = 0.80f - 0.30f * minf(SMOKING / (float)(count + 1), 1);
 
+    const float now = (float)fmod(preview->time, 4096.0);
     for (int i = 0; i < SITE_LIMIT; i++) {
-        if (sites[i].smoulder <= 0) continue;
-
-        // a flame above burns the smoke
-        float flame = 0;
-        for (int up = 1; fire->size[0] && fire->visible && up <= COVER; up++) {
-            Float3 p = float3_scale(float3_sub(sites[i].position, fire->origin), 1 / fire->cell);
-            const float at[3] = {p.x, p.y, p.z + 0.01f * (float)up / fire->cell};
-            size_t cell = 0;
-            for (int c = 2; c >= 0; c--)
-                cell = cell * (size_t)fire->size[c] + (size_t)clampf(at[c] + 0.5f, 0, (float)fire->size[c] - 1);
-            flame = maxf(flame, fire->cells[cell].flame);
-        }
-
-        const float now = (float)fmod(preview->time, 4096.0), area = sites[i].smoulder;
-        const float turn = 2 * PI_F * hash_unit(sites[i].key), live = 0.5f + 0.5f * noise2(0.7f * now, 0, sites[i].key);
-        Wisp wisp = {.from = sites[i].position,
+        if (strength[i] <= 0) continue;
+        const uint32_t key = sites[i].key;
+        const float turn = 2 * PI_F * hash_unit(key), live = 0.5f + 0.5f * noise2(0.7f * now, 0, key);
+        Wisp wisp = {.path = {sites[i].ember},
                      .across = float3(cosf(turn), sinf(turn), 0),
-                     .strength = area / (area + WISP_AREA) * (1 - stepf(0.02f, 0.15f, flame)) *
-                                 stepf(still, still + 0.3f, live),
+                     .strength = preview->def.wisps * strength[i] * stepf(still, still + 0.3f, live),
                      .now = now,
-                     .seed = sites[i].key & 0xffff};
-        wisp.strength *= preview->def.wisps * stepf(0.2f, 0.5f, sites[i].level); // up a hanging sheet it spreads
-        for (int k = 0; k < THREADS && wisp.strength > 0.01f; k++)
-            thread_draw(preview, &wisp, 2 * ((float)k + 0.5f) / THREADS - 1);
+                     .laminar = LAMINAR * (0.5f + hash_unit(key + 1) + 0.3f * noise2(0.9f * now, 9, key)),
+                     .wide = exp2f(2.4f * hash_unit(key + 2) - 0.9f),
+                     .seed = key & 0xffff};
+        if (wisp.strength <= 0.01f) continue;
+        wisp_follow(&preview->fire, &wisp);
+        for (int k = 0; k < LIGHTS; k++) wisp.light[k] = smoke_light(preview, wisp_at(&wisp, age_of(k, LIGHTS), 0));
+        for (int k = 0; k < THREADS; k++) thread_draw(preview, &wisp, 2 * ((float)k + 0.5f) / THREADS - 1);
     }
 }
