@@ -41,6 +41,14 @@ typedef struct Plank {
     float tone, hue, shift;    ///< its own, 0 to 1, 0 to 1, and m
 } Plank;
 
+/// A flat part of a crumpled sheet (crumple.c).
+typedef struct CrumpleFacet {
+    uint32_t key; ///< 0: none
+    Float3 sum;   ///< of the normals, times areas
+} CrumpleFacet;
+
+enum { CRUMPLE_FACETS = 4096 }; ///< room for them: beyond that sheets are smooth
+
 /// The sheets that are drawn, and the lamps.
 typedef struct PreviewScene {
     Bvh bvh;
@@ -52,6 +60,7 @@ typedef struct PreviewScene {
     uint32_t vertex_capacity, position_capacity, moved_capacity[2], triangle_capacity;
     Float3 low, high; ///< bounds of the drawn triangles
     float epsilon;    ///< m, distance by which secondary rays leave a surface
+    CrumpleFacet facets[CRUMPLE_FACETS];
     EmberLights lights;
     int light_count, flames[2]; ///< the first of the flames, and behind the last
 } PreviewScene;
@@ -150,6 +159,16 @@ void texture_free(const Preview *preview, Texture *texture);
 
 /// Linear colour; `texels` is a sample's width in texels of level 0.
 Float3 texture_sample(const Preview *preview, const Texture *texture, float u, float v, float texels);
+
+// crumple.c
+/// Gathers the facets of crumpled sheets. The vertices have been loaded.
+void crumple_load(PreviewScene *scene);
+
+/// How crumpled a sheet is that is bent so much (1/m), 0 to 1.
+float crumple_amount(float bent);
+
+/// Turns the normal towards that of the facet.
+void crumple_shade(const PreviewScene *scene, const PaperState *state, float amount, Point *point);
 
 // mesh_in.c
 /// Fills the scene's vertices and triangles, for what traces no rays; tracer_load also makes it ready for rays.

@@ -262,6 +262,7 @@ SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError 
         for (int end = 0; moves && end < 2; end++) memset(scene->moved[end][i], 0, sizeof *scene->moved[end]);
     }
 
+    crumple_load(scene);
     find_edges(preview);
     rumple_char(preview);
     measure(preview);

@@ -68,9 +68,10 @@ static inline Float3 noise3_gradient(Float3 p, float n, uint32_t seed) {
 }
 
 /// Difference between the distances to the nearest two of scattered points, one in each cell of the unit lattice
-/// (Worley 1996): 0 on the walls between their regions, about 0.5 in the centres.
-static inline float noise_walls(Float3 p, uint32_t seed) {
+/// (Worley 1996): 0 on the walls between their regions, about 0.5 in the centres. `nearest`: the hash of the nearest.
+static inline float noise_cell(Float3 p, uint32_t seed, uint32_t *nearest) {
     float fx, fy, fz, first = 9, second = 9;
+    *nearest = 0;
     uint32_t ix = (uint32_t)noise_floor(p.x, &fx), iy = (uint32_t)noise_floor(p.y, &fy);
     uint32_t iz = (uint32_t)noise_floor(p.z, &fz);
     for (int k = 0; k < 27; k++) {
@@ -81,7 +82,12 @@ static inline float noise_walls(Float3 p, uint32_t seed) {
         float x = (float)dx + (float)(h & 1023) / 1024 - fx, y = (float)dy + (float)(h >> 10 & 1023) / 1024 - fy;
         float z = (float)dz + (float)(h >> 20 & 1023) / 1024 - fz, d2 = x * x + y * y + z * z;
         second = minf(second, maxf(first, d2));
-        first = minf(first, d2);
+        if (d2 < first) first = d2, *nearest = h;
     }
     return sqrtf(second) - sqrtf(first);
+}
+
+static inline float noise_walls(Float3 p, uint32_t seed) {
+    uint32_t nearest;
+    return noise_cell(p, seed, &nearest);
 }

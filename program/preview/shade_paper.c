@@ -461,12 +461,10 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
                               ? preview->def.looks[state->sheet].coating
                               : 0;
     if (!touched && coating > 0) coat(coating, NULL, point);
-    const float sharp = weave ? 0 : stepf(70, 260, point->bent);
-    if (sharp > 0) { // crumpled: facets of some millimetres between sharp lines
-        Float3 p = askew(state->rest);
-        p = float3_mad(p, float3(1, -1, 1), 0.8e-3f * paper_noise(p, 3, point->footprint, 34));
-        tilt(p, 9, 0.50f * sharp, true, 35, point);
-        tilt(p, 3.5f, 0.20f * sharp, true, 36, point);
+    const float sharp = weave ? 0 : crumple_amount(point->bent);
+    if (sharp > 0) {
+        crumple_shade(&preview->scene, state, sharp, point);
+        tilt(askew(state->rest), 3.5f, 0.20f * sharp, true, 36, point);
     }
     if (!touched && !weave) return true;
 

@@ -146,13 +146,68 @@ TEST(paper_that_is_crumpled_has_creases) {
         }
         draw(&def, &q.surface, 0, rgb);
         changes[k] = 0;
-        for (int y = 1; y + 1 < H; y++)
-            for (int x = W / 4; x < W * 3 / 4; x++)
-                changes[k] +=
-                    fabsf((float)pixel(rgb, x, y + 1)[1] - (float)pixel(rgb, x, y - 1)[1]) / (W / 2 * (H - 2));
+        for (int x = W / 4; x < W * 3 / 4; x++) {
+            float sum = 0, square = 0;
+            for (int y = 0; y < H; y++) {
+                const float here = (float)pixel(rgb, x, y)[1];
+                sum += here / H, square += here * here / H;
+            }
+            changes[k] += sqrtf(fmaxf(square - sum * sum, 0)) / (W / 2);
+        }
     }
     print_message("a bend's shade changes by %.2f levels, a fold's by %.2f\n", (double)changes[0], (double)changes[1]);
     assert_true(changes[0] < 1.2f && changes[1] > 2);
+}
+
+/// Crumpled paper is flat between ridges: of how its shade changes from pixel to pixel most lies on few of them. Smooth
+/// waves of the same height are cloth.
+TEST(crumpled_paper_has_flat_facets) {
+    enum { SIDE = 41, CELLS = (SIDE - 1) * (SIDE - 1), EDGE = 12, CHANGES = (W - 2 * EDGE) * (H - 2 * EDGE) };
+    static float position[SIDE * SIDE][3], normal[SIDE * SIDE][3], zero[SIDE * SIDE][2], change[CHANGES];
+    static uint32_t triangles[2 * CELLS][3];
+    static int32_t sheet[SIDE * SIDE];
+    static uint8_t rgb[BYTES];
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const float x = 0.001f * (float)(i % SIDE - SIDE / 2), y = 0.001f * (float)(i / SIDE - SIDE / 2);
+        const float turn = 0.5f * sinf(300 * x + 90 * y);
+        position[i][0] = x, position[i][1] = y, position[i][2] = 0.02f;
+        normal[i][0] = sinf(turn), normal[i][2] = cosf(turn);
+    }
+    for (uint32_t k = 0; k < CELLS; k++) {
+        const uint32_t v = k % (SIDE - 1) + k / (SIDE - 1) * SIDE;
+        memcpy(triangles[2 * k], (uint32_t[3]){v, v + 1, v + SIDE}, sizeof *triangles);
+        memcpy(triangles[2 * k + 1], (uint32_t[3]){v + 1, v + SIDE + 1, v + SIDE}, sizeof *triangles);
+    }
+    static float cold[SIDE * SIDE], nought[SIDE * SIDE];
+    for (int i = 0; i < SIDE * SIDE; i++) cold[i] = 293;
+    const SingeSurface surface = {.vertex_count = SIDE * SIDE,
+                                  .triangle_count = 2 * CELLS,
+                                  .position = position,
+                                  .normal = normal,
+                                  .uv = zero,
+                                  .rest_position = position,
+                                  .temperature = cold,
+                                  .temperature_peak = cold,
+                                  .burn = nought,
+                                  .burn_rate = nought,
+                                  .sheet = sheet,
+                                  .triangles = triangles};
+    PreviewDef def = above();
+    def.camera.fov = 0.06f, def.samples = 16;
+    def.sun_direction[0] = 1, def.ground_height = -INFINITY;
+    draw(&def, &surface, 0, rgb);
+    float all = 0, most = 0;
+    for (int y = EDGE, i = 0; y < H - EDGE; y++)
+        for (int x = EDGE; x < W - EDGE; x++, i++) {
+            const float here = (float)pixel(rgb, x, y)[1];
+            change[i] = fabsf((float)pixel(rgb, x + 1, y)[1] - here) + fabsf((float)pixel(rgb, x, y + 1)[1] - here);
+            all += change[i];
+        }
+    float even = 0;
+    for (int i = 0; i < CHANGES; i++) even += change[i] <= 0.5f * all / CHANGES, most = fmaxf(most, change[i]);
+    print_message("of crumpled paper %.2f changes little, by %.2f in the mean, %.0f at most\n",
+                  (double)(even / CHANGES), (double)(all / CHANGES), (double)most);
+    assert_true(even > 0.4f * CHANGES); // .34
 }
 
 /// Stone has scale: joints between its slabs are the darkest lines in it, and its tone changes over decimetres. It was noise of
