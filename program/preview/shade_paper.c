@@ -194,13 +194,14 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 #define EMBER_HOT 1180.0f ///< K
 
 /// Of a leaf's glow: what is neither thread nor speck, and these.
-#define LEAF_DULL 0.27f
+#define LEAF_DULL 0.75f
 #define LEAF_THREADS 0.9f
 #define LEAF_SPECKS 0.35f
-#define LEAF_COOLER 120.0f ///< K, how much cooler it is than these
-
-/// Threads and border of char below a flame are that much cooler.
-#define STARVED_COOLER 90.0f ///< K
+#define LEAF_COOLER 180.0f ///< K, how much cooler it is than these
+#define LEAF_BRIGHT 1.25f
+#define LEAF_DIM 120.0f      ///< K, how much cooler a thread's sides are
+#define LEAF_CORE 120.0f     ///< K, how much hotter its core is
+#define STARVED_COOLER 90.0f ///< K, how much cooler threads and border of char below a flame are
 #define STARVED_BORDER 0.42f ///< the burn value of its line
 
 static float seconds(const Preview *preview) { return (float)fmod(preview->time, 4096.0); }
@@ -296,9 +297,10 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     const float temperature =
         ember_temperature(state->temperature) + 130 * (life - 0.5f) + 40 * bent->medium - STARVED_COOLER * starved;
     Float3 dull = blackbody_glow(preview->blackbody, ember_seen(temperature - LEAF_COOLER));
-    Float3 bright = blackbody_glow(preview->blackbody, ember_seen(temperature));
-    Float3 glow = float3_scale(dull, LEAF_DULL * (0.2f + 0.8f * life) * alone);
-    return float3_scale(float3_mad(glow, bright, hot * activity), EMBER_GAIN * air);
+    const float core = stepf(0.05f, 1.1f, hot); // it cools from there: orange lines in dull red
+    Float3 bright = blackbody_glow(preview->blackbody, ember_seen(temperature + mixf(-LEAF_DIM, LEAF_CORE, core)));
+    dull = float3_scale(dull, LEAF_DULL * (0.2f + 0.8f * life) * alone);
+    return float3_scale(float3_mad(dull, bright, LEAF_BRIGHT * hot * activity), EMBER_GAIN * air);
 }
 
 static void ember_shade(const Preview *preview, const PaperState *state, const Bent *bent, Point *point) {

@@ -362,7 +362,7 @@ TEST(char_is_black_and_greys) {
 /// A leaf of char glows in threads and specks, not as a whole: few of its pixels are as bright as half of the brightest.
 /// Char that still feeds a flame, which takes the air, has fewer; it was black.
 TEST(a_leaf_glows_in_threads) {
-    static float mass[4], charred[4] = {0.2f, 0.2f, 0.2f, 0.2f}, none[4];
+    static float mass[4], charred[4] = {0.2f, 0.2f, 0.2f, 0.2f}, none[4], glow[W * H][3];
     quad_make(&q, 0.03f, 0);
     q.surface.mass = mass, q.surface.char_fraction = charred, q.surface.ash_fraction = none;
     for (int i = 0; i < 4; i++) q.burn[i] = 0.8f, q.temperature[i] = q.peak[i] = 1000, q.rate[i] = 0.5f;
@@ -384,6 +384,16 @@ TEST(a_leaf_glows_in_threads) {
         print_message("brightest %d, mean %.0f, %.0f %% of the leaf above half of it\n", most, (double)red[flames],
                       100 * (double)share);
         assert_true(most > (flames ? 60 : 120) && share > 0.03f && share < 0.5f);
+
+        // cores are hot, and what is around them is dull and red: one orange was a print
+        const PreviewLayers layers = {.glow = glow};
+        float average = 0, light[2][2] = {{0, 0}, {0, 0}};
+        draw_layers(&def, &q.surface, NULL, 1, &layers);
+        for (int i = 0; i < W * H; i++) average += glow[i][0] / (W * H);
+        for (int i = 0; i < 2 * W * H; i++) light[glow[i / 2][0] > 2 * average][i % 2] += glow[i / 2][i % 2];
+        const float dull = light[0][1] / light[0][0], core = light[1][1] / light[1][0];
+        print_message("green over red: %.3f where it is dull, %.3f in cores\n", (double)dull, (double)core);
+        assert_true(core > 1.7f * dull); // 1.50, 1.23
     }
 
     assert_true(red[1] < 0.7f * red[0]);

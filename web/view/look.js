@@ -13,10 +13,13 @@ const float EMBER_WIDTH = 0.00042;
 const float EMBER_GAIN = 3.4;
 const float EMBER_MOST = 6.0;
 const float EMBER_HOT = 1180.0;
-const float LEAF_DULL = 0.27;
+const float LEAF_DULL = 0.75;
 const float LEAF_THREADS = 0.9;
 const float LEAF_SPECKS = 0.35;
-const float LEAF_COOLER = 120.0;
+const float LEAF_COOLER = 180.0;
+const float LEAF_BRIGHT = 1.25;
+const float LEAF_DIM = 120.0;
+const float LEAF_CORE = 120.0;
 const float STARVED_COOLER = 90.0;
 const float STARVED_BORDER = 0.42;
 const float BLACKBODY_MIN = 780.0;
@@ -222,9 +225,10 @@ vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float temperature =
         ember_temperature(state.temperature) + 130.0 * (life - 0.5) + 40.0 * bent.medium - STARVED_COOLER * starved;
     vec3 dull = blackbody_glow(ember_seen(temperature - LEAF_COOLER));
-    vec3 bright = blackbody_glow(ember_seen(temperature));
-    vec3 glow = float3_scale(dull, LEAF_DULL * (0.2 + 0.8 * life) * alone);
-    return float3_scale(float3_mad(glow, bright, hot * activity), EMBER_GAIN * air);
+    float core = stepf(0.05, 1.1, hot);
+    vec3 bright = blackbody_glow(ember_seen(temperature + mix(-LEAF_DIM, LEAF_CORE, core)));
+    dull = float3_scale(dull, LEAF_DULL * (0.2 + 0.8 * life) * alone);
+    return float3_scale(float3_mad(dull, bright, LEAF_BRIGHT * hot * activity), EMBER_GAIN * air);
 }
 void ember_shade(PaperState state, Bent bent, inout Point point) {
     if (state.burn < 0.2 || state.temperature < 420.0) return;
