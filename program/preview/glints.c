@@ -50,7 +50,7 @@ static bool find_metal(const Preview *preview, Block *block, int *active, Point 
 }
 
 void glints_draw(Preview *preview, Block *block) {
-    enum { RAYS = 6, APART = BLOCK * BLOCK };
+    enum { RAYS = 24, APART = BLOCK * BLOCK };
     if (block->x[0] % APART || block->y[0] % APART || !glints_any(preview)) return;
     int active[LANES];
     const int unasked[LANES] = {0};

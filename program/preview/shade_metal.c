@@ -47,10 +47,10 @@ void shape_metal(const Place *place, Point *point) {
     }
 
     point->shine =
-        float3_scale(shine, clampf(1 + 0.22f * streaks - 0.30f * patina + 0.08f * grime + 0.25f * scratch, 0.3f, 1.5f));
+        float3_scale(shine, clampf(1 + 0.45f * streaks - 0.30f * patina + 0.08f * grime + 0.5f * scratch, 0.3f, 1.6f));
     point->albedo =
         float3_mul(point->albedo, float3_mix(float3(0.07f, 0.07f, 0.07f), float3(0.20f, 0.14f, 0.11f), patina));
-    point->rough[0] = 0.11f + 0.20f * patina + 0.03f * grime + 0.02f * worn;
+    point->rough[0] = 0.07f + 0.16f * patina + 0.03f * grime + 0.02f * worn;
     point->rough[1] = point->rough[0] + 0.12f;
     point->gloss = point->mirror = 0;
     point->glints = glints_may_be(shape, footprint);
