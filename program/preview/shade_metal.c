@@ -65,16 +65,16 @@ void shape_metal(const Place *place, Point *point) {
 // ---- heat
 
 // What glows is drawn as bright as lets its colours differ: a glow is wide, so a film that is set for what it lights would
-// show it as a white disc. It glows evenly, cooler at its limb, below, where air that rises cools it most, and towards the
-// end of a rod by which it is held, that of its +z. A few thin flakes of scale lie on it, cooler than the metal; elsewhere
-// scale has come off.
+// show it as a white disc. Its middle is nearly that; air takes heat from its limb and, as it rises, most below, and a rod is
+// cooler towards the end by which it is held, that of its +z. Scale, which is thin and cooler than the metal, lies where
+// that is cool, and has come off elsewhere but for a few flakes.
 
-#define SHAPE_GAIN 0.147f
-#define SHAPE_MIDDLE 125.0f ///< K, by which the middle is drawn hotter: the film shows what is bright paler
-#define SHAPE_LIMB 240.0f   ///< K, by which the limb is cooler than the middle
-#define SHAPE_BELOW 165.0f  ///< K, by which what faces down is cooler than the middle
-#define SHAPE_HELD 330.0f   ///< K, by which a rod is cooler where it is held
-#define SCALE_COOLER 120.0f ///< K, scale over metal
+#define SHAPE_GAIN 0.30f
+#define SHAPE_MIDDLE 80.0f  ///< K, by which the middle is drawn hotter: the film shows what is bright paler
+#define SHAPE_LIMB 330.0f   ///< K, by which the limb is cooler than the middle
+#define SHAPE_BELOW 150.0f  ///< K, by which what faces down is cooler than the middle
+#define SHAPE_HELD 480.0f   ///< K, by which a rod is cooler where it is held
+#define SCALE_COOLER 150.0f ///< K, scale over metal
 
 void shape_glow(const Preview *preview, const Place *place, Point *point) {
     const PreviewShape *shape = place->shape;
@@ -83,17 +83,19 @@ void shape_glow(const Preview *preview, const Place *place, Point *point) {
     const Float3 aslant =
         float3(0.8f * p.x + 0.6f * p.y, 0.64f * p.y - 0.48f * p.x + 0.6f * p.z, 0.8f * p.z + 0.36f * p.x - 0.48f * p.y);
     const float middle = noise3(float3_scale(aslant, 1.4f), 42), broad = noise3(float3_scale(p, 0.45f), 41);
-    const float small = noise3(float3_scale(aslant, 3.7f), 43);
-    const float fine = visible(0.12f / unit, point->footprint) * noise3(float3_scale(p, 8), 44);
-    const float lies = middle + 0.45f * small + 0.25f * fine; // scale lies where it is high
-    const float scale = stepf(0.46f, 0.62f, lies);
+    const float small = visible(0.3f / unit, point->footprint) * noise3(float3_scale(aslant, 4.3f), 43);
+    const float fine = visible(0.12f / unit, point->footprint) * noise3(float3_scale(p, 10), 44);
 
-    const float facing = clampf(float3_dot(point->normal, point->view), 0, 1), aside = 1 - facing;
     const bool rod = shape->kind == SINGE_COLLIDER_CAPSULE;
-    const float end = rod ? maxf(0.5f + place->p.z / (shape->height + 2 * shape->radius), 0) : 0;
-    const float temperature = shape->temperature * (1 + 0.02f * broad + 0.008f * middle) - SCALE_COOLER * scale -
-                              SHAPE_LIMB * aside * sqrtf(aside) + SHAPE_BELOW * minf(point->normal.z, 0.2f) +
-                              SHAPE_MIDDLE * facing * facing - SHAPE_HELD * end * end;
+    Float3 view = quat_unrotate(shape->rotation, point->view);
+    if (rod) view = float3_unit_or(float3(view.x, view.y, 0), view); // one that points at the eye has a middle, too
+    const float facing = clampf(float3_dot(place->normal, view), 0, 1), aside = 1 - facing;
+    const float end = rod ? clampf(0.5f + place->p.z / (shape->height + 2 * shape->radius), 0, 1) : 0;
+    const float cold = SHAPE_HELD * end * sqrtf(end) - SHAPE_BELOW * minf(point->normal.z, 0.2f);
+    const float lies = 0.55f * middle + 0.6f * small + 0.4f * fine; // scale lies where it is high
+    const float scale = stepf(0.40f, 0.52f, lies + 0.0012f * cold);
+    const float temperature = shape->temperature * (1 + 0.02f * broad + 0.012f * middle + 0.006f * small) - cold -
+                              SHAPE_LIMB * aside * sqrtf(aside) + SHAPE_MIDDLE * facing * facing - SCALE_COOLER * scale;
     Float3 glow = blackbody_glow(preview->blackbody, temperature);
     point->glow = float3_scale(glow, SHAPE_GAIN * (0.45f + 0.55f * facing));
     point->albedo = float3_scale(float3(0.045f, 0.042f, 0.040f), 0.6f + 0.4f * scale);

@@ -268,8 +268,9 @@ TEST(a_table_out_of_focus_is_smooth) {
     assert_true(change < 2);
 }
 
-/// A ball of 1300 K glows evenly, under a few flakes of scale: how much its green differs three pixels apart, and
-/// the share of its inner face that is darker than four fifths of the mean. It was a mosaic of scale and cracks.
+/// A ball of 1300 K glows under a few flakes of scale: how much its green differs three pixels apart, and the share of its
+/// inner face that is darker than four fifths of the mean. It was a mosaic of scale and cracks. Its middle is pale, its limb
+/// orange: blue over red. It was a disc of one orange.
 TEST(a_glowing_ball_wears_a_little_scale) {
     static uint8_t rgb[BYTES];
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .rotation = {0, 0, 0, 1}, .radius = 0.02f, .temperature = 1300};
@@ -287,15 +288,23 @@ TEST(a_glowing_ball_wears_a_little_scale) {
         for (int x = W / 2 - 18; x < W / 2 + 18; x++) dark += (float)pixel(rgb, x, y)[1] < 0.8f * sum / count;
     const float mean = sum / count;
     change /= sum, dark /= count;
+    float middle[2] = {0, 0}, limb[2] = {0, 0}; // red and blue
+    for (int k = 0; k < 2; k++)
+        for (int x = -4; x < 4; x++)
+            middle[k] += (float)pixel(rgb, W / 2 + x, H / 2)[2 * k],
+                limb[k] += (float)pixel(rgb, W / 2 + x, H / 2 - 26)[2 * k];
+    const float pale = middle[1] / middle[0], red = limb[1] / limb[0];
     // air that rises cools its lower half
     float half[2] = {0, 0};
     def.camera = (PreviewCamera){.eye = {0, -0.5f, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}, .fov = 0.09f};
     draw(&def, &nothing, 0, rgb);
     for (int y = H / 2 - 20; y < H / 2 + 20; y++)
         for (int x = W / 2 - 18; x < W / 2 + 18; x++) half[y >= H / 2] += (float)pixel(rgb, x, y)[1];
-    print_message("a glowing ball of %.0f changes by %.3f, %.3f dark; upper half over lower %.2f\n", (double)mean,
-                  (double)change, (double)dark, (double)(half[0] / half[1]));
+    print_message(
+        "a glowing ball of %.0f changes by %.3f, %.3f dark; upper half over lower %.2f; blue %.2f, at its limb %.2f\n",
+        (double)mean, (double)change, (double)dark, (double)(half[0] / half[1]), (double)pale, (double)red);
     assert_true(change < 0.1f && dark > 0.02f && dark < 0.2f && half[0] > 1.3f * half[1]);
+    assert_true(pale > 0.55f && red < 0.3f); // was 0.48, 0.24
 }
 
 /// Mortar is lighter than bricks: rows of pixels along a joint, over those along the middles of bricks. It was a dark line.
