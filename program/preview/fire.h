@@ -138,12 +138,8 @@ typedef struct FirePoint {
 // fire_shade.c
 void fire_fill_colours(Preview *preview);
 
-/// Light of a full flame, radiance per metre, for its lamps, and the share of it that cell `at` emits.
-Float3 fire_emission(const Preview *preview);
-float fire_share(const Fire *fire, size_t at);
-
-/// How bright a flame around p is now, 1 in the mean: tongues come and go.
-float fire_flicker(const Fire *fire, Float3 p);
+/// The colour of the light that flames cast, of luminance 1.
+Float3 fire_cast_colour(const Preview *preview);
 
 /// sway[0] and [1]: how far the widest eddies move a flame along x and y, m, at a height above the paper.
 void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]);

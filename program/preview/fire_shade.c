@@ -89,7 +89,6 @@
 #define FLAME_DIM 0.26f ///< radiance of a thick flame at its coolest and its hottest
 #define FLAME_BRIGHT 6.5f
 #define FLAME_CAST 0.875f       ///< of that range, 1900 K: the colour of the light that they cast
-#define FLAME_THROWN 384.0f     ///< 1/m, its luminance
 #define FLAME_BAKED 3.0f        ///< radiance of what is 1 where gas is baked
 #define SOOT_DENSE 198.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
 #define BLUE_DENSE 3.3f         ///< 1/m: radiance of the root per metre
@@ -114,8 +113,6 @@
 #define STREAK 0.05f        ///< of the noise whose creases they are
 #define CORE_BEGINS 0.0030f ///< m
 #define CORE_FULL 0.0240f
-#define LAMP_BEGINS 0.0050f ///< m, from which on flames cast light
-#define LAMP_FULL 0.0120f
 
 // ---- looking up
 
@@ -180,22 +177,9 @@ static Float3 flame_colour(const Fire *fire, float hot) {
     return float3_mix(fire->colours[i], fire->colours[i + 1], x - (float)i);
 }
 
-Float3 fire_emission(const Preview *preview) {
+Float3 fire_cast_colour(const Preview *preview) {
     const Float3 colour = flame_colour(&preview->fire, FLAME_CAST);
-    return float3_scale(colour, FLAME_THROWN / float3_luminance(colour));
-}
-
-float fire_share(const Fire *fire, size_t at) {
-    const FireCell *cell = &fire->cells[at];
-    if (cell->flame <= FLAME_SEEN) return 0;
-    float burns = fire->source[at][2]; // without what only glows on
-    return stepf(0.32f, 0.89f, burns) * stepf(LAMP_BEGINS, LAMP_FULL, cell->rise / cell->flame);
-}
-
-float fire_flicker(const Fire *fire, Float3 p) {
-    Noise whole = noise_at(fire, float3(0.4f, 0.6f, 6 * fire->moment));
-    Noise part = eddies(fire, p, EDDY_RATE * fire->moment / sqrtf(fire->scale), fire->scale * 0.04f, 1);
-    return maxf(1 + 0.5f * whole.a + 0.8f * part.c, 0.1f);
+    return float3_scale(colour, 1 / float3_luminance(colour));
 }
 
 void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]) {

@@ -63,6 +63,7 @@ typedef struct PreviewScene {
     CrumpleFacet facets[CRUMPLE_FACETS];
     EmberLights lights;
     int light_count, flames[2]; ///< the first of the flames, and behind the last
+    Float3 flame_points[FLAME_POINTS];
 } PreviewScene;
 
 /// What burning sheets leave on the ground (stain.c).

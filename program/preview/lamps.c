@@ -14,9 +14,9 @@
 // A patch of area A and radiance L that glows on both sides lights a point at distance r by about L A / (2 pi r^2) per
 // unit of its albedo. Triangles are summed in the cells of a grid over the surface; the strongest cells become lights,
 // scaled to preserve the total. A sphere of radius R gives L R^2 / r^2. A flame of volume V that emits j (radiance a
-// metre) gives j V / (pi r^2); its clusters are created and chosen in the same way.
+// metre) gives j V / (pi r^2) (flame_lamps.c).
 
-enum { GRID = 10, CELLS = GRID * GRID * GRID, FLAME_LIGHTS = 6 };
+enum { GRID = 10, CELLS = GRID * GRID * GRID, FLAME_LIGHTS = 8 };
 
 typedef struct Cluster {
     Float3 position, strength;
@@ -27,19 +27,6 @@ typedef struct Cluster {
 /// compressed, and an eye in the dark sees it better than a camera set for daylight. Flames dazzle it.
 static const float EMBER_CAST = 5;
 static const float DAZZLED = 0.3f; ///< the share of it that is left beside flames that light far more
-
-static void add_to_cluster(Cluster *clusters, Float3 low, Float3 high, Float3 position, Float3 strength, float weight) {
-    Float3 size = float3_sub(high, low);
-    int cell[3];
-    float at[3] = {(position.x - low.x) / maxf(size.x, 1e-6f), (position.y - low.y) / maxf(size.y, 1e-6f),
-                   (position.z - low.z) / maxf(size.z, 1e-6f)};
-
-    for (int i = 0; i < 3; i++) cell[i] = (int)clampf(at[i] * GRID, 0, GRID - 1);
-    Cluster *cluster = &clusters[(cell[2] * GRID + cell[1]) * GRID + cell[0]];
-    cluster->position = float3_mad(cluster->position, position, weight);
-    cluster->strength = float3_add(cluster->strength, strength);
-    cluster->weight += weight;
-}
 
 static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster *clusters) {
     const PreviewScene *scene = &preview->scene;
@@ -69,10 +56,19 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     float weight = float3_luminance(strength);
     if (!(weight > 0)) return;
 
-    add_to_cluster(clusters, scene->low, scene->high, position, strength, weight);
+    const Float3 low_corner = scene->low, size = float3_sub(scene->high, low_corner);
+    const float at[3] = {(position.x - low_corner.x) / maxf(size.x, 1e-6f),
+                         (position.y - low_corner.y) / maxf(size.y, 1e-6f),
+                         (position.z - low_corner.z) / maxf(size.z, 1e-6f)};
+    int cell[3];
+    for (int i = 0; i < 3; i++) cell[i] = (int)clampf(at[i] * GRID, 0, GRID - 1);
+    Cluster *cluster = &clusters[(cell[2] * GRID + cell[1]) * GRID + cell[0]];
+    cluster->position = float3_mad(cluster->position, position, weight);
+    cluster->strength = float3_add(cluster->strength, strength);
+    cluster->weight += weight;
 }
 
-static void add_light(PreviewScene *scene, Float3 position, Float3 strength, float softness, float extent) {
+void light_add(struct PreviewScene *scene, Float3 position, Float3 strength, float softness, float extent) {
     EmberLights *lights = &scene->lights;
     int k = scene->light_count++;
     lights->x[k] = position.x;
@@ -86,35 +82,32 @@ static void add_light(PreviewScene *scene, Float3 position, Float3 strength, flo
     lights->power[k] = float3_luminance(strength);
 }
 
-/// Scales the lights from `first` on.
-static void scale_lights(PreviewScene *scene, int first, float factor) {
-    for (int i = first; i < scene->light_count; i++) {
-        for (int c = 0; c < 3; c++) scene->lights.strength[c][i] *= factor;
-        scene->lights.power[i] *= factor;
-    }
-}
-
-/// Turns the strongest clusters into lights until there are `limit`, and scales them to the total of all clusters, which
-/// it returns.
-static float choose_lights(PreviewScene *scene, Cluster *clusters, int limit, float softness, float extent) {
+/// Turns the strongest clusters into lights as long as there is room, and scales them to the total of all clusters, less
+/// beside flames that give `flaming`.
+static void choose_lights(PreviewScene *scene, Cluster *clusters, float flaming) {
+    const float cell = float3_length(float3_sub(scene->high, scene->low)) / GRID,
+                softness = 0.02f * cell * cell + 4e-6f;
     float total = 0, kept = 0;
     int first = scene->light_count;
     for (int i = 0; i < CELLS; i++) total += clusters[i].weight;
 
-    while (scene->light_count < limit) {
+    while (scene->light_count < LIGHT_LIMIT) {
         int best = 0;
         for (int i = 1; i < CELLS; i++)
             if (clusters[i].weight > clusters[best].weight) best = i;
         Cluster *cluster = &clusters[best];
         if (!(cluster->weight > 0)) break;
         Float3 position = float3_scale(cluster->position, 1 / cluster->weight);
-        add_light(scene, position, cluster->strength, softness, extent);
+        light_add(scene, position, cluster->strength, softness, 1.5f * sqrtf(softness));
         kept += cluster->weight;
         cluster->weight = 0;
     }
 
-    if (kept > 0) scale_lights(scene, first, total / kept);
-    return total;
+    const float factor = total / maxf(kept, 1e-12f) * mixf(1, DAZZLED, flaming / maxf(flaming + total, 1e-12f));
+    for (int i = first; i < scene->light_count; i++) {
+        for (int c = 0; c < 3; c++) scene->lights.strength[c][i] *= factor;
+        scene->lights.power[i] *= factor;
+    }
 }
 
 void light_gather(Preview *preview) {
@@ -126,7 +119,7 @@ void light_gather(Preview *preview) {
     const Float3 lamp = float3_scale(float3_load(preview->def.lamp_colour), FILM_SPEED);
     const float radius = maxf(preview->def.lamp_radius, 1e-4f);
     if (float3_luminance(lamp) > 0)
-        add_light(scene, float3_load(preview->def.lamp_position), lamp, 0.3f * radius * radius, radius);
+        light_add(scene, float3_load(preview->def.lamp_position), lamp, 0.3f * radius * radius, radius);
 
     for (uint32_t k = 0; k < preview->shape_count && scene->light_count < LIGHT_LIMIT / 2; k++) {
         const PreviewShape *shape = &preview->shapes[k];
@@ -134,62 +127,30 @@ void light_gather(Preview *preview) {
         float r = shape->facets ? 0.5f * shape->facets->extent : shape->radius;
         if (shape->kind == SINGE_COLLIDER_BOX) r = float3_length(float3_load(shape->half_size)) * 0.6f;
         Float3 glow = blackbody_glow(preview->blackbody, shape->temperature);
-        add_light(scene, shape_centre(shape), float3_scale(glow, 1.6f * r * r), 0.3f * r * r,
+        light_add(scene, shape_centre(shape), float3_scale(glow, 1.6f * r * r), 0.3f * r * r,
                   1.02f * shape_extent(shape, preview->def.shutter));
     }
 
-    const Fire *fire = &preview->fire;
-    float flaming = 0;
-    scene->flames[0] = scene->flames[1] = scene->light_count;
-    if (fire->visible) {
-        Cluster flames[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
-        float volume = fire->cell * fire->cell * fire->cell;
-
-        // a flame is drawn a few times as bright as white paper, so that its colour stays; in a room by day it is some thirty
-        // times as bright (a candle of 12 cd and 4 cm2 has 3e4 cd/m2, white paper at 1000 lx 3e2). At night the exposure makes
-        // up for it. By day the light that flames cast is that much nearer to a real one's, or the room would not flicker
-        const float by_day = 4, dusk = 1, noon = 1.8f; // light on white paper, on the scale of `light` and `sky`
-        const float day = float3_luminance(float3_load(preview->def.sun_colour)) +
-                          float3_luminance(float3_load(preview->def.sky_colour));
-        const float cast = mixf(1, by_day, stepf(dusk, noon, day));
-        Float3 strength = float3_scale(fire_emission(preview), cast * 0.14f * volume / PI_F);
-
-        size_t at = 0;
-        for (int z = 0; z < fire->size[2]; z++)
-            for (int y = 0; y < fire->size[1]; y++)
-                for (int x = 0; x < fire->size[0]; x++, at++) {
-                    float share = fire_share(fire, at);
-                    if (share <= 0) continue;
-                    Float3 position = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);
-                    Float3 light = float3_scale(strength, share * fire_flicker(fire, position));
-                    add_to_cluster(flames, fire->low, fire->high, position, light, float3_luminance(light));
-                }
-        float side = float3_length(float3_sub(fire->high, fire->low)) / GRID;
-        // each stands for flames all around it: near to it they are not as bright as a point
-        const float square = side * side;
-        flaming = choose_lights(scene, flames, scene->light_count + FLAME_LIGHTS, 0.4f * square + 1e-4f,
-                                1.5f * sqrtf(0.1f * square + 1e-4f));
-        scene->flames[1] = scene->light_count;
-    }
-
+    const float flaming = flame_lamps_add(preview, FLAME_LIGHTS);
     Cluster embers[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
     for (uint32_t t = 0; t < scene->triangle_count; t++) gather_triangle(preview, scene->triangles[t], embers);
-    float cell = float3_length(float3_sub(scene->high, scene->low)) / GRID;
-    const float softness = 0.02f * cell * cell + 4e-6f;
-    const int first = scene->light_count;
-    const float glow = choose_lights(scene, embers, LIGHT_LIMIT, softness, 1.5f * sqrtf(softness));
-    scale_lights(scene, first, mixf(1, DAZZLED, flaming / maxf(flaming + glow, 1e-12f)));
+    choose_lights(scene, embers, flaming);
 }
 
 // ---- their light
 
 static const float too_faint = 1e-3f;
+static const float bounced =
+    0.06f;             ///< of what is hidden of flames, the light that comes by way of sheets, ground and walls
 #define FIRE_MOST 1.3f ///< light of flames and embers on white paper that none reaches
 
 static inline Four four_max(Four a, Four b) {
     for (int k = 0; k < 4; k++) a[k] = maxf(a[k], b[k]);
     return a;
 }
+
+/// What a lamp in that direction gives: wrapped, as lamps have an extent that points do not.
+static inline float lamp_before(float cosine) { return maxf((cosine + 0.2f) * (1 / 1.2f), 0); }
 
 static inline float four_sum(Four a) { return a[0] + a[1] + (a[2] + a[3]); }
 
@@ -236,46 +197,75 @@ static Float3 lamps_gather(const PreviewScene *scene, const Point *point, float 
     return float3_scale(float3(four_sum(r), four_sum(g), four_sum(b)), 1 - less);
 }
 
+/// Finds a lamp for a random number from 0 to 1, each as likely as it is bright, and a point of it. False: no ray is asked, as
+/// `from` is at it or in it.
+static bool find_target(const PreviewScene *scene, const float weight[LIGHT_LIMIT], float random, const float square[2],
+                        Float3 from, int *lamp, Float3 *to, float *far) {
+    const EmberLights *l = &scene->lights;
+    float total = 0, sum = 0;
+    int k = 0;
+    for (int i = 0; i < scene->light_count; i++) total += weight[i];
+    for (; k < scene->light_count - 1 && sum + weight[k] <= random * total; k++) sum += weight[k];
+    *lamp = k;
+
+    // those of flames have points, in order: the rest of the number chooses one
+    const Float3 centre = {l->x[k], l->y[k], l->z[k]};
+    if (l->point_count[k]) {
+        const float part = weight[k] > 0 ? clampf((random * total - sum) / weight[k], 0, 0.9999f) : 0;
+        *to = scene->flame_points[l->first_point[k] + (int)(part * (float)l->point_count[k])];
+        *far = float3_length(float3_sub(*to, from)) - 4 * scene->epsilon;
+        return *far > 0;
+    }
+
+    // objects within it do not occlude it
+    float disc[2];
+    const float z = 1.6f * square[0] - 0.8f, extent = l->extent[k];
+    sample_disc((const float[2]){0.6f, square[1]}, disc);
+    *to = float3_add(centre, float3_scale(float3(disc[0], disc[1], z), 0.8f * extent));
+    const float distance = float3_length(float3_sub(*to, from)),
+                free = float3_length(float3_sub(centre, from)) - extent;
+    *far = minf(free, distance);
+    return free >= 0.1f * extent && distance >= 1e-6f;
+}
+
 /// Tests the lamps' visibility by one ray per lane, to a random point of a lamp.
 static void ask_lamps(const Preview *preview, Block *block, const float wanted[LANES], float (*weight)[LIGHT_LIMIT],
                       int sample) {
-    const EmberLights *l = &preview->scene.lights;
+    const PreviewScene *scene = &preview->scene;
+    const EmberLights *l = &scene->lights;
     const float golden = 0.61803399f, dither = hash_unit(preview->def.seed ^ 0x5bd1e995u);
-    const int count = preview->scene.light_count;
+    float open[LANES] = {0};
 
     for (int i = 0; i < LANES; i++) {
         block->valid[i] = 0;
         rest_ray(&block->shadow, i);
         if (wanted[i] <= 0) continue;
 
-        // the lamp in which a random number falls
-        float random = dither + 0.75487767f * (float)block->x[i] + 0.56984029f * (float)block->y[i], total = 0, sum = 0;
+        float random = dither + 0.75487767f * (float)block->x[i] + 0.56984029f * (float)block->y[i], square[2], far;
         random += golden * (float)sample;
-        random -= floorf(random);
-        for (int k = 0; k < count; k++) total += weight[i][k];
-        int lamp = 0;
-        for (; lamp < count - 1; lamp++)
-            if ((sum += weight[i][lamp]) > random * total) break;
-
-        // objects within it do not occlude it
+        int lamp;
         const Point *point = &block->point[i];
-        float square[2], disc[2], extent = l->extent[lamp];
+        Float3 to;
         sample_square((uint32_t)sample, block->turn[i][1], block->turn[i][0], square);
-        float z = 1.6f * square[0] - 0.8f;
-        sample_disc((const float[2]){0.6f, square[1]}, disc);
-        Float3 lamp_centre = float3(l->x[lamp], l->y[lamp], l->z[lamp]);
-        Float3 to = float3_add(lamp_centre, float3_scale(float3(disc[0], disc[1], z), 0.8f * extent));
-        Float3 centre = float3_sub(lamp_centre, point->position), to_light = float3_sub(to, point->position);
-        float distance = float3_length(to_light), free = float3_length(centre) - extent;
-        if (free < 0.1f * extent || distance < 1e-6f) continue; // at it, or in it
-        float side = float3_dot(point->geometric, to_light) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
-        aim_ray(&block->shadow, i, float3_mad(point->position, point->geometric, side),
-                float3_scale(to_light, 1 / distance), 0, minf(free, distance), block->time[i]);
+        if (!find_target(scene, weight[i], random - floorf(random), square, point->position, &lamp, &to, &far))
+            continue;
+
+        // a part of a lamp in front that is behind the sheet shines through it
+        const Float3 centre = float3_sub(float3(l->x[lamp], l->y[lamp], l->z[lamp]), point->position);
+        to = float3_sub(to, point->position);
+        const float cosine = float3_dot(point->normal, centre) / maxf(float3_length(centre), 1e-6f);
+        const bool before =
+            float3_dot(point->geometric, to) > 0 || lamp_before(cosine) >= -point->transmission * cosine;
+        aim_ray(&block->shadow, i,
+                float3_mad(point->position, point->geometric, before ? scene->epsilon : -scene->epsilon),
+                float3_scale(to, 1 / float3_length(to)), 0, far, block->time[i]);
         block->valid[i] = -1;
+        open[i] = l->point_count[lamp] ? bounced : 0;
     }
 
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
-    light_count(block, LIT_LAMPS, wanted, block->clear);
+    for (int i = 0; i < LANES; i++) open[i] = mixf(open[i], 1, block->clear[i]);
+    light_count(block, LIT_LAMPS, wanted, open);
 }
 
 void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES],

@@ -6,9 +6,11 @@
 #include <stdint.h>
 
 typedef struct Preview Preview;
+struct PreviewScene;
 
 enum {
     LIGHT_LIMIT = 16,      ///< lamps
+    FLAME_POINTS = 160,    ///< of the light of flames
     BLACKBODY_COUNT = 160, ///< table from BLACKBODY_MIN in steps of BLACKBODY_STEP
 };
 #define BLACKBODY_MIN 780.0f
@@ -20,9 +22,10 @@ enum {
 /// Point sources. Those beyond the count have softness 1 and are black.
 typedef struct EmberLights {
     float x[LIGHT_LIMIT], y[LIGHT_LIMIT], z[LIGHT_LIMIT];
-    float softness[LIGHT_LIMIT];    ///< m2, added to the distance squared
-    float extent[LIGHT_LIMIT];      ///< m, extent of the light
-    float power[LIGHT_LIMIT];       ///< luminance of the strength
+    float softness[LIGHT_LIMIT];                            ///< m2, added to the distance squared
+    float extent[LIGHT_LIMIT];                              ///< m, extent of the light
+    float power[LIGHT_LIMIT];                               ///< luminance of the strength
+    int first_point[LIGHT_LIMIT], point_count[LIGHT_LIMIT]; ///< of PreviewScene.flame_points; 0: of no flame
     float strength[3][LIGHT_LIMIT]; ///< linear colour; radiance times area over 2 pi: divide by distance squared
 } EmberLights;
 
@@ -62,6 +65,11 @@ Float3 sky_mirrored(const Sky *sky, Float3 direction);
 // lamps.c
 /// Gathers the lamps of the frame.
 void light_gather(Preview *preview);
+void light_add(struct PreviewScene *scene, Float3 position, Float3 strength, float softness, float extent);
+
+// flame_lamps.c
+/// Adds at most that many lamps for the flames. Returns their luminance.
+float flame_lamps_add(Preview *preview, int most);
 
 // blackbody.c
 void blackbody_fill(Float3 table[BLACKBODY_COUNT]);

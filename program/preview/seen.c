@@ -27,7 +27,8 @@ void seen_write(const Preview *preview, size_t pixel, const Block *block, int la
 /// Pixels that are smoothed to each side.
 static void find_reach(const Preview *preview, int reach[LIT_KINDS]) {
     reach[LIT_SUN] = is_still(preview) ? 0 : 2;
-    reach[LIT_SKY] = reach[LIT_LAMPS] = 2 + preview->def.height / 180;
+    reach[LIT_SKY] = 2 + preview->def.height / 180;
+    reach[LIT_LAMPS] = 3 + preview->def.height / 108; // flames are large, and their shadows the softest
 }
 
 /// Means of visible shares along a line of pixels `stride` apart that show the lit one's face, weighted by nearness.
@@ -35,8 +36,8 @@ static void find_reach(const Preview *preview, int reach[LIT_KINDS]) {
 static void smooth_line(const Lit *lit, const float (*values)[LIT_KINDS], size_t values_size, ptrdiff_t stride,
                         int before, int after, const int reach[LIT_KINDS], float out[LIT_KINDS]) {
     float sum[LIT_KINDS] = {0}, total[LIT_KINDS] = {0};
-    int first = before < reach[LIT_SKY] ? -before : -reach[LIT_SKY];
-    int last = after < reach[LIT_SKY] ? after : reach[LIT_SKY];
+    const int first = before < reach[LIT_LAMPS] ? -before : -reach[LIT_LAMPS];
+    const int last = after < reach[LIT_LAMPS] ? after : reach[LIT_LAMPS];
     for (int at = first; at <= last; at++) {
         const Lit *other = lit + at * stride;
         const bool one_face = lit->sheet == other->sheet &&
