@@ -25,6 +25,7 @@ enum {
 #define FLAKE_LIFE 1.7f       ///< s, the longest
 #define CARRIED 0.70f         ///< s
 #define LYING 0.3f            ///< s, of what came to the ground: what lies there is the stain's
+#define SHOWS 0.5f            ///< of the exposure: a plate that turns shows its face for a part of it, or is a grey bar
 #define STARTING 0.06f        ///< s, within which it falls at its speed
 #define FLAKES_A_METRE 190.0f ///< 1/(m s), of sites that glow along a few cm
 #define FLAKES_CROWD 0.25f    ///< m of glowing line above which flakes become rarer
@@ -107,7 +108,7 @@ static void plate_draw(Preview *preview, const Flake *flake, Float3 lit, float a
 
             // pale at its border and in patches; embers last there
             const float patch = noise2(2.3f * u + 5, 2.3f * v + 5, flake->seed + 1);
-            const float rim = 1 - stepf(0, 0.28f, inside), pale = clampf(flake->ash + 0.25f * rim + 0.3f * patch, 0, 1);
+            const float rim = 1 - stepf(0, 0.28f, inside), pale = clampf(flake->ash + 0.15f * rim + 0.3f * patch, 0, 1);
             const float curl = 1 + 0.35f * v * (patch + 0.4f);
             const float albedo = mixf(0.03f, 0.36f, pale * pale) * maxf(curl, 0.4f);
             const float alive = stepf(-0.1f, 0.5f, noise2(4 * u + 1, 4 * v + 1, flake->seed + 2));
@@ -140,12 +141,14 @@ static void flake_draw(Preview *preview, const Flake *flake, float begin, float 
     const Float3 normal = float3_scale(plate.normal, facing < 0 ? -1 : 1);
     const float sun = float3_dot(normal, preview->sun);
     Float3 lit = float3_mad(sky_ambient(&preview->sky, normal), preview->sun_light, maxf(sun, -through * sun));
+    Float3 fire = {0, 0, 0};
     for (int k = 0; k < preview->scene.light_count; k++) {
         const Float3 to = float3_sub(float3(lamps->x[k], lamps->y[k], lamps->z[k]), plate.centre);
         const float d2 = float3_dot(to, to) + lamps->softness[k], cosine = float3_dot(normal, to) / sqrtf(d2);
-        const float share = minf(maxf(cosine, -through * cosine) / d2, 4e3f);
-        lit = float3_mad(lit, float3(lamps->strength[0][k], lamps->strength[1][k], lamps->strength[2][k]), share);
+        const float share = maxf(cosine, -through * cosine) / d2;
+        fire = float3_mad(fire, float3(lamps->strength[0][k], lamps->strength[1][k], lamps->strength[2][k]), share);
     }
+    lit = float3_mad(lit, fire, 1 / (1 + float3_luminance(fire) / FIRE_MOST));
 
     const float way = hypotf(last[0] - first[0], last[1] - first[1]);
     const float turned = flake->often * (end - begin) * flake->size / (preview->camera.pixel * depth);
@@ -154,7 +157,8 @@ static void flake_draw(Preview *preview, const Flake *flake, float begin, float 
         const float part = ((float)k + 0.5f) / (float)moments, age = mixf(begin, end, part);
         const float left = 1 - stepf(0.75f, 1, age / flake->life), open = clear[(int)(part * SIGHT_POINTS)];
         if (open * left > 0)
-            plate_draw(preview, flake, lit, age, strength * open * left / (float)moments, way / (float)moments);
+            plate_draw(preview, flake, lit, age, 6 * part * (1 - part) * strength * open * left / (float)moments,
+                       way / (float)moments);
     }
 }
 
@@ -164,8 +168,8 @@ static Flake flake_make(const Preview *preview, const EmberSite *site, uint32_t 
     for (uint32_t n = 0; n < 14; n++) r[n] = hash_unit(key + 1 + n);
     const float flames = site->length > 0 ? minf(site->flaming / site->length, 1) : 0;
 
-    // char of 20 g/m2, ash of 6; most are small
-    const float ash = r[0], grammage = mixf(0.020f, 0.006f, ash), drag = 1.3f;
+    // char of 20 g/m2, ash of 6; most are small, and char
+    const float ash = r[0] * r[0] * r[0], grammage = mixf(0.020f, 0.006f, ash), drag = 1.3f;
     const float size = 0.0011f + 0.0032f * r[1] * r[1] * r[1];
     Flake flake = {.from = float3_mad(site->position, float3(r[2] - 0.5f, r[3] - 0.5f, r[4] - 0.5f), 0.010f),
                    .drift = float3(0.24f * (r[5] - 0.5f), 0.24f * (r[6] - 0.5f), 0),
@@ -223,7 +227,8 @@ void flakes_draw(Preview *preview) {
 
                 const Flake flake = flake_make(preview, &sites[i], key);
                 const float age = now - ((float)slot + hash_unit(key ^ 0x5bd1e995u)) * FLAKE_SLOT;
-                const float begin = maxf(age - 0.5f * open, 0), end = minf(age + 0.5f * open, flake.life);
+                const float begin = maxf(age - 0.5f * SHOWS * open, 0),
+                            end = minf(age + 0.5f * SHOWS * open, flake.life);
                 if (begin < end || (open == 0 && age >= 0 && age < flake.life))
                     flake_draw(preview, &flake, begin, end, strength);
             }

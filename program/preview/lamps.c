@@ -141,8 +141,7 @@ void light_gather(Preview *preview) {
 
 static const float too_faint = 1e-3f;
 static const float bounced =
-    0.06f;             ///< of what is hidden of flames, the light that comes by way of sheets, ground and walls
-#define FIRE_MOST 1.3f ///< light of flames and embers on white paper that none reaches
+    0.06f; ///< of what is hidden of flames, the light that comes by way of sheets, ground and walls
 
 static inline Four four_max(Four a, Four b) {
     for (int k = 0; k < 4; k++) a[k] = maxf(a[k], b[k]);

@@ -18,6 +18,7 @@ enum {
 
 /// Exposed for white paper: a sun of 2.2 and a sky of 0.4 bring it to about 0.8.
 #define FILM_SPEED 0.45f
+#define FIRE_MOST 1.3f ///< light of flames and embers on white paper that none reaches
 
 /// Point sources. Those beyond the count have softness 1 and are black.
 typedef struct EmberLights {

@@ -14,7 +14,8 @@ enum { SPARKS_A_SLOT = 4 }; ///< that a site may throw in a slot
 #define SLOT 0.05f          ///< s
 #define LIFE 1.05f          ///< s, the longest
 #define LAG 0.09f           ///< s
-#define CURL 0.0022f        ///< m
+#define CURL 0.0040f        ///< m, the widest
+#define TAIL_COLD 0.22f     ///< by which share what it leaves behind is colder
 #define SPARK_COLD 900.0f   ///< K
 #define COOLING 1.7f
 #define SPARK_OPEN (1 / 120.0f) ///< s, the shortest exposure of a spark: eye and film keep it
@@ -27,6 +28,8 @@ typedef struct Spark {
     Float3 from, launch, air; ///< m, m/s: where it leaves, how fast, and where it would be carried
     float life, hot, size;    ///< s, K, m
     float wander, turn[2];    ///< m/s, and the phases of its eddies
+    float curl, spin;         ///< m, 1/s: crumbs spin, and their way curls
+    float shows;              ///< times the exposure, while its glowing side does
 } Spark;
 
 static Float3 spark_at(const Spark *spark, float age) {
@@ -35,10 +38,9 @@ static Float3 spark_at(const Spark *spark, float age) {
     p.x += aside * (sinf(spark->turn[0] + 7.3f * age) - sinf(spark->turn[0]));
     p.y += aside * (sinf(spark->turn[1] + 6.1f * age) - sinf(spark->turn[1]));
 
-    // crumbs spin, and their way curls
-    const float spin = 38 + 5 * spark->turn[0], curl = CURL * minf(age / LAG, 1);
-    p.x += curl * sinf(spin * age + spark->turn[1]);
-    p.z += curl * cosf(spin * age + spark->turn[0]);
+    const float curl = spark->curl * minf(age / LAG, 1);
+    p.x += curl * sinf(spark->spin * age + spark->turn[1]);
+    p.z += curl * cosf(spark->spin * age + spark->turn[0]);
     return p;
 }
 
@@ -63,13 +65,14 @@ static void spark_draw(Preview *preview, const Spark *spark, float begin, float 
     for (int k = 0; k < dots; k++) {
         float part = ((float)k + 0.5f) / (float)dots, age = mixf(begin, end, part);
         float temperature = SPARK_COLD + (spark->hot - SPARK_COLD) * expf(-COOLING * age / spark->life);
+        temperature *= 1 - TAIL_COLD * (1 - part) * (1 - part);
         float left = 1 - stepf(0.6f, 1, age / spark->life), open = seen[(int)(part * SIGHT_POINTS)];
         Float3 glow = blackbody_glow(preview->blackbody, temperature);
         if (!airborne_project(preview, spark_at(spark, age), at, &depth)) return;
 
         // a bright head, and a tail that fades and tapers behind it, as eye and film keep it; the mean of `lets` is 1
-        const float lets = 2.3f * part * sqrtf(part) * (1 - stepf(0.88f, 1, part)) + 0.15f;
-        const float thin = mixf(0.45f, 1, part);
+        const float lets = 5.0f * part * part * part * (1 - stepf(0.85f, 1, part)) + 0.02f;
+        const float thin = mixf(0.3f, 1, part);
         const float flicker = 1 + 0.7f * sinf((60 + 90 * spark->turn[0]) * age + 7 * spark->turn[1]);
         float light = EMBER_GAIN * strength * flicker * left * open * lets * 0.25f * PI_F * wide * wide / (float)dots;
         airborne_dot(preview, at, thin * radius, float3_scale(glow, light), 0);
@@ -103,8 +106,8 @@ void sparks_draw(Preview *preview) {
                 const float strength = clampf(5 * (1 - hash_unit(key) / chance), 0, 1);
                 if (!(strength > 0)) continue;
 
-                float r[10];
-                for (uint32_t n = 0; n < 10; n++) r[n] = hash_unit(key + 1 + n);
+                float r[14];
+                for (uint32_t n = 0; n < 14; n++) r[n] = hash_unit(key + 1 + n);
                 const float turn = 2 * PI_F * r[0], up = 0.15f + 0.85f * r[1], out = sqrtf(1 - up * up);
                 const float fast = r[2] * r[2] * r[2] * r[2], large = r[5] * r[5] * r[5] * r[5];
                 const float speed = (burst ? 0.5f : 0.1f) + 1.6f * fast;
@@ -117,11 +120,15 @@ void sparks_draw(Preview *preview) {
                                                    updraft * (0.12f + 1.6f * r[9] * r[9]) - 0.7f * large),
                                      .life = LIFE * (0.2f + 0.8f * r[3] * r[3]),
                                      .hot = 1300 + 700 * r[4] * r[4] * r[4],
-                                     .size = 0.00013f + 0.0005f * large,
+                                     .size = 0.00012f + 0.0007f * large,
                                      .wander = 0.02f + 0.10f * r[6],
-                                     .turn = {2 * PI_F * r[7], 2 * PI_F * r[8]}};
+                                     .turn = {2 * PI_F * r[7], 2 * PI_F * r[8]},
+                                     .curl = CURL * r[10],
+                                     .spin = (r[11] < 0.5f ? -1 : 1) * (40 + 110 * r[12]),
+                                     .shows = 0.35f + 2.2f * r[13] * r[13]};
                 float age = now - ((float)slot + hash_unit(key ^ 0x5bd1e995u)) * SLOT;
-                float begin = maxf(age - 0.5f * open, 0), end = minf(age + 0.5f * open, spark.life);
+                float begin = maxf(age - 0.5f * spark.shows * open, 0),
+                      end = minf(age + 0.5f * spark.shows * open, spark.life);
                 const float bright = 0.25f + 3.2f * r[4] * r[4] * r[4];
                 if (begin < end) spark_draw(preview, &spark, begin, end, bright * strength * (end - begin) / open);
             }

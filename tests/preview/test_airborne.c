@@ -114,6 +114,65 @@ TEST(sparks_are_thin) {
     assert_true(width < 2.5f);
 }
 
+/// Sparks are no needles, which are bright from end to end, straight and alike: the share of a spark's length that is nearly as
+/// bright as its head, the mean over their light, and how far lengths differ.
+TEST(sparks_taper_and_differ_in_length) {
+    enum { FRAMES = 48, PARTS = 8 };
+    static float fire[W * H][4], left[W * H][4];
+    static Burning paper;
+    PreviewDef def = embers_make(&paper);
+    def.camera.eye[1] = -0.2f, def.camera.fov = 0.3f, def.shutter = 1 / 48.0f;
+    PreviewLayers layers = {.fire = fire};
+    Preview *preview = preview_open(&def);
+    float even = 0, light = 0, sparks = 0, sum = 0, squares = 0;
+    for (int k = 0; k < FRAMES; k++) {
+        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
+        memcpy(left, fire, sizeof left);
+        for (int i = 0; i < W * (H - 10); i++) {
+            Streak streak = {.pixels = 0};
+            take_spark(left, i, &streak);
+            const int wide = streak.high[0] - streak.low[0], tall = streak.high[1] - streak.low[1];
+            const int across = tall > wide, length = 1 + (across ? tall : wide);
+            if (length < 7) continue;
+            float parts[PARTS] = {0}, high = 0;
+            for (int y = streak.low[1]; y <= streak.high[1]; y++)
+                for (int x = streak.low[0]; x <= streak.high[0]; x++) {
+                    const float l = fire[y * W + x][0], shown = l / (0.2f + l); // as a film lets bright parts
+                    parts[(across ? y - streak.low[1] : x - streak.low[0]) * PARTS / length] += shown;
+                }
+            for (int n = 0; n < PARTS; n++) high = fmaxf(high, parts[n]);
+            for (int n = 0; n < PARTS; n++) even += streak.light * (float)(parts[n] > 0.4f * high) / PARTS;
+            light += streak.light, sum += (float)length, squares += (float)(length * length), sparks++;
+        }
+    }
+    preview_destroy(preview);
+    const float mean = sum / sparks, varies = sqrtf(squares / sparks - mean * mean) / mean;
+    print_message("%.0f sparks: %.2f even, lengths of %.1f pixels vary by %.2f\n", (double)sparks,
+                  (double)(even / light), (double)mean, (double)varies);
+    assert_true(sparks > FRAMES / 2);
+    assert_true(even < 0.79f * light && varies > 0.48f); // 0.83, 0.45
+}
+
+/// Most flakes are char: before a bright wall they are dark, where pale ones were grey bars. What they reflect over what
+/// they hide.
+TEST(flakes_are_dark) {
+    static float fire[W * H][4];
+    static Burning paper;
+    PreviewDef def = embers_make(&paper);
+    def.sparks = 0, def.flakes = 4, def.shutter = 1 / 48.0f;
+    PreviewLayers layers = {.fire = fire};
+    Preview *preview = preview_open(&def);
+    float light = 0, hidden = 0;
+    for (int k = 0; k < 24; k++) {
+        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
+        for (int i = 0; i < W * (H - 10); i++) light += fire[i][2], hidden += fire[i][3];
+    }
+    preview_destroy(preview);
+    print_message("flakes hide %.0f pixels, and reflect %.3f of blue light there\n", (double)hidden,
+                  (double)(light / hidden));
+    assert_true(hidden > 120 && light < 0.035f * hidden); // 0.047
+}
+
 /// Of many sparks most are faint, and few give most of the light. Sparks that were alike looked like dashes.
 TEST(sparks_differ) {
     enum { FRAMES = 24 };
