@@ -69,17 +69,22 @@ static void draw_mirrored(Preview *preview, Block *block) {
         }
     }
 
-    // four blocks see the same fire
+    // four blocks see the same fire, unless something hides it from one of them
+    const Fire *fire = &preview->fire;
     Float3 light = {0, 0, 0};
     float clear = 1;
     bool known = false;
-    for (int k = 0; preview->fire.visible && k < LANES; k++) {
+    for (int k = 0; fire->visible && k < LANES; k++) {
         const int i = k / 4 % 2 * 2 + k % 2 + BLOCK * (k / 8 * 2 + k % 4 / 2);
-        known = known && k % 4;
+        if (k % 4 == 0) known = false;
         if (!active[i]) continue;
+        const float beyond =
+            float3_length(float3_sub(fire->high, fire->low)) + float3_length(float3_sub(fire->high, origin[i]));
+        const bool open = reached[i] > beyond;
+        known = known && open;
         Mirrored *mirrored = mirror_block(preview, preview->mirrored[0], block, i);
         if (!known) fire_along(preview, origin[i], towards[i], reached[i], &light, &clear);
-        known = true;
+        known = open;
         mirrored->light = float3_mad(light, mirrored->light, clear);
         mirrored->share = 1 - clear * (1 - mirrored->share);
     }
@@ -192,8 +197,9 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     preview->table_known = !(preview->def.stop && preview->def.stop());
     stain_fill(preview);
     draw_all(preview, draw_mirrored);
-    // twice as far down: what is rough draws lights out towards the eye
-    for (int pass = 0; pass < 2 && preview->mirrored[0]; pass++) mirror_smooth(preview, preview->mirrored, 2);
+    // further down: what is rough draws lights out towards the eye
+    for (int pass = 0; pass < 2 && preview->mirrored[0]; pass++)
+        mirror_smooth(preview, preview->mirrored, 2 + preview->def.height / 90);
     draw_all(preview, glints_draw);
     if (glints_any(preview)) mirror_smooth(preview, preview->glints, 1);
     draw_all(preview, block_draw);

@@ -119,7 +119,7 @@ static void stone(const Preview *preview, Float3 position, float footprint, Tabl
     // trodden paths are smooth, and what lies open is dull
     const float warm = 0.5f * cloud - 0.3f * patch + 0.8f * stones;
     table->albedo = float3_scale(float3(1.03f + 0.05f * warm, 1, 0.95f - 0.06f * warm), maxf(value, 0.03f));
-    table->polish = 0.42f * clampf(1 + 0.7f * wide + 0.65f * patch + 0.45f * rough, 0.25f, 1.8f);
+    table->polish = 0.42f * clampf(1 + 0.5f * wide + 0.25f * patch + 0.3f * rough, 0.35f, 1.6f);
     table->polish *= (1 - holes) * (1 - 0.9f * gap);
 }
 

@@ -223,6 +223,30 @@ TEST(crumpled_paper_has_flat_facets) {
     assert_true(even > 0.4f * CHANGES); // .34
 }
 
+/// Honed stone draws a flame out towards the eye, in one piece: how far down from the brightest row of what it mirrors
+/// there is more than a third of that, in pixels.
+TEST(stone_draws_a_flame_out) {
+    static float dull[W * H][3], gloss[W * H][3];
+    static Ball ball;
+    PreviewDef def = small();
+    def.camera = (PreviewCamera){.eye = {0, -0.6f, 0.25f}, .target = {0, 0, 0}, .up = {0, 0, 1}, .fov = 0.5f};
+    def.ground = PREVIEW_GROUND_STONE;
+    for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
+    ball_make(&ball, 0, 0, 0.05f, 0.015f, 4e6f, 0);
+    for (int k = 0; k < 2; k++) {
+        PreviewLayers layers = {.beauty = k ? gloss : dull};
+        def.ground_gloss = k ? 2 : 0;
+        draw_layers(&def, &nothing, &ball.gas, 0.3, &layers);
+    }
+    float rows[H] = {0}, most = 0;
+    int long_as = 0;
+    for (int i = 0; i < W * H; i++) rows[i / W] += gloss[i][1] - dull[i][1];
+    for (int y = 0; y < H; y++) most = fmaxf(most, rows[y]);
+    for (int y = 0; y < H; y++) long_as += rows[y] > most / 3;
+    print_message("the mirrored flame is %d rows long, %.3f in the brightest\n", long_as, (double)most);
+    assert_true(most > 0 && long_as > 17); // 15
+}
+
 /// Stone has scale: joints between its slabs are the darkest lines in it, and its tone changes over decimetres. It was noise of
 /// centimetres.
 TEST(stone_has_joints_and_large_tones) {
