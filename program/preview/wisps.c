@@ -25,7 +25,9 @@ enum {
 #define RIBBON 0.0045f    ///< m, half of its width at half a second
 #define LAMINAR 0.16f     ///< s, in the mean
 #define THREAD 0.0005f    ///< m, radius at the ember
-#define WISP_DEPTH 10e-3f ///< m, optical depth across a wisp times its width
+#define WISP_DEPTH 12e-3f ///< m, optical depth across a wisp times its width
+#define STRONG 1.2f       ///< by which strong wisps are weakened, or they would be white cords
+#define AMID 0.6f         ///< light of a wisp that is amid flames, which burn most of it; of a third it is whole
 #define FLAME_FAINT 0.08f ///< of a cell whose flame burns smoke
 #define AHEAD 0.5f        ///< of what it takes from the light behind it, that goes on nearly straight is not missed
 #define SMOKING 10.0f     ///< sites of which half smoke
@@ -186,9 +188,11 @@ void wisps_draw(Preview *preview) {
                      .laminar = LAMINAR * (0.5f + hash_unit(key + 1) + 0.3f * noise2(0.9f * now, 9, key)),
                      .wide = exp2f(2.4f * hash_unit(key + 2) - 0.9f),
                      .seed = key & 0xffff};
+        wisp.strength /= 1 + STRONG * wisp.strength;
         if (wisp.strength <= 0.01f) continue;
         wisp_follow(&preview->fire, &wisp);
         for (int k = 0; k < LIGHTS; k++) wisp.light[k] = smoke_light(preview, wisp_at(&wisp, age_of(k, LIGHTS), 0));
+        wisp.strength *= 1 - 0.75f * stepf(AMID / 3, AMID, float3_luminance(wisp.light[LIGHTS / 4]));
         for (int k = 0; k < THREADS; k++) thread_draw(preview, &wisp, 2 * ((float)k + 0.5f) / THREADS - 1);
     }
 }
