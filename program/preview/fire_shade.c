@@ -36,24 +36,25 @@
 //
 // Soot is clear and hot in threads, the creases of a noise, and denser and cooler in the folds between them. So a sheet in
 // front hides much of what burns behind it, and a body of many sheets does not add up to one flat yellow. Above the foot
-// filaments run along the flow, hotter and denser, finer than threads, with gaps between them. Soot cools with height and
-// thins out towards the tips.
+// filaments run along the flow, hotter and denser, with gaps between them. They are folds of a sheet, sharp at one side and
+// soft at the other: alike at both they would be strands. Soot cools with height and thins out towards the tips.
 
 #include "common/float4.h"
 #include "preview/internal.h"
 
 // Gas leaves the paper slowly and accelerates: v^2 = BASE_SPEED^2 + 2 BUOYANCY h at the height h. An eddy that was formed
 // at the base grows longer as it rises, and moves by the same share of its length in every frame.
-#define BASE_SPEED 0.25f ///< m/s
-#define BUOYANCY 2.0f    ///< m/s2
-#define RISE_MOST 0.55f  ///< m/s, which it reaches
-#define EDDY_RATE 8.0f   ///< 1/s, eddies that pass a height
-#define EDDY_WIDE 0.012f ///< m across
-#define EDDY_FINE 0.006f
+#define BASE_SPEED 0.25f  ///< m/s
+#define BUOYANCY 2.0f     ///< m/s2
+#define RISE_MOST 0.55f   ///< m/s, which it reaches
+#define EDDY_RATE 8.0f    ///< 1/s, eddies that pass a height
+#define EDDY_WIDE 0.0135f ///< m across
+#define EDDY_FINE 0.0065f
 #define FINE_OFTEN 2.2f
-#define EDDY_THREAD 0.0085f ///< of the soot's threads
+#define EDDY_THREAD 0.010f  ///< of the soot's threads
 #define THREAD_BLUR 0.0016f ///< m, blur from which on they are wider
-#define EDDY_FILAMENT 0.007f
+#define EDDY_FILAMENT 0.009f
+#define FOLD_SHARP 2.2f   ///< times as steep is the one side of a filament
 #define THREAD_WARP 0.01f ///< m, by which wide eddies bend them
 #define ROLL 0.5f         ///< of an eddy's length, by which they roll them
 #define SWAY_WIDE 0.08f   ///< m, of the eddies that bend whole tongues
@@ -106,6 +107,8 @@
 #define JOINED_HOT 0.15f
 #define FILAMENT_HOT 0.42f
 #define HIGH_COOL 0.18f
+#define SPENT_COOL 0.25f
+#define SPENT_THIN 0.4f
 #define FOOT_CLEAR 0.004f   ///< m above the paper, from where on soot fills the gaps between streaks
 #define FOOT_FULL 0.027f    ///< m, where it has
 #define FOOT_SEAM 0.58f     ///< below that, so that they are rooted in what burns
@@ -229,11 +232,12 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
     const float foot = rise + 0.0012f * fine.d + 0.0016f * wide.d;
     float soot = stepf(0, SOOT_FULL, foot);
 
-    // in the foot it glows in streaks that begin at what burns; between them that is seen
-    const float above = stepf(FOOT_CLEAR, FOOT_FULL, rise);
+    // in the foot, which is lower where flames are small, it glows in streaks that begin at what burns; between them that is seen
+    const float small_foot = minf(fire->scale, 1), clear_foot = small_foot * FOOT_CLEAR;
+    const float above = stepf(clear_foot, small_foot * FOOT_FULL, rise);
     const float narrow = mixf(0.7f * STREAK, 1.1f * STREAK, above);
     const float streak = 1 - stepf(narrow, 4 * narrow, fabsf(wide.c) + 0.3f * fabsf(fine.c));
-    const float seam = mixf(FOOT_SEAM, FOOT_HAZE, stepf(FOOT_CLEAR, 2 * FOOT_CLEAR, rise));
+    const float seam = mixf(FOOT_SEAM, FOOT_HAZE, stepf(clear_foot, 2 * clear_foot, rise));
     const float dense = mixf(seam, 1, maxf(streak, above));
     soot = mixf(soot, stepf(0, STREAK_FULL, foot), streak);
 
@@ -253,18 +257,23 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
         const Noise n =
             eddies(fire, bent, passed + ROLL * wide.d, sqrtf(fire->scale) * EDDY_FILAMENT, 2 * sqrtf(fire->scale));
         filament = above * minf(1.5f * THREAD_BLUR / maxf(blur, 1e-6f), 1) *
-                   clampf(0.45f - 2.6f * fabsf(n.a) + 0.9f * n.b, -1, 1);
+                   clampf(0.55f - 2.6f * maxf(n.a, -FOLD_SHARP * n.a) + 0.9f * n.b, -1, 1);
         pane = above * clampf(1.6f * n.d + 0.8f * thread.d, -1, 1);
     }
 
     float core = stepf(0.35f, 0.7f, flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
-    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.180f;
+    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.138f;
     hot += FILAMENT_HOT * filament + 0.15f * pane * (1 - clear) - HIGH_COOL * stepf(0.1f, 1.5f, tall);
     hot += JOINED_HOT * stepf(0.95f, 1.35f, flame); // where tongues have joined
     hot += FOOT_HOT * streak * soot * (1 - above) - FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));
 
-    soot *= dense * soot * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);
+    // what is above a body of flame without its noise, is cooler and thinner: tongues end faint
+    const float body = stepf(-0.35f, 0.1f, flame - EDGE - TAPER * (1 - expf(-tall)));
+    const float spent = stepf(0.5f, 1.6f, tall) * (1 - body);
+    hot -= SPENT_COOL * spent;
+
+    soot *= (1 - SPENT_THIN * spent) * dense * soot * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);
     float root =
         clampf((rise + STAND_OFF) / (8 * STAND_OFF), 0, 1) * (1 - soot) * (1 - stepf(BLUE_ENDS / 2, BLUE_ENDS, rise));
     const float fold = (1 - clear) * (1 - clear) * mixf(0.25f, 1, above);

@@ -30,26 +30,32 @@ TEST(still_air_changes_no_pixel) {
 }
 
 /// A flame is faint and a little blue at the paper, orange from 3 mm above it on, and has gaps between its tongues.
+/// How blue it is and the gaps are means over moments.
 TEST(a_flame_has_a_blue_base_and_tongues) {
+    enum { FRAMES = 8 };
     static float fire[W * H][4], mean[H][4];
+    float blue[4] = {0};
 
     line_make(&line, 0.003f), burning_make(&paper);
-    see_line(&paper.surface, &line.gas, 0.3, fire, mean, H);
     int dark = 0;
-    for (int x = 0; x < W; x++) dark += fire[(H - 31) * W + x][0] < 0.35f * mean[30][0];
+    for (int k = FRAMES - 1; k >= 0; k--) {
+        see_line(&paper.surface, &line.gas, 0.3 + k / 6.0, fire, mean, H);
+        for (int x = 0; x < W; x++) dark += fire[(H - 31) * W + x][0] < 0.35f * mean[30][0];
+        for (int row = 0; row < 4; row++) blue[row] += mean[row][2] / FRAMES;
+    }
     for (int row = 0; row < 36; row += row < 4 ? 1 : 4)
         print_message("line of fire: at %d mm %.3f %.3f %.3f\n", row, (double)mean[row][0], (double)mean[row][1],
                       (double)mean[row][2]);
-    print_message("%d of %d columns dark at 30 mm\n", dark, W);
+    print_message("%d of %d columns dark at 30 mm\n", dark / FRAMES, W);
     assert_true(mean[0][2] > 0.002f && mean[0][2] > 1.3f * mean[0][0]);
-    for (int row = 0; row < 4; row++) assert_true(mean[row][2] < 0.012f); // .029, and char under flames was violet
+    for (int row = 0; row < 4; row++) assert_true(blue[row] < 0.011f); // .029, and char under flames was violet
     assert_true(mean[2][0] < 0.1f * mean[20][0]);
     assert_true(mean[3][0] > 0.18f * mean[20][0] &&
                 mean[4][0] > 0.25f * mean[20][0]); // .14 and .18: tongues hung above the paper
     assert_true(mean[3][2] > 0.006f);              // .001: no blue seen
     assert_true(mean[8][0] > 0.15f * mean[20][0] && mean[12][0] > 0.25f * mean[20][0] && // clear between streaks
                 mean[20][0] > 3 * mean[20][2]);
-    assert_in_range(dark, W / 8, W / 2);
+    assert_in_range(dark, FRAMES * W / 8, FRAMES * W / 2);
 }
 
 /// The lower edge of a line of flames follows paper that burns on slopes of 8 mm, cells' size, up and down.
@@ -124,7 +130,10 @@ TEST(flames_are_no_comb) {
     }
 
     print_message("comb: light changes %.2f times as much from side to side as up\n", (double)(across / up));
-    assert_true(across < 3.4f * up); // 3.77 where eddies were of one size, and up to nine times as long as wide
+    assert_true(
+        across <
+        3.02f *
+            up); // 3.09 where soot is in strands, 3.77 where eddies were of one size, and up to nine times as long as wide
 }
 
 /// What burns behind a plate changes nothing of the flames before it, however deep these are: along 11 cm of them a ray takes
@@ -146,17 +155,17 @@ TEST(deep_flames_end_at_what_is_behind_them) {
     def.camera = (PreviewCamera){
         .eye = {-2, 0.06f, 0.024f}, .target = {0, 0, 0.024f}, .up = {0, 0, 1}, .fov = 2 * atanf(0.25f * H * 0.25e-3f)};
     PreviewLayers layers = {.fire = fire};
-    draw_layers(&def, &paper.surface, &line.gas, 0.3, &layers);
+    draw_layers(&def, &paper.surface, &line.gas, 1, &layers);
 
     for (int i = 0; i < COLUMN; i++) line.flame[i] *= i % WIDE < WIDE - 2 ? 1.0f : 0.0f;
     layers.fire = alone;
-    draw_layers(&def, &paper.surface, &line.gas, 0.3, &layers);
+    draw_layers(&def, &paper.surface, &line.gas, 1, &layers);
     for (int i = 0; i < W * H; i++) {
         differs = fmaxf(differs, fabsf(luminance(fire[i]) - luminance(alone[i]))),
         all = fmaxf(all, luminance(alone[i]));
     }
     print_message("deep flames: %.3f of %.2f comes from behind a plate\n", (double)differs, (double)all);
-    assert_true(all > 3 && differs < 0.04f * all); // .087 where each short step was noted
+    assert_true(all > 3 && differs < 0.04f * all); // .16 where each short step was noted
 }
 
 /// Tongues narrow to tips and are sharp, and rise: of frames 1/24 s apart the later one is more like the earlier one
@@ -221,7 +230,7 @@ TEST(tongues_lean) {
 
     lean *= 57.3f / weight;
     print_message("tongues lean by %.1f degrees in the mean\n", (double)lean);
-    assert_true(lean > 14.5f); // 12.6
+    assert_true(lean > 16.5f); // 15.5 where soot is in strands
 }
 
 /// Large eddies feed some tongues and starve others, and stretches of the front burn high or low: the light of squares of 3 cm, above the first 3 cm, differs over places

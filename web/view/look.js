@@ -304,12 +304,13 @@ const float BASE_SPEED = 0.25;
 const float BUOYANCY = 2.0;
 const float RISE_MOST = 0.55;
 const float EDDY_RATE = 8.0;
-const float EDDY_WIDE = 0.012;
-const float EDDY_FINE = 0.006;
+const float EDDY_WIDE = 0.0135;
+const float EDDY_FINE = 0.0065;
 const float FINE_OFTEN = 2.2;
-const float EDDY_THREAD = 0.0085;
+const float EDDY_THREAD = 0.01;
 const float THREAD_BLUR = 0.0016;
-const float EDDY_FILAMENT = 0.007;
+const float EDDY_FILAMENT = 0.009;
+const float FOLD_SHARP = 2.2;
 const float THREAD_WARP = 0.01;
 const float ROLL = 0.5;
 const float SWAY_WIDE = 0.08;
@@ -343,6 +344,8 @@ const float FOOT_HOT = 0.5;
 const float JOINED_HOT = 0.15;
 const float FILAMENT_HOT = 0.42;
 const float HIGH_COOL = 0.18;
+const float SPENT_COOL = 0.25;
+const float SPENT_THIN = 0.4;
 const float FOOT_CLEAR = 0.004;
 const float FOOT_FULL = 0.027;
 const float FOOT_SEAM = 0.58;
@@ -397,10 +400,11 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     point.shell = same * (0.5 * outer * outer / first + fill * inner + SHELL * (1.0 - fill - fading));
     float foot = rise + 0.0012 * fine.d + 0.0016 * wide.d;
     float soot = stepf(0.0, SOOT_FULL, foot);
-    float above = stepf(FOOT_CLEAR, FOOT_FULL, rise);
+    float small_foot = min(fireScale, 1.0), clear_foot = small_foot * FOOT_CLEAR;
+    float above = stepf(clear_foot, small_foot * FOOT_FULL, rise);
     float narrow = mix(0.7 * STREAK, 1.1 * STREAK, above);
     float streak = 1.0 - stepf(narrow, 4.0 * narrow, abs(wide.c) + 0.3 * abs(fine.c));
-    float seam = mix(FOOT_SEAM, FOOT_HAZE, stepf(FOOT_CLEAR, 2.0 * FOOT_CLEAR, rise));
+    float seam = mix(FOOT_SEAM, FOOT_HAZE, stepf(clear_foot, 2.0 * clear_foot, rise));
     float dense = mix(seam, 1.0, max(streak, above));
     soot = mix(soot, stepf(0.0, STREAK_FULL, foot), streak);
     vec3 bent =
@@ -416,16 +420,19 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
         Noise n =
             eddies(bent, passed + ROLL * wide.d, sqrt(fireScale) * EDDY_FILAMENT, 2.0 * sqrt(fireScale));
         filament = above * min(1.5 * THREAD_BLUR / max(blur, 1e-6), 1.0) *
-                   clamp(0.45 - 2.6 * abs(n.a) + 0.9 * n.b, -1.0, 1.0);
+                   clamp(0.55 - 2.6 * max(n.a, -FOLD_SHARP * n.a) + 0.9 * n.b, -1.0, 1.0);
         pane = above * clamp(1.6 * n.d + 0.8 * thread.d, -1.0, 1.0);
     }
     float core = stepf(0.35, 0.7, flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
     float strong = stepf(0.0, 0.7, edge), low = 1.0 - stepf(0.1, 0.9, tall);
-    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.180;
+    float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.138;
     hot += FILAMENT_HOT * filament + 0.15 * pane * (1.0 - clear) - HIGH_COOL * stepf(0.1, 1.5, tall);
     hot += JOINED_HOT * stepf(0.95, 1.35, flame);
     hot += FOOT_HOT * streak * soot * (1.0 - above) - FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
-    soot *= dense * soot * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
+    float body = stepf(-0.35, 0.1, flame - EDGE - TAPER * (1.0 - exp(-tall)));
+    float spent = stepf(0.5, 1.6, tall) * (1.0 - body);
+    hot -= SPENT_COOL * spent;
+    soot *= (1.0 - SPENT_THIN * spent) * dense * soot * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
     float root =
         clamp((rise + STAND_OFF) / (8.0 * STAND_OFF), 0.0, 1.0) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 2.0, BLUE_ENDS, rise));
     float fold = (1.0 - clear) * (1.0 - clear) * mix(0.25, 1.0, above);
