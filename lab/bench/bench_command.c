@@ -117,7 +117,7 @@ const char *bench_measurement_word(int index) { return index < MEASUREMENTS ? me
 
 int command_bench(int argc, char **argv) {
     if (argc < 1) {
-        fputs("singe bench: error: a measurement is missing\nsee: singe bench --help\n", stderr);
+        args_complain(&bench_command, "a measurement is missing");
         return EXIT_INPUT;
     }
 
@@ -133,13 +133,9 @@ int command_bench(int argc, char **argv) {
     int m = 0;
     while (m < MEASUREMENTS && strcmp(measurements[m].name, word) != 0) m++;
 
-    if (m == MEASUREMENTS) {
-        const char *near = args_nearest(word, measurements, MEASUREMENTS, sizeof measurements[0]);
-        fprintf(stderr, "singe bench: error: unknown measurement '%s'", shown(word).text);
-        if (near) fprintf(stderr, "; did you mean '%s'?", near);
-        fputs("\nsee: singe bench --help\n", stderr);
-        return EXIT_INPUT;
-    }
+    if (m == MEASUREMENTS)
+        return args_unknown(&bench_command, "unknown measurement", word, measurements, MEASUREMENTS,
+                            sizeof *measurements);
 
     BenchRequest request;
     ExitCode code;

@@ -35,37 +35,26 @@ void console_clear(Console *console) {
     console->line_open = false;
 }
 
-static void say(Console *console, const char *kind, const char *colour, const char *format, va_list list) {
+void console_say(Console *console, ConsoleKind kind, const char *format, ...) {
+    static const struct {
+        const char *word, *colour;
+    } kinds[] = {[CONSOLE_ERROR] = {"error", "\033[1;31m"}, [CONSOLE_WARNING] = {"warning", "\033[1;33m"}};
+    if (kind == CONSOLE_NOTE && console->quiet) return;
+
     console_clear(console);
     fputs("singe: ", stderr);
-    if (*kind) fprintf(stderr, "%s%s:%s ", console->colour ? colour : "", kind, console->colour ? "\033[0m" : "");
+    if (kind != CONSOLE_NOTE)
+        fprintf(stderr, "%s%s:%s ", console->colour ? kinds[kind].colour : "", kinds[kind].word,
+                console->colour ? "\033[0m" : "");
+
+    va_list list;
+    va_start(list, format);
     char text[16384];
     vsnprintf(text, sizeof text, format, list);
+    va_end(list);
     printable_trim(text);
     printable_write(text, stderr);
     fputc('\n', stderr);
-}
-
-void console_error(Console *console, const char *format, ...) {
-    va_list list;
-    va_start(list, format);
-    say(console, "error", "\033[1;31m", format, list);
-    va_end(list);
-}
-
-void console_warn(Console *console, const char *format, ...) {
-    va_list list;
-    va_start(list, format);
-    say(console, "warning", "\033[1;33m", format, list);
-    va_end(list);
-}
-
-void console_note(Console *console, const char *format, ...) {
-    if (console->quiet) return;
-    va_list list;
-    va_start(list, format);
-    say(console, "", "", format, list);
-    va_end(list);
 }
 
 void console_more(const char *text) {

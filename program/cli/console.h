@@ -23,9 +23,12 @@ typedef struct ConsoleProgress {
 } ConsoleProgress;
 
 Console console_make(bool quiet);
-void console_error(Console *console, const char *format, ...) SINGE_PRINTF(2, 3);
-void console_warn(Console *console, const char *format, ...) SINGE_PRINTF(2, 3);
-void console_note(Console *console, const char *format, ...) SINGE_PRINTF(2, 3);
+/// Prints a line; notes only unless the console is quiet.
+typedef enum ConsoleKind { CONSOLE_ERROR, CONSOLE_WARNING, CONSOLE_NOTE } ConsoleKind;
+void console_say(Console *console, ConsoleKind kind, const char *format, ...) SINGE_PRINTF(3, 4);
+#define console_error(console, ...) console_say(console, CONSOLE_ERROR, __VA_ARGS__)
+#define console_warn(console, ...) console_say(console, CONSOLE_WARNING, __VA_ARGS__)
+#define console_note(console, ...) console_say(console, CONSOLE_NOTE, __VA_ARGS__)
 
 /// Prints a line that belongs to the message before it.
 void console_more(const char *text);
