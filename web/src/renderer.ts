@@ -22,7 +22,7 @@ const SHADOW = 1024;
 const FIRE_LIGHT = 3.6e-5; // strength of a cell that burns fully
 const FULL_PAPER = 0.19; // light that comes through (preview.h)
 
-const EMBER: Point = [0.62, 0.12, 0.012], EMBER_LIGHT = 0.0012; // a ball of 1300 K
+const EMBER_LIGHT = 0.0012;
 
 export const CONTEXT: WebGLContextAttributes = { antialias: false, powerPreference: "high-performance", preserveDrawingBuffer: true };
 
@@ -95,7 +95,7 @@ export class Renderer {
 
         const table = new Mesh(new PlaneGeometry(5, 5), material(glsl.PLAIN_VERTEX, glsl.table(glsl.LAMP, "vec3(0.20, 0.105, 0.052)", "float far = length(p.xy) / 1.5; c *= exp(-far * far);"), this.shared));
         this.solid = (albedo, gloss) => material(glsl.PLAIN_VERTEX, glsl.solid(glsl.LAMP), {
-            ...this.shared, albedo: { value: new Vector3(...albedo) }, emission: { value: new Vector3() }, gloss: { value: gloss },
+            ...this.shared, albedo: { value: new Vector3(...albedo) }, kelvin: { value: 0 }, gloss: { value: gloss },
         });
         const stick = new Mesh(new CylinderGeometry(0.0011, 0.0011, 0.05, 8).translate(0, -0.027, 0), this.solid([0.55, 0.37, 0.2], 0.02));
         const head = new Mesh(new SphereGeometry(0.002, 12, 8).scale(1, 1.5, 1), this.solid([0.035, 0.02, 0.018], 0.03));
@@ -106,7 +106,6 @@ export class Renderer {
         }
         this.ball = new Mesh(new SphereGeometry(BALL.radius, 64, 40).translate(...BALL.at), this.solid([0.16, 0.15, 0.14], 0.12));
         this.ember = new Mesh(new SphereGeometry(1, 48, 32), this.solid([0.02, 0.02, 0.02], 0.02));
-        (this.ember.material.uniforms.emission!.value as Vector3).set(...EMBER);
         this.airborne = new Mesh(flying(this.airborneBuffer), material(glsl.AIRBORNE_VERTEX, glsl.airborne(glsl.LAMP), { ...this.shared, resolution: { value: new Vector2(1, 1) } }));
         Object.assign(this.airborne.material, { side: DoubleSide, transparent: true, depthWrite: false, blending: CustomBlending, blendEquation: AddEquation, blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor });
         this.airborne.frustumCulled = false;
@@ -221,6 +220,7 @@ export class Renderer {
         const { ember } = this.where;
         this.ember.visible = !!ember;
         if (!ember) return;
+        this.ember.material.uniforms.kelvin!.value = ember.temperature;
         const { path, radius } = ember, next = Math.max(1, path.findIndex((key) => key.time > time)), [from, to] = [path[next - 1]!, path[next]!];
         const share = Math.min((time - from.time) / (to.time - from.time), 1);
         this.ember.position.set(...from.position as Point).lerp(new Vector3(...to.position as Point), share);

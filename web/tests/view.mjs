@@ -51,17 +51,20 @@ const colour = (page) => page.evaluate(() => {
     return [0, 1, 2].map((c) => { let sum = 0; for (let i = c; i < data.length; i += 4) sum += data[i]; return sum / (w * h); });
 });
 const SIDE = 240;
-/** The greens of a square picture of a ground alone, by even light. */
-const ground = (page, kind, camera) => page.evaluate(([kind, camera, side]) => {
+/** The greens of a square picture of a ground, and shapes on it, by even light. */
+const ground = (page, kind, camera, shapes = []) => page.evaluate(([kind, camera, shapes, side]) => {
     const { stage } = globalThis.view, { room, gl, canvas } = stage, [width, height] = [canvas.width, canvas.height], kept = { ...room }, bytes = new Uint8Array(4 * side * side);
     Object.assign(room, { width: side, height: side, ground: kind, ground_height: 0, ground_colour: [0.4, 0.4, 0.4], exposure: 1, sun: [0, 0, 0], ambient: room.ambient.map((_, i) => (i < 3 ? 1 : 0)), wall_distance: null });
+    const { shapes: before } = stage.frame;
+    stage.frame.shapes = shapes;
     stage.resize(side, side);
     stage.draw(camera);
+    stage.frame.shapes = before;
     gl.readPixels(0, 0, side, side, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
     Object.assign(room, kept);
     stage.resize(width, height);
     return [...bytes.filter((_, i) => i % 4 === 1)];
-}, [kind, camera, SIDE]);
+}, [kind, camera, shapes, SIDE]);
 const apart = (a, b) => Math.max(...a.map((v, i) => Math.abs(v - b[i])));
 /** What stands outside the window, or over another card. */
 const outside = (page) => page.evaluate(() => [...document.querySelectorAll("header, aside, footer, footer button, #at, #values, aside > :not([hidden])")].filter((e) => {
@@ -136,6 +139,11 @@ const CASES = {
         const wood = await ground(page, 0, { eye: [3, -1.6, 0.25], target: [3, 0, 0], up: [0, 0, 1], fov: 0.25 }), mean = wood.reduce((sum, green) => sum + green) / wood.length;
         const apart = wood.slice(SIDE).reduce((sum, green, i) => sum + Math.abs(green - wood[i]), 0) / (wood.length - SIDE) / mean;
         assert.ok(apart < 0.05, `rows of the wood differ by ${apart} of its mean`);
+    },
+    async "a glowing ball is cooler at its limb"(page) {
+        const ball = { kind: 1, position: [3, 0, 0.1], rotation: [0, 0, 0, 1], half: [0, 0, 0], radius: 0.05, height: 0, colour: [0.05, 0.05, 0.05], temperature: 1300, solid: 0 };
+        const greens = await ground(page, 0, { eye: [3, -0.3, 0.1], target: [3, 0, 0.1], up: [0, 0, 1], fov: 0.4 }, [ball]), at = (x) => greens.slice(x - 4 + SIDE * 120, x + 4 + SIDE * 120).reduce((sum, green) => sum + green / 8, 0);
+        assert.ok(at(120) > 1.3 * at(30) && at(30) > 20, `green is ${at(120)} in its middle, ${at(30)} at its side`);
     },
     async "dragging turns the view, and the camera comes home"(page) {
         const eye = () => page.evaluate(() => globalThis.view.camera.eye), home = await eye();

@@ -123,15 +123,15 @@ void main() {
     colour = vec4(c, 1.0);
 }`;
 
-export const SHAPE = /* glsl */ `${glsl.NOISE}${glsl.GLOW}${DAY}
-in vec3 vPosition, vNormal;
-uniform vec3 albedo;
+export const SHAPE = /* glsl */ `${glsl.NOISE}${glsl.GLOW}${glsl.SHAPE_GLOW}${DAY}
+in vec3 vPosition, vNormal, vLocal;
+uniform vec3 albedo, grain; // grain: what makes vLocal 3.5 at its side
 uniform float kelvin;
 out vec4 colour;
 void main() {
     vec3 n = normalize(vNormal), view = normalize(eye - vPosition);
     if (dot(n, view) < 0.0) n = -n;
-    float seen = lampSeen(vPosition + 0.0015 * n), hot = kelvin > 800.0 ? 1.0 : 0.0, scale = noise4(vPosition * 120.0).r;
-    vec3 glow = hot * blackbody_glow(kelvin + 60.0 * scale) * 3.0 * (0.6 + 0.4 * dot(n, view));
+    float seen = lampSeen(vPosition + 0.0015 * n), hot = kelvin > 800.0 ? 1.0 : 0.0;
+    vec3 glow = hot * shape_glow(grain * vLocal, n, view, kelvin);
     colour = vec4(shaded(albedo * (1.0 - 0.55 * hot), vec3(0.0), 0.06, 40.0, vPosition, n, view, seen) + glow, 1.0);
 }`;

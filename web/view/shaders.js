@@ -1,6 +1,6 @@
 // Shared by the page (web/src) and `singe view` (web/view): GLSL after program/preview. How paper, embers and flames look is
 // translated from its C (look.js); here are what that calls, light, ground and film.
-import { FLAME, PAPER } from "./look.js";
+import { FLAME, LOOK, PAPER } from "./look.js";
 import { FLAME_NOISE } from "./tables.js";
 
 /** Four smooth noises from -1 to 1, lattice size 1, by one look into a texture of random corners, so many a side, repeated. */
@@ -164,8 +164,9 @@ void main() {
 export const PLAIN_VERTEX = /* glsl */ `
 in vec3 position, normal;
 uniform mat4 modelMatrix, viewProjection;
-out vec3 vPosition, vNormal;
+out vec3 vPosition, vNormal, vLocal;
 void main() {
+    vLocal = position;
     vec4 p = modelMatrix * vec4(position, 1.0);
     vPosition = p.xyz;
     vNormal = mat3(modelMatrix) * normal;
@@ -248,15 +249,27 @@ void main() {
     colour = vec4(c, 1.0);
 }`;
 
-export const solid = (light) => /* glsl */ `${NOISE}${light}
-in vec3 vPosition, vNormal;
-uniform vec3 albedo, emission;
-uniform float gloss;
+/** What a shape sends that glows: shape_glow of shade_metal.c. p: from its middle, 3.5 at its side. */
+export const SHAPE_GLOW = /* glsl */ `
+vec3 shape_glow(vec3 p, vec3 n, vec3 view, float kelvin) {
+    vec3 aslant = vec3(0.8 * p.x + 0.6 * p.y, 0.64 * p.y - 0.48 * p.x + 0.6 * p.z, 0.8 * p.z + 0.36 * p.x - 0.48 * p.y);
+    float middle = noise4(1.4 * aslant).r, lies = middle + 0.45 * noise4(3.7 * aslant).b + 0.25 * noise4(8.0 * p).a;
+    float facing = clamp(dot(n, view), 0.0, 1.0), aside = 1.0 - facing, even = kelvin * (1.0 + 0.02 * noise4(0.45 * p).g + 0.008 * middle);
+    even += float(${LOOK.SHAPE_MIDDLE}) * facing * facing - float(${LOOK.SHAPE_LIMB}) * aside * sqrt(aside) + float(${LOOK.SHAPE_BELOW}) * min(n.z, 0.2);
+    return blackbody_glow(even - float(${LOOK.SCALE_COOLER}) * stepf(0.46, 0.62, lies)) * float(${LOOK.SHAPE_GAIN}) * (0.45 + 0.55 * facing);
+}
+`;
+
+export const solid = (light) => /* glsl */ `${NOISE}${GLOW}${SHAPE_GLOW}${light}
+in vec3 vPosition, vNormal, vLocal;
+uniform vec3 albedo;
+uniform float gloss, kelvin;
 out vec4 colour;
 void main() {
     vec3 n = normalize(vNormal), view = normalize(eye - vPosition);
     float seen = lampSeen(vPosition + 0.0015 * n), grain = 1.0 + 0.12 * noise4(vPosition * vec3(900.0, 900.0, 900.0)).r;
-    colour = vec4(shaded(albedo * grain, vec3(0.0), gloss, 40.0, vPosition, n, view, seen) + emission, 1.0);
+    colour = vec4(shaded(albedo * grain, vec3(0.0), gloss, 40.0, vPosition, n, view, seen), 1.0);
+    if (kelvin > 800.0) colour.rgb += shape_glow(3.5 * vLocal, n, view, kelvin);
 }`;
 
 /** Sparks and flakes (airborne.js), four corners each: a spark is a streak at least some pixels wide, a flake a plate. */

@@ -326,8 +326,8 @@ export class Stage extends Card {
             const mesh = shape.kind === 3 ? capsule(shape) : shape.solid ? this.solids.get(this.solidKey(i)) : this.kinds[shape.kind];
             if (!mesh) return;
             const size = shape.kind === 2 ? shape.half : shape.kind === 1 || shape.kind === 3 ? [shape.radius, shape.radius, shape.radius] : [1, 1, 1];
-            const turn = shape.kind === 1 ? [0, 0, 0, 1] : shape.rotation;
-            this.use(this.programs.shape, { ...shared, modelMatrix: placed(shape.position, turn, size), albedo: shape.colour, kelvin: this.layer === "paper" ? shape.temperature : 0 });
+            const turn = shape.kind === 1 ? [0, 0, 0, 1] : shape.rotation, grain = shape.solid ? [35, 35, 35] : size.map((half) => (3.5 * half) / size[0]);
+            this.use(this.programs.shape, { ...shared, modelMatrix: placed(shape.position, turn, size), albedo: shape.colour, grain, kelvin: this.layer === "paper" ? shape.temperature : 0 });
             this.drawMesh(mesh);
         });
     }
