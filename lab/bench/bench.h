@@ -57,6 +57,7 @@ typedef struct BenchOptions {
     int substeps, projections;
     int threads;
     double time;      ///< s
+    double start;     ///< of the solver; below 0: the measurement's default
     double smoothing; ///< 1/s; below 0: the measurement's default
     double detail;    ///< m, of the drawn surface; 0: plain cells
     double limit_ms;  ///< 0: none
@@ -66,7 +67,7 @@ typedef struct BenchOptions {
     const BenchMaterial *materials;
 } BenchOptions;
 
-static inline BenchOptions bench_options(void) { return (BenchOptions){.threads = 1, .smoothing = -1}; }
+static inline BenchOptions bench_options(void) { return (BenchOptions){.threads = 1, .smoothing = -1, .start = -1}; }
 
 /// The given list, or these defaults.
 BenchList bench_list(const BenchList *asked, int count, const double *defaults);
@@ -83,7 +84,7 @@ int options_steps(const BenchOptions *options);
 // ---- command lines
 
 /// The options of all measurements.
-enum { BENCH_OPTION_COUNT = 26 };
+enum { BENCH_OPTION_COUNT = 27 };
 extern const ArgOption bench_all_options[BENCH_OPTION_COUNT];
 
 typedef struct BenchRequest {

@@ -12,7 +12,7 @@
 
 // options that several measurements take
 #define OUTPUT " json csv "
-#define SOLVER " solver instructions projections substeps "
+#define SOLVER " solver instructions projections start substeps "
 #define TRAJECTORY " cells thickness pins time steps smoothing threads " SOLVER OUTPUT
 #define SIZES " springs steps threads " OUTPUT
 
@@ -34,13 +34,13 @@ static const struct {
      "Whole steps of a burning sheet with a sphere and the ground: milliseconds per stage."},
     {"surface", bench_surface, SIZES,
      "The drawn surface of a burning sheet at several refinements: triangles and milliseconds."},
-    {"heap", bench_heap, " cells time threads steps substeps " OUTPUT,
+    {"heap", bench_heap, " cells time threads steps start substeps " OUTPUT,
      "A cloth falls over a sphere and folds: milliseconds per frame and stage, self-contact, strain."},
-    {"collapse", bench_collapse, " cells time threads steps substeps " OUTPUT,
+    {"collapse", bench_collapse, " cells time threads steps start substeps " OUTPUT,
      "A hollow ball collapses into self-contact under its weight: the numbers of heap."},
-    {"stack", bench_stack, " cells sheets time threads steps substeps " OUTPUT,
+    {"stack", bench_stack, " cells sheets time threads steps start substeps " OUTPUT,
      "Sheets fall on top of each other over a sphere: mean and worst step, strain, crossings, memory."},
-    {"drop", bench_drop, " cells time threads steps substeps " OUTPUT,
+    {"drop", bench_drop, " cells time threads steps start substeps " OUTPUT,
      "A sheet of 1 m x 1 m falls flat on a sphere and on itself: the numbers of stack."},
     {"wind", bench_wind, " cells time threads substeps " OUTPUT,
      "A sheet held at two corners in gusts of 5, 15 and 30 m/s: processor time, CCD, strain, crossings."},

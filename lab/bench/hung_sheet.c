@@ -23,6 +23,7 @@ BenchSetup sheet_setup(const BenchOptions *options, BenchState state, int steps)
     setup.rigid = options->solver != SINGE_SOLVER_STRAND;
     if (options->substeps || options->solver == SINGE_SOLVER_STRAND) setup.solver.substeps = options_substeps(options);
     if (options->projections) setup.solver.projections = options->projections;
+    if (options->start >= 0) setup.solver.start = (float)options->start;
     if (options->smoothing >= 0) setup.solver.smoothing = (float)options->smoothing;
     return setup;
 }

@@ -171,6 +171,7 @@ static SingeResult contact_measure(const BenchOptions *options, const Motion *mo
     def.contact.enabled = true;
     if (motion->thickness > 0) def.contact.thickness = motion->thickness;
     def.solver.substeps = options_substeps(options);
+    if (options->start >= 0) def.solver.start = (float)options->start;
     if (singe_sim_create(&def, &sim, error)) return error->code;
 
     SingeResult result = sheets ? add_sheets(sim, motion, sheets, cells, error) : add_ball(sim, cells);

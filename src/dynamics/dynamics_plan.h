@@ -53,6 +53,7 @@ typedef struct Strands {
     int room_count;   ///< 1 to 64 threads that may solve at once
     float *keep;      ///< room_count times STRAND_KEEP (longest + 1) STRAND_LANES
     _Atomic uint64_t taken;
+    bool started; ///< this substep has a start
 } Strands;
 
 /// A spring that a tear has removed from its strand, or made (patch.c).
@@ -98,6 +99,7 @@ struct DynamicsPlan {
     float (*normal)[4];    ///< unit; fourth: 1/m, k of the quadratic drag, dv/dt = -k |v_n| v_n
     float (*air)[4];       ///< m/s, the wind there; fourth: 1/s, damping
     float (*predicted)[4]; ///< m, x~ of eq 9
+    float (*start)[4];     ///< m, s (x - x~) of move.c; NULL: none
     const Kernels *kernels;
     float *soft;     ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
     Strands strands; ///< of the strand solver
@@ -144,6 +146,12 @@ typedef struct Between {
 /// One pass over the particles. Returns the number of contacts.
 uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, const Between *between,
                        DynamicsState *dynamics);
+
+/// Whether contact may move particles before that pass. Then their starts are kept before contact (move.c).
+static inline bool dynamics_keeps_start(const DynamicsPlan *plan, uint32_t collider_count) {
+    return plan->start && (plan->collision || collider_count > 0);
+}
+void dynamics_keep_start(DynamicsPlan *plan, Pool *pool, DynamicsState *dynamics);
 
 /// Puts pinned particles on their paths (move.c).
 void dynamics_move_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,

@@ -7,7 +7,10 @@
 //
 //   v~ = v + h F_ext / m,   x~ = x + h v~
 //
-// in vectors (move_kernel.h), and attachments hold it. F_ext: gravity, and quadratic drag on the normal velocity
+// in vectors (move_kernel.h), and attachments hold it. Strands begin at x~ + s (x - x~)', with the displacement that they
+// gave the particle in the substep before and the solver's `start` s: forces change little from one substep to the next,
+// so strands have less to correct, and leave less strain. Contact, which only pushes, is not in it; eq 13 is as before.
+// Where the displacement turns back, which is no force, there is hardly a start. F_ext: gravity, and quadratic drag on the normal velocity
 // relative to the air, taken implicitly (v_n <- v_n / (1 + h k |v_n|)), so that no time step makes it overshoot.
 // Damping: v <- v / (1 + h d).
 //
@@ -46,6 +49,9 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
                             .predicted = plan->predicted[0],
                             .normal = plan->normal[0],
                             .air = plan->air[0],
+                            .start = plan->start ? plan->start[0] : NULL,
+                            .share = plan->start ? plan->settings.solver.start : 0,
+                            .kept = dynamics_keeps_start(plan, between->collider_count),
                             .h = h,
                             .inverse_h = 1 / h,
                             .keep = 1 / (1 + h * field_at(damping, 0)),
@@ -54,6 +60,20 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
                             .damps = damping.mask != 0};
     if (between->attaches) attach_position(&plan->attachments, shell, dynamics);
     return (uint64_t)pool_sum(pool, (int)shell->particle_count, move_block, &job, plan->partial);
+}
+
+static void keep_block(void *task, int begin, int end) {
+    const Move *job = task;
+    job->plan->kernels->move(&job->lanes, (size_t)begin, (size_t)end, false, false);
+}
+
+void dynamics_keep_start(DynamicsPlan *plan, Pool *pool, DynamicsState *dynamics) {
+    Move job = {.plan = plan};
+    job.lanes = (MoveLanes){.position = dynamics->position[0],
+                            .predicted = plan->predicted[0],
+                            .start = plan->start[0],
+                            .share = plan->settings.solver.start};
+    pool_for(pool, (int)plan->particle_count, POOL_BLOCK, keep_block, &job);
 }
 
 void dynamics_move_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,

@@ -11,12 +11,15 @@ typedef struct MoveLanes {
     float *predicted;    ///< m
     const float *normal; ///< unit; fourth: 1/m, k of the quadratic drag
     const float *air;    ///< m/s; fourth: 1/s, damping
+    float *start;        ///< m, what the next prediction adds; not used where `share` is 0
+    float share;         ///< of what strands have moved a particle, for its start
     float h, inverse_h;  ///< s, 1/s
     float keep;          ///< share of the velocity that damping leaves, where it is the same for all
     float fall[4];       ///< m/s, of gravity in a substep; fourth: 0
+    bool kept;           ///< `start` is that of the substep that ends already
     bool drags, damps;   ///< some have drag; damping differs
 } MoveLanes;
 
-/// Particles [begin, end).
+/// Particles [begin, end). What neither closes nor opens a substep keeps their starts.
 typedef void MoveRange(const MoveLanes *job, size_t begin, size_t end, bool closes, bool opens);
 MoveRange move_range_four, move_range_v3, move_range_v4;

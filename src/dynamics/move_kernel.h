@@ -3,8 +3,18 @@
 // whole quadruples, and their particles never mix: all instruction sets give the same bytes.
 #include "dynamics/move.h"
 
+/// The start that a change by the strands gives, which is kept: hardly any where that turns back.
+static inline Lanes move_start(const MoveLanes *job, size_t i, Lanes change) {
+    if (job->kept) return lanes_load(job->start + i);
+    const Lanes along = lanes_sums(change * lanes_load(job->start + i)), start = change * lanes_all(job->share);
+    const Lanes kept = lanes_where_less(along, lanes_all(0), start * lanes_all(0x1p-10f), start);
+    lanes_store(job->start + i, kept);
+    return kept;
+}
+
 /// Quadruples from number i on, which is that of the first one times four.
-static inline void move_lanes(const MoveLanes *job, size_t i, bool closes, bool opens, bool drags, bool damps) {
+static inline void move_lanes(const MoveLanes *job, size_t i, bool closes, bool opens, bool drags, bool damps,
+                              bool starts) {
     const Lanes zero = lanes_all(0), one = lanes_all(1), h = lanes_all(job->h);
     const Lanes old_point = lanes_load(job->position + i), old = lanes_load(job->velocity + i);
     const Lanes old_predicted = lanes_load(job->predicted + i), mass = lanes_fourths(old_point);
@@ -27,7 +37,10 @@ static inline void move_lanes(const MoveLanes *job, size_t i, bool closes, bool 
         }
 
         point = point + h * velocity;
-        lanes_store(job->position + i, lanes_where_less(zero, mass, point, old_point));
+        Lanes moved = point;
+        if (starts && closes) moved += move_start(job, i, old_point - old_predicted);
+        else if (starts) lanes_store(job->start + i, zero);
+        lanes_store(job->position + i, lanes_where_less(zero, mass, moved, old_point));
         lanes_store(job->predicted + i, lanes_where_less(zero, mass, point, old_predicted));
     }
 
@@ -36,17 +49,18 @@ static inline void move_lanes(const MoveLanes *job, size_t i, bool closes, bool 
 }
 
 /// The same of four vectors that close and open a substep with drag but no damping: their quotients are computed at once.
-static inline void move_dragged(const MoveLanes *job, size_t first) {
+static inline void move_dragged(const MoveLanes *job, size_t first, bool starts) {
     const Lanes zero = lanes_all(0), one = lanes_all(1), h = lanes_all(job->h);
-    Lanes point[4], velocity[4], normal[4];
+    Lanes point[4], velocity[4], normal[4], start[4];
     Float4s slips;
     for (size_t e = 0; e < 4; e++) point[e] = lanes_load(job->position + first + e * LANES);
     const Lanes heaviest = lanes_max(lanes_max(point[0], point[1]), lanes_max(point[2], point[3]));
     if (!lanes_any_less(zero, lanes_fourths(heaviest))) return; // pinned or gone, all of them
 
     for (size_t e = 0, i = first; e < 4; e++, i += LANES) {
-        const Lanes closed =
-            lanes_load(job->velocity + i) + (point[e] - lanes_load(job->predicted + i)) * lanes_all(job->inverse_h);
+        const Lanes change = point[e] - lanes_load(job->predicted + i);
+        const Lanes closed = lanes_load(job->velocity + i) + change * lanes_all(job->inverse_h);
+        start[e] = starts ? move_start(job, i, change) : zero;
         velocity[e] = (closed + lanes_quadruple(job->fall)) * lanes_all(job->keep);
         normal[e] = lanes_load(job->normal + i);
         const Lanes slip = lanes_with_fourth((velocity[e] - lanes_load(job->air + i)) * normal[e], normal[e]);
@@ -61,30 +75,36 @@ static inline void move_dragged(const MoveLanes *job, size_t first) {
         const Lanes mass = lanes_fourths(point[e]);
         const Lanes slower = lanes_with_fourth(velocity[e] - share[e] * normal[e], velocity[e]);
         velocity[e] = lanes_where_less(zero, lanes_fourths(normal[e]), slower, velocity[e]);
-        const Lanes moved = point[e] + h * velocity[e];
-        lanes_store(job->position + i, lanes_where_less(zero, mass, moved, point[e]));
+        const Lanes moved = point[e] + h * velocity[e], begins = starts ? moved + start[e] : moved;
+        lanes_store(job->position + i, lanes_where_less(zero, mass, begins, point[e]));
         lanes_store(job->predicted + i, lanes_where_less(zero, mass, moved, lanes_load(job->predicted + i)));
         lanes_store(job->velocity + i, lanes_where_less(zero, mass, velocity[e], lanes_load(job->velocity + i)));
     }
 }
 
 void MOVE_RANGE(const MoveLanes *job, size_t begin, size_t end, bool closes, bool opens) {
-    const bool drags = job->drags, damps = job->damps;
+    const bool drags = job->drags, damps = job->damps, starts = job->share > 0;
     size_t i = 4 * begin;
     const size_t last = 4 * end;
 
     // each call becomes a loop of its own
-    if (closes && opens && drags && !damps) {
-        for (; i + 4 * LANES <= last; i += 4 * LANES) move_dragged(job, i);
-        for (; i + LANES <= last; i += LANES) move_lanes(job, i, true, true, true, false);
-    } else if (closes && opens && !drags && !damps)
-        for (; i + LANES <= last; i += LANES) move_lanes(job, i, true, true, false, false);
+    if (closes && opens && drags && !damps && !starts) {
+        for (; i + 4 * LANES <= last; i += 4 * LANES) move_dragged(job, i, false);
+        for (; i + LANES <= last; i += LANES) move_lanes(job, i, true, true, true, false, false);
+    } else if (closes && opens && drags && !damps) {
+        for (; i + 4 * LANES <= last; i += 4 * LANES) move_dragged(job, i, true);
+        for (; i + LANES <= last; i += LANES) move_lanes(job, i, true, true, true, false, true);
+    } else if (closes && opens && !drags && !damps && !starts)
+        for (; i + LANES <= last; i += LANES) move_lanes(job, i, true, true, false, false, false);
     else if (closes && opens)
-        for (; i + LANES <= last; i += LANES) move_lanes(job, i, true, true, drags, damps);
+        for (; i + LANES <= last; i += LANES) move_lanes(job, i, true, true, drags, damps, starts);
     else if (opens)
-        for (; i + LANES <= last; i += LANES) move_lanes(job, i, false, true, drags, damps);
+        for (; i + LANES <= last; i += LANES) move_lanes(job, i, false, true, drags, damps, starts);
     else if (closes)
-        for (; i + LANES <= last; i += LANES) move_lanes(job, i, true, false, false, false);
+        for (; i + LANES <= last; i += LANES) move_lanes(job, i, true, false, false, false, false);
+    else if (starts)
+        for (; i + LANES <= last; i += LANES)
+            move_start(job, i, lanes_load(job->position + i) - lanes_load(job->predicted + i));
 #ifdef MOVE_NARROWER
     if (i < last) MOVE_NARROWER(job, i / 4, end, closes, opens);
 #endif

@@ -12,6 +12,7 @@
 
 #include "common/float4.h"
 #include "common/real.h"
+#include "dynamics/stiffness.h"
 
 #include <math.h>
 #include <string.h>
@@ -155,7 +156,8 @@ static void gather_strands(void *task, int begin, int end) {
 }
 
 void patch_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h) {
-    Gather job = {plan, shell, SINGE_RED, 1 / ((float)plan->settings.solver.substeps * h * h)};
+    const SingeSolverDef *solver = &plan->settings.solver;
+    Gather job = {plan, shell, SINGE_RED, 1 / ((float)solver->substeps * h * h * stiffness_given(solver))};
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         job.colour = (SingeColour)colour;
         const SpringSet *springs = &shell->springs[colour];

@@ -59,13 +59,14 @@ static float thickness_share(const Shell *shell, const Sheet *sheet, uint32_t ce
 
 void stiffness_begin(const Shell *shell, SingeColour colour, float h, const SingeSolverDef *solver,
                      Stiffness *stiffness) {
+    const float given = stiffness_given(solver); // a start has its share without the solver's own softness
     const float floor = solver->regularisation[colour], red = solver->regularisation[SINGE_RED];
     const float softness = (colour == SINGE_RED ? COUPLING : 0) + floor;
     *stiffness = (Stiffness){.shell = shell,
                              .colour = colour,
                              .isotropic = solver->isotropic,
-                             .softness = softness * h * h,
-                             .red_softness = {(COUPLING + red) * h * h, red * h * h},
+                             .softness = given * softness * h * h,
+                             .red_softness = {given * (COUPLING + red) * h * h, given * red * h * h},
                              .sheet = UINT32_MAX};
 }
 

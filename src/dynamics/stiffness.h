@@ -19,6 +19,11 @@ typedef struct Stiffness {
     float own;             ///< m/N, of its springs without any compliance
 } Stiffness;
 
+/// What the projections of a step give of the springs' forces, in the mean: starts, which the first has none of, the rest.
+static inline float stiffness_given(const SingeSolverDef *solver) {
+    return 1 - solver->start * (float)(solver->substeps - 1) / (float)solver->substeps;
+}
+
 /// For substeps of h seconds, or 0 for a solver without a numerical compliance.
 void stiffness_begin(const Shell *shell, SingeColour colour, float h, const SingeSolverDef *solver,
                      Stiffness *stiffness);

@@ -28,6 +28,12 @@ class Swing(unittest.TestCase):
             for mark, height in FALL.items():
                 self.assertAlmostEqual(row[f"fall_m_{mark}"], height, delta=0.02)
 
+    def test_a_start_leaves_less_strain(self):
+        options = ("--thickness", "1", "--steps", "1", "--substeps", "48", "--time", "0.7", "--start")
+        without, with_start = swing(*options, "0")[0], swing(*options, "0.45")[0]
+        for column, share in (("blue_pct_p99", 0.85), ("blue_pct_mean", 0.75), ("off_cm", 0.5)):
+            self.assertLess(with_start[column], share * without[column])
+
     def test_one_corner(self):
         for row in swing("--thickness", "1,2,5", "--pins", "1"):
             self.hold(row, 5, 0.5)

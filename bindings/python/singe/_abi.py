@@ -175,7 +175,7 @@ class SingeSolverDef(Structure):
                 ("order", c_int * 4), ("regularisation", c_float * 4), ("attachments", c_bool),
                 ("early_exit", c_bool), ("tolerance", c_float), ("stiffness", c_float), ("smoothing", c_float),
                 ("smoothing_length", c_float), ("height_min", c_float), ("height_gain", c_float), ("creases", c_bool),
-                ("tearing", c_bool), ("isotropic", c_bool)]
+                ("tearing", c_bool), ("isotropic", c_bool), ("start", c_float)]
 
 
 class SingeGasDef(Structure):

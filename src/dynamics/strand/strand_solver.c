@@ -230,14 +230,16 @@ void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h,
                     DynamicsCounters *counters) {
     Strands *strands = &plan->strands;
     const StrandSet *set = &strands->sets[colour], *braces = NULL;
+    const float given = strands->started ? 1 - plan->settings.solver.start : 1; // of forces; the start has the rest
+    const float inverse_h2 = 1 / (h * h * given);
     if (colour == SINGE_GREEN && plan->braces) braces = &plan->braces->set;
     for (const StrandSet *next = set; next; next = next == set ? braces : NULL) {
         Project project = {
-            {next, dynamics->position[0], plan->settings.solver.regularisation[colour], 1 / (h * h)}, strands, 0};
+            {next, dynamics->position[0], plan->settings.solver.regularisation[colour], inverse_h2}, strands, 0};
         strand_families(next, pool, project_range, &project, &project.first_group);
     }
 
-    patch_project(plan, colour, 1 / (h * h), dynamics);
+    patch_project(plan, colour, inverse_h2, dynamics);
     counters->strands += set->strand_count;
     counters->springs += plan->spring_count[colour];
     counters->flops += (double)STRAND_FLOPS * plan->spring_count[colour];
@@ -265,6 +267,8 @@ static SingeResult strands_project(DynamicsPlan *plan, const Substep *substep) {
             substep->counters->seconds += clock_seconds() - start;
         }
     height_project(plan, shell, ablate, pool, dynamics);
+
+    if (dynamics_keeps_start(plan, substep->collider_count)) dynamics_keep_start(plan, pool, dynamics);
 
     // what contact has strained in a turn, sides give to the layers behind before the next
     const float(*predicted)[4] = (const float(*)[4])plan->predicted;
