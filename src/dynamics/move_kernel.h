@@ -49,18 +49,17 @@ static inline void move_lanes(const MoveLanes *job, size_t i, bool closes, bool 
 }
 
 /// The same of four vectors that close and open a substep with drag but no damping: their quotients are computed at once.
-static inline void move_dragged(const MoveLanes *job, size_t first, bool starts) {
+static inline void move_dragged(const MoveLanes *job, size_t first) {
     const Lanes zero = lanes_all(0), one = lanes_all(1), h = lanes_all(job->h);
-    Lanes point[4], velocity[4], normal[4], start[4];
+    Lanes point[4], velocity[4], normal[4];
     Float4s slips;
     for (size_t e = 0; e < 4; e++) point[e] = lanes_load(job->position + first + e * LANES);
     const Lanes heaviest = lanes_max(lanes_max(point[0], point[1]), lanes_max(point[2], point[3]));
     if (!lanes_any_less(zero, lanes_fourths(heaviest))) return; // pinned or gone, all of them
 
     for (size_t e = 0, i = first; e < 4; e++, i += LANES) {
-        const Lanes change = point[e] - lanes_load(job->predicted + i);
-        const Lanes closed = lanes_load(job->velocity + i) + change * lanes_all(job->inverse_h);
-        start[e] = starts ? move_start(job, i, change) : zero;
+        const Lanes closed =
+            lanes_load(job->velocity + i) + (point[e] - lanes_load(job->predicted + i)) * lanes_all(job->inverse_h);
         velocity[e] = (closed + lanes_quadruple(job->fall)) * lanes_all(job->keep);
         normal[e] = lanes_load(job->normal + i);
         const Lanes slip = lanes_with_fourth((velocity[e] - lanes_load(job->air + i)) * normal[e], normal[e]);
@@ -75,8 +74,8 @@ static inline void move_dragged(const MoveLanes *job, size_t first, bool starts)
         const Lanes mass = lanes_fourths(point[e]);
         const Lanes slower = lanes_with_fourth(velocity[e] - share[e] * normal[e], velocity[e]);
         velocity[e] = lanes_where_less(zero, lanes_fourths(normal[e]), slower, velocity[e]);
-        const Lanes moved = point[e] + h * velocity[e], begins = starts ? moved + start[e] : moved;
-        lanes_store(job->position + i, lanes_where_less(zero, mass, begins, point[e]));
+        const Lanes moved = point[e] + h * velocity[e];
+        lanes_store(job->position + i, lanes_where_less(zero, mass, moved, point[e]));
         lanes_store(job->predicted + i, lanes_where_less(zero, mass, moved, lanes_load(job->predicted + i)));
         lanes_store(job->velocity + i, lanes_where_less(zero, mass, velocity[e], lanes_load(job->velocity + i)));
     }
@@ -89,11 +88,8 @@ void MOVE_RANGE(const MoveLanes *job, size_t begin, size_t end, bool closes, boo
 
     // each call becomes a loop of its own
     if (closes && opens && drags && !damps && !starts) {
-        for (; i + 4 * LANES <= last; i += 4 * LANES) move_dragged(job, i, false);
+        for (; i + 4 * LANES <= last; i += 4 * LANES) move_dragged(job, i);
         for (; i + LANES <= last; i += LANES) move_lanes(job, i, true, true, true, false, false);
-    } else if (closes && opens && drags && !damps) {
-        for (; i + 4 * LANES <= last; i += 4 * LANES) move_dragged(job, i, true);
-        for (; i + LANES <= last; i += LANES) move_lanes(job, i, true, true, true, false, true);
     } else if (closes && opens && !drags && !damps && !starts)
         for (; i + LANES <= last; i += LANES) move_lanes(job, i, true, true, false, false, false);
     else if (closes && opens)
