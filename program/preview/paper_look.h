@@ -96,9 +96,6 @@ bool cloth_is_hole(const Cloth *cloth);
 /// Tilts the normal; returns a factor on the albedo.
 float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *cloth, Point *point);
 
-/// What is seen of a picture's colour, which cloth takes up unevenly.
-Float3 cloth_dye(const Weave *weave, const PaperState *state, Float3 colour, float footprint);
-
 /// How brown it is, 0 to 1. Its dye fades.
 float cloth_scorch(const Weave *weave, const PaperState *state, Point *point);
 

@@ -208,15 +208,6 @@ float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *clot
     return (1 + slub) * mixf(1, 1.12f * tone, cloth->shown);
 }
 
-Float3 cloth_dye(const Weave *weave, const PaperState *state, Float3 colour, float footprint) {
-    const float at[2] = {state->uv[0] * weave->threads[0], state->uv[1] * weave->threads[1]};
-    const float wide = footprint / weave->pitch;
-    float bare = 0.08f + 0.07f * oblique(at, 40, wide, 221) + 0.07f * oblique(at, 12, wide, 222);
-    for (int k = 0; k < 2; k++) // and some threads more than others
-        bare += 0.08f * resolved(2, wide) * noise2(at[k] / 2, at[1 - k] / 50, 223 + (uint32_t)k);
-    return float3_mix(colour, float3(1, 1, 1), maxf(bare, 0));
-}
-
 /// Cloth browns by the logarithm of its heat, which falls off evenly from a front: a fire's vapour condenses on cloth that is
 /// hardly warm. Along threads all this spreads farther.
 float cloth_scorch(const Weave *weave, const PaperState *state, Point *point) {

@@ -374,9 +374,8 @@ static void fresh(const Preview *preview, const PaperState *state, Point *point)
     const float flocks = flocks_of(state, point);
     const float passed = point->transmission = paper_transmittance(preview, state->sheet);
     const Float3 far = printed(preview, state, !point->back, point->footprint);
-    const Weave *weave = cloth_weave(preview, state->sheet);
-    const bool dyed = weave && point->back && !(known && preview->def.backs && preview->def.backs[state->sheet]);
-    print = weave ? cloth_dye(weave, state, dyed ? far : print, point->footprint) : print_seen(print, far, point);
+    if (!cloth_weave(preview, state->sheet)) print = print_seen(print, far, point);
+    else if (point->back && !(known && preview->def.backs && preview->def.backs[state->sheet])) print = far; // dyed
     point->albedo = float3_scale(float3_mul(white, print), 1 + 0.02f * flocks);
 
     // Wet: a film of water throws a share p of the light that leaves the fibres back to them, so that an albedo a becomes

@@ -78,27 +78,6 @@ TEST(dye_burns_with_its_threads) {
     assert_true(ink > 15 && fabsf(dye) < 0.3f * ink);
 }
 
-/// Cloth takes up dye unevenly: how much the dark of its picture varies from pixel to pixel, over its mean.
-TEST(dye_is_uneven) {
-    uint8_t texels[3] = {40, 40, 40};
-    const Image image = {.width = 1, .height = 1, .rgb = texels}, *pictures[1] = {&image};
-    quad_make(&q, 0.1f, 0.01f);
-    const PreviewLook look = {.weave = 1e-3f};
-    const PreviewStart start = {4, 1, q.position[0], QUAD, q.uv[0], NULL};
-    PreviewDef def = above();
-    def.looks = &look, def.starts = &start, def.sheet_count = 1, def.pictures = pictures;
-    draw(&def, &q.surface, 0, rgb);
-    double sum = 0, squares = 0, count = 0;
-    for (int y = H / 2 - 12; y < H / 2 + 12; y++)
-        for (int x = W / 2 - 12; x < W / 2 + 12; x++) {
-            const double tone = pixel(rgb, x, y)[1];
-            sum += tone, squares += tone * tone, count++;
-        }
-    const double varies = sqrt(squares * count / (sum * sum) - 1);
-    print_message("dyed cloth varies by %.3f\n", varies);
-    assert_true(varies > 0.05);
-}
-
 /// Char of cloth whose threads of 0.4 mm no pixel of 0.9 mm resolves keeps relief and tones of its bundles: how much its light
 /// varies over 4 pixels along a row, over the mean.
 TEST(char_of_cloth_shows_its_bundles) {
