@@ -10,8 +10,9 @@
 // in vectors (move_kernel.h), and attachments hold it. Strands begin at x~ + s (x - x~)', with the displacement that they
 // gave the particle in the substep before and the solver's `start` s: forces change little from one substep to the next,
 // so strands have less to correct, and leave less strain. Contact, which only pushes, is not in it; eq 13 is as before.
-// Where the displacement turns back, which is no force, there is hardly a start. F_ext: gravity, and quadratic drag on the normal velocity
-// relative to the air, taken implicitly (v_n <- v_n / (1 + h k |v_n|)), so that no time step makes it overshoot.
+// Where the displacement turns back, which is no force, there is hardly a start. F_ext: gravity, and quadratic drag on the
+// normal velocity relative to the air, taken implicitly (v_n <- v_n / (1 + h k |v_n|)), so that no time step makes it
+// overshoot.
 // Damping: v <- v / (1 + h d).
 //
 // The fourth component: of a position, the inverse mass, which its prediction repeats; of a velocity, 0.

@@ -48,7 +48,8 @@ static inline void move_lanes(const MoveLanes *job, size_t i, bool closes, bool 
     lanes_store(job->velocity + i, lanes_where_less(zero, mass, velocity, old));
 }
 
-/// The same of four vectors that close and open a substep with drag but no damping: their quotients are computed at once.
+/// The same of four vectors that close and open a substep with drag, without damping or a start: their quotients are
+/// computed at once.
 static inline void move_dragged(const MoveLanes *job, size_t first) {
     const Lanes zero = lanes_all(0), one = lanes_all(1), h = lanes_all(job->h);
     Lanes point[4], velocity[4], normal[4];
