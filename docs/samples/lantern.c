@@ -1,7 +1,7 @@
 // A closed mesh: a paper ball of triangles is a sheet without an edge, and burns from its top.
 //
 // Prints:
-//   5 tenths have burnt
+//   6 tenths have burnt
 #include "sample.h"
 
 enum { AROUND = 32, RINGS = 15, VERTICES = AROUND * RINGS + 2, TRIANGLES = 2 * AROUND * RINGS };

@@ -1,19 +1,23 @@
-// Implicit diffusion, eq 2 by backward Euler:
+// Implicit diffusion, eq 2 by the theta method:
 //
-//   (D + dt L) T = D T*,   (L T)_i = sum c_ij (T_i - T_j)
+//   D T = D T* - dt L (T* + theta (T - T*)),   (L T)_i = sum c_ij (T_i - T_j)
+//
+// theta = 1/2 is Crank and Nicolson's, of second order in dt. It makes no new extremes while dt sum c_ij <= 2 D_i for
+// all i; for longer steps theta is what does not, 1 - D_i/(dt sum c_ij), which tends to backward Euler's 1 (Hundsdorfer
+// & Verwer 2003, I.7.3). The umbrellas have 1, as the paper.
 //
 // D, c  capacities and conductances of operator.c
 // T*    K  temperature after sources, combustion and losses
 // dt    s  of fire
 //
-// Solved for the correction e = T - T*, (D + dt L) e = -dt L T*, by conjugate gradients with the diagonal as
+// Solved for the correction e = T - T*, (D + theta dt L) e = -dt L T*, by conjugate gradients with the diagonal as
 // preconditioner (Hestenes & Stiefel 1952): floats, sums in double by fixed blocks. Temperature differences are formed
 // before summation, so that the size of absolute temperatures costs no digits. Stops when the residual, in the norm of
 // the inverse diagonal, is below `tolerance` times that of D (T* - T_amb), or after 200 iterations; then the step is
 // counted as unconverged. Nothing flows between sheets, so that the equations of each may be scaled: with several they
 // are, by the norm of its own right-hand side. So a sheet is as exact beside a hot and heavy one as alone.
 //
-// The new temperature is then T = T* - dt D^-1 L (T* + e). The flow from i to j is minus that from j to i to the last
+// The new temperature is then T = T* - dt D^-1 L (T* + theta e). The flow from i to j is minus that from j to i to the last
 // bit, so sum D T is conserved whatever the tolerance. An increment below a float's last digit would be lost, always in
 // the same direction; rounding up or down at random, with the probability of the digits cut off, loses nothing on
 // average. The random numbers depend only on particle and step.
@@ -125,6 +129,7 @@ static void conduct_direction(void *context, int begin, int end) {
 static void conduct_product(void *context, int begin, int end) {
     const HeatPass *pass = context;
     HeatPlan *plan = pass->plan;
+    const float theta_dt = pass->theta * pass->dt;
 
     for (int block = begin; block < end; block++) {
         double sum = 0;
@@ -136,7 +141,7 @@ static void conduct_product(void *context, int begin, int end) {
                 next = conduct_slice_end(i, last);
                 HeatLanes inflow = conduct_inflow(&plan->matrix, plan->search, i);
                 for (uint32_t row = 0; i < next; i++, row++) {
-                    plan->product[i] = plan->measure[i] * plan->search[i] - pass->dt * inflow[row];
+                    plan->product[i] = plan->measure[i] * plan->search[i] - theta_dt * inflow[row];
                     sum += conduct_weight(pass, i) * plan->product[i] * plan->search[i];
                 }
             }
@@ -192,7 +197,8 @@ static void conduct_settle(void *context, int begin, int end) {
     HeatPlan *plan = pass->plan;
     for (uint32_t g = heat_group_first(begin); g < heat_group_end(plan, end - 1); g++) {
         if (!plan->rest.awake[pass->turn][g]) continue;
-        for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) plan->star[i] += plan->correction[i];
+        for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++)
+            plan->star[i] += pass->theta * plan->correction[i];
     }
 }
 

@@ -86,6 +86,7 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
         float radiation = field_at(matter->emissivity, i) * STEFAN_BOLTZMANN;
         float exchange = field_at(matter->convection, i) + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
         float rate = warmth * exchange / burnt * slower / shell_glow_slowing(matter, i, fuel[i]); // dt K
+        rate *= 1 + 0.5f * rate;
         float loss = rate * (T2 - ambient) / (1 + rate);
         plan->star[i] = T2 - loss;
         plan->delta[i] = combustion + warmth * flux - loss;
@@ -170,6 +171,12 @@ static void heat_take_over(void *context, int begin, int end) {
     }
 }
 
+/// The smallest theta of the scheme that makes no new extremes, and at least that of second order (conduct.c).
+static float heat_theta(const HeatPlan *plan, float dt) {
+    const float rate = dt * plan->stiffness;
+    return rate > 2 ? 1 - 1 / rate : 0.5f;
+}
+
 SingeResult heat_step(HeatPlan *plan, const StepContext *context, HeatState *heat, HeatCounters *counters) {
     const Shell *shell = context->shell;
     const StateInput *state = &context->state;
@@ -184,8 +191,9 @@ SingeResult heat_step(HeatPlan *plan, const StepContext *context, HeatState *hea
                      .hearer = context->hearer};
     double made = 0;
 
+    pass.theta = heat_theta(plan, pass.dt);
     heat_plan_follow(plan, shell, state);
-    heat_matrix_follow(plan, shell, state->ablate, pass.dt);
+    heat_matrix_follow(plan, shell, state->ablate, pass.theta * pass.dt);
 
     // eq 1: sources, combustion, losses
     heat_gather(&pass, context->sources, context->colliders, context->view);

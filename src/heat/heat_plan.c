@@ -102,6 +102,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
     // the matrix; after it only tears and `live` need the conductances
     if (!result) {
         result = heat_matrix_create(memory, plan, shell);
+        if (!result) plan->stiffness = heat_matrix_stiffness(plan, shell);
         if (shell->spare_count == 0 && !plan->live) FREE(memory, plan->conductance, plan->springs);
         if (!result) result = heat_rest_create(memory, plan);
         if (!result) result = smother_create(memory, shell, &plan->smother);

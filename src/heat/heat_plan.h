@@ -32,8 +32,8 @@ typedef struct HeatMatrix {
     uint32_t *first;  ///< [slices + 1]
     uint32_t *column; ///< [entries]
     float *value;     ///< [entries]
-    float *inverse;   ///< [particles] 1/(D + dt times the sum of the row's values); 0 for particles that are gone
-    float dt;         ///< s, of `inverse`
+    float *inverse;   ///< [particles] 1/(D + theta dt times the sum of the row's values); 0 for particles that are gone
+    float dt;         ///< s, of `inverse`: theta dt
     uint32_t slices, entries;
     HeatTwin *twins; ///< rarely any
     uint32_t twin_count, twin_capacity;
@@ -66,6 +66,7 @@ struct HeatPlan {
 
     // operator
     float *measure;        ///< [particles] D: m2 (surface) or m (umbrella)
+    float stiffness;       ///< 1/s, the most of sum c_ij/D_i before anything is gone; infinite with an umbrella
     float *conductance;    ///< [springs] alpha F times the operator's weight: D/s. Freed once the matrix is built,
                            ///< unless sheets can tear or `live`
     bool live;             ///< a sheet's operator changes as it moves: all is made again at every step
@@ -106,6 +107,7 @@ typedef struct HeatPass {
     Pool *pool;
     float h;            ///< s of scene time
     float dt;           ///< s of fire
+    float theta;        ///< share of the conduction that is implicit
     float step_length;  ///< of the conjugate gradients
     float direction;    ///< their beta
     int turn;           ///< which of rest.awake is current
@@ -133,6 +135,9 @@ void heat_cell_weights(const Float3 corners[4], const double across[4], double w
 /// rest.
 void heat_operator(HeatPlan *plan, const Shell *shell, const StateInput *state);
 
+/// plan->stiffness, of a matrix with all its springs (matrix.c).
+float heat_matrix_stiffness(const HeatPlan *plan, const Shell *shell);
+
 /// The same for one cell's sides and diagonals, and for a vertex, next to a new tear; not for the umbrella.
 void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell);
 void heat_operator_torn_vertex(HeatPlan *plan, const Shell *shell, uint32_t vertex);
@@ -151,7 +156,7 @@ void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length);
 bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list);
 void heat_matrix_free(Memory *memory, HeatPlan *plan);
 
-/// Updates the matrix for what ablation removed since the last call, and for the time step.
+/// Updates the matrix for what ablation removed since the last call, and for theta times the time step.
 void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt);
 
 /// Lists which groups conduct with which (rest.c).

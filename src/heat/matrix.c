@@ -1,7 +1,9 @@
 // The matrix of the heat equation: rows of conductances. Springs and particles are removed and never come back: the
 // entries of a removed spring become 0, and the springs themselves need not be stored.
+#include <math.h>
 #include <string.h>
 
+#include "common/real.h"
 #include "heat/heat_plan.h"
 
 /// Counts the entries of every row in `length`, or fills them in if `fill` is set. If tears have given a vertex more
@@ -65,12 +67,17 @@ static void matrix_fill_up(HeatMatrix *matrix, uint32_t rows) {
         }
 }
 
+static float matrix_sum(const HeatPlan *plan, uint32_t row) {
+    const HeatMatrix *matrix = &plan->matrix;
+    float sum = 0;
+    for (uint32_t k = 0; k < heat_row_width(matrix, row); k++) sum += matrix->value[heat_entry(matrix, row, k)];
+    return sum;
+}
+
 /// The inverse of a row's diagonal.
 static void matrix_invert(HeatPlan *plan, uint32_t row) {
     HeatMatrix *matrix = &plan->matrix;
-    float sum = 0;
-    for (uint32_t k = 0; k < heat_row_width(matrix, row); k++) sum += matrix->value[heat_entry(matrix, row, k)];
-    float diagonal = plan->measure[row] + matrix->dt * sum;
+    float diagonal = plan->measure[row] + matrix->dt * matrix_sum(plan, row);
     matrix->inverse[row] = diagonal > 0 && plan->alive[row] ? 1 / diagonal : 0;
 }
 
@@ -100,6 +107,15 @@ static uint32_t matrix_twins(const HeatPlan *plan, const Shell *shell, HeatTwin 
 static void matrix_revive(HeatPlan *plan, const Shell *shell) {
     memset(plan->spring_alive, 1, plan->springs);
     for (uint32_t i = 0; i < plan->particles; i++) plan->alive[i] = plan->measure[i] > 0 && shell->matter.area[i] > 0;
+}
+
+float heat_matrix_stiffness(const HeatPlan *plan, const Shell *shell) {
+    float most = 0;
+    for (uint32_t s = 0; s < shell->sheet_count; s++)
+        if (shell->sheets[s].material.heat_operator != SINGE_HEAT_SURFACE) return INFINITY;
+    for (uint32_t i = 0; i < plan->particles; i++)
+        if (plan->alive[i]) most = float_max(most, matrix_sum(plan, i) / plan->measure[i]);
+    return most;
 }
 
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell) {

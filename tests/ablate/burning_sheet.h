@@ -45,13 +45,15 @@ static inline void sheet_ablate(BurningSheet *b, AblatePlan *plan) {
     ablate_step(plan, &context, &b->state.ablate);
 }
 
-/// m_min 0.15, m_loss 0.25, p = 0, mu = 1e-3 1/(K s), T_ign 500 K, constant density, the paper's shrinkage.
+/// m_min 0.15, m_loss 0.25, p = 0, mu = 1e-3 1/(K s), T_ign 500 K, constant density, the paper's shrinkage; its
+/// burning does not heat it.
 static inline SingeMaterialDef plain_material(void) {
     SingeMaterialDef material = singe_default_material();
     material.mass_min = singe_param(0.15f), material.char_yield = singe_param(0);
     material.mass_loss = singe_param(0.25f);
     material.ash_exponent = singe_param(0);
     material.mass_rate = singe_param(1e-3f);
+    material.heat_share = singe_param(0);
     material.rate_ceiling = material.air_supply = singe_param(INFINITY);
     material.ignition_temperature = singe_param(500);
     material.temperature = singe_param(300);

@@ -1,6 +1,7 @@
 // Eq 4 to 6 against their closed forms; ignition; determinism; the mass ledger.
 #include "ablate/burning_sheet.h"
 
+#include <math.h>
 #include <string.h>
 
 static SingeResult step(BurningSheet *b, Pool *pool, float h, float pace, float thickening) {
@@ -49,6 +50,31 @@ TEST(no_exponent_is_a_straight_line) {
     }
 
     burning_sheet_free(b);
+}
+
+/// How far the mass is off that heats itself by 2400 K for all that burns, after a second of steps of h:
+/// e = T - T_ign grows as exp(eta mu t).
+static double self_heated(float h) {
+    SingeMaterialDef material = plain_material();
+    material.heat_of_combustion = singe_param(2400 * 1400), material.heat_share = singe_param(1);
+    BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
+    heat_all(b, 520);
+    for (int n = 0; n < (int)lround(1 / (double)h); n++) {
+        assert_int_equal(step(b, NULL, h, 1, 1), SINGE_OK);
+        for (uint32_t i = 0; i < b->shell.particle_count; i++)
+            b->state.heat.temperature[i] += h * b->state.burn.release[i];
+    }
+
+    const double mass = (double)b->state.burn.mass[0], exact = 1 - 20 * (exp(2400 * 1e-3) - 1) / 2400;
+    burning_sheet_free(b);
+    return exact - mass;
+}
+
+/// Half the step is a quarter of the error; with the T of each step's beginning it is half, and ten times as much.
+TEST(fuel_heats_itself_to_second_order) {
+    const double coarse = self_heated(0.1f), fine = self_heated(0.05f);
+    print_message("off by %.2e and %.2e\n", coarse, fine);
+    assert_true(fabs(fine / coarse) < 0.3 && fabs(coarse) < 2e-3);
 }
 
 TEST(rate_stops_growing_at_its_ceiling) {

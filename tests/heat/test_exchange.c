@@ -76,12 +76,13 @@ TEST(one_step_of_losses_matches_the_formula) {
     rig_step(&rig);
 
     double capacity = 0.04 * 1400, rate = (14 + 0.9 * SIGMA * (900.0 + 293) * (900.0 * 900 + 293.0 * 293)) / capacity;
-    double after = (900 + 0.002 * rate * 293) / (1 + 0.002 * rate);
+    const double share = 0.002 * rate * (1 + 0.001 * rate);
+    double after = (900 + share * 293) / (1 + share);
     CHECK_NEAR(rig.state.heat.temperature[0], after, 1e-4);
 
     // exactly the loss by eps sigma (T^4 - Ta^4), to first order
     CHECK_NEAR((900 - after) / 0.002, -cooling(900, 1, 1), 0.005 * -cooling(900, 1, 1));
-    double lost = 0.002 * rate * (after - 293) * rig_content(&rig, 1) / ((double)rig.state.heat.temperature[0] - 293);
+    double lost = share * (after - 293) * rig_content(&rig, 1) / ((double)rig.state.heat.temperature[0] - 293);
     CHECK_NEAR(rig.state.heat.heat_lost, lost, 1e-4 * lost);
     rig_close(&rig);
 }

@@ -470,7 +470,7 @@ TEST(strong_sheets_tear_when_held_too_far_apart) {
 TEST(char_tears_before_paper_that_must_tear) {
     SingeSimDef def = pull_def();
     def.solver.substeps = 2;
-    def.pace = 10;
+    def.pace = 9;
     SingeSim *sim = pulled(&def, 500, 1, NULL, 0);
     for (int j = 0; j <= ACROSS; j++) test_spot(sim, 0.5f * ALONG * side, (float)j * side, 0, 6e-3f, 800, 40);
     test_steps(sim, STEPS);
