@@ -37,6 +37,10 @@ static inline uint32_t burn_run_end(uint32_t first, uint32_t last) {
     return last - first < FIELD_RUN ? last : first + FIELD_RUN;
 }
 
+/// The shares of the particles [begin, end) of a BurnJob that have become ash, in burn->burn_rate until burn_lose_mass
+/// overwrites it: several neighbours ask for each (glow.c).
+void burn_ash(void *job, int begin, int end);
+
 /// The share of the air that reaches hot char, stored in burn->release until burn_lose_mass overwrites it (glow.c).
 void burn_air(BurnJob *job, Pool *pool);
 

@@ -39,21 +39,28 @@ static const float GLOW_PRE_EXPONENTIAL = 5.667e9f; // 1/s
 static const float GLOW_CO = 2500, GLOW_CO_TEMPERATURE = 6240, GLOW_CO_HEAT = 0.28f;
 static const float GLOW_TEMPERATURE = 160e3f / 8.314462618f; // K, E/R
 
-/// The share of a particle that has become ash.
-static float glow_ash(const BurnJob *job, uint32_t i) {
-    const Matter *matter = &job->shell->matter;
-    float fuel = job->burn->fuel[i], min = field_at(matter->mass_min, i), yield = field_at(matter->char_yield, i);
-    return 1 - fuel - shell_char(job->burn->mass[i], fuel, min, yield);
-}
-
 static bool glow_is_gone(const BurnJob *job, uint32_t cell) {
     return cell == SHELL_NONE || !(job->state->ablate->cell_flags[cell] & SINGE_ALIVE);
+}
+
+void burn_ash(void *context, int begin, int end) {
+    const BurnJob *job = context;
+    const Matter *matter = &job->shell->matter;
+    const float *mass = job->burn->mass, *fuel = job->burn->fuel;
+    float *ash = job->burn->burn_rate;
+    for (int i = begin; i < end; i++) {
+        const uint32_t k = (uint32_t)i;
+        ash[i] = 0; // while there is all of the fuel
+        if (fuel[i] < 1)
+            ash[i] = shell_ash(mass[i], fuel[i], field_at(matter->mass_min, k), field_at(matter->char_yield, k));
+    }
 }
 
 /// s of a particle: (1 - f_n)^8 max(s_0, w), with w = 1 next to a cell that is gone, and at the border.
 static float glow_supply(const BurnJob *job, uint32_t i) {
     const Shell *shell = job->shell;
-    float ash = glow_ash(job, i), fuel = job->burn->fuel[i];
+    const float *ashes = job->burn->burn_rate;
+    float ash = ashes[i], fuel = job->burn->fuel[i];
     bool edge = false;
 
     if (shell_is_corner(shell, i)) {
@@ -68,14 +75,14 @@ static float glow_supply(const BurnJob *job, uint32_t i) {
             while (shell->cells[cell][k] != i) k++;
             edge = glow_is_gone(job, shell_neighbour(shell, cell, k)) ||
                    glow_is_gone(job, shell_neighbour(shell, cell, (k + 3) & 3));
-            if (!edge) ash = float_max(ash, glow_ash(job, centre));
+            if (!edge) ash = float_max(ash, ashes[centre]);
         }
     } else {
         uint32_t cell = i - shell->vertex_count;
         for (int k = 0; k < 4; k++) {
             uint32_t corner = shell->cells[cell][k];
             edge = edge || glow_is_gone(job, shell_neighbour(shell, cell, k));
-            if (!edge) ash = float_max(ash, glow_ash(job, corner));
+            if (!edge) ash = float_max(ash, ashes[corner]);
             fuel = float_max(fuel, job->burn->fuel[corner]);
         }
     }

@@ -351,6 +351,11 @@ static inline float shell_char(float mass, float fuel, float mass_min, float yie
     return share < 0 ? 0 : share > max ? max : share;
 }
 
+/// The share that has become ash, from the same.
+static inline float shell_ash(float mass, float fuel, float mass_min, float yield) {
+    return 1 - fuel - shell_char(mass, fuel, mass_min, yield);
+}
+
 /// Factor by which char burns and cools more slowly than the flame front: 1 while there is fuel, and always 1 if
 /// pyrolysis leaves no char (burn/glow.c).
 static inline float shell_glow_slowing(const Matter *matter, uint32_t i, float fuel) {
