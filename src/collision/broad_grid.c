@@ -59,10 +59,8 @@ static void clear_buckets(CollisionPlan *plan) {
 static inline float slab_gap(const CollisionSlab *a, const CollisionSlab *b) {
     Float4 n = a->normal;
     Float4 along = (b->x - a->x[0]) * n[0] + (b->y - a->y[0]) * n[1] + (b->z - a->z[0]) * n[2];
-    Float4 swapped = FLOAT4_SHUFFLE(along, along, 2, 3, 0, 1);
-    Float4 low = float4_min(along, swapped), high = float4_max(along, swapped);
-    float min = low[0] < low[1] ? low[0] : low[1], max = high[0] > high[1] ? high[0] : high[1];
-    return min - a->high > a->low - max ? min - a->high : a->low - max;
+    const float above = float4_smallest(along) - a->high, below = a->low - float4_largest(along);
+    return above > below ? above : below;
 }
 
 bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, float *distance) {

@@ -24,8 +24,9 @@ void ccd_mark_around(const Ccd *ccd, uint32_t v);
 
 /// Nodes of a cell on their displacement through the step.
 typedef struct Swept {
-    Float4 position[5], displacement[5], low[5], high[5]; ///< of nodes
-    NarrowBoxes boxes;
+    Float4 position[5], displacement[5]; ///< of nodes
+    Float4 low[5], high[5];              ///< boxes around what they pass over (ccd_pairs.c)
+    FourBoxes triangles, sides, spokes;
 } Swept;
 
 /// Nodes of the pair's cells, in a frame that moves with the first corner of a.

@@ -20,13 +20,21 @@ static void sweep_nodes(const Ccd *ccd, uint32_t c, Float4 origin, Float4 mean, 
     collision_nodes(corner, (const float(*)[4])ccd->plan->start, origin, out->position);
     collision_nodes(corner, (const float(*)[4])ccd->dynamics->position, origin + mean, end);
 
+    for (int i = 0; i < 5; i++) out->displacement[i] = end[i] - out->position[i];
+}
+
+/// Boxes around what the nodes pass over.
+static void sweep_boxes(Swept *cell) {
     for (int i = 0; i < 5; i++) {
-        out->displacement[i] = end[i] - out->position[i];
-        out->low[i] = float4_min(out->position[i], end[i]);
-        out->high[i] = float4_max(out->position[i], end[i]);
+        const Float4 end = cell->position[i] + cell->displacement[i];
+        cell->low[i] = float4_min(cell->position[i], end);
+        cell->high[i] = float4_max(cell->position[i], end);
     }
 
-    narrow_boxes(four_of(out->low), four_of(out->high), out->low[4], out->high[4], &out->boxes);
+    const FourVectors low = four_of(cell->low), high = four_of(cell->high);
+    cell->triangles = narrow_triangles(low, high, cell->low[4], cell->high[4]);
+    cell->sides = narrow_sides(low, high);
+    cell->spokes = narrow_spokes(low, high, cell->low[4], cell->high[4]);
 }
 
 static void note_hit(CollisionPair *pair, float hit, int kind, int i, int j) {
@@ -55,7 +63,7 @@ static int sweep_all_nodes(const Ccd *ccd, CollisionPair *pair, uint32_t c, cons
 
         // within one cell, the centroid is in all triangles
         unsigned meet = i < 4 ? 15 & ~narrow_around(same[i]) : pair->a == pair->b ? 0 : 15;
-        if (meet) meet &= four_meet(&q->boxes.triangles, p->low[i] - ccd->plan->gap, p->high[i] + ccd->plan->gap);
+        if (meet) meet &= four_meet(&q->triangles, p->low[i] - ccd->plan->gap, p->high[i] + ccd->plan->gap);
         for (; meet; meet &= meet - 1) {
             int j = __builtin_ctz(meet);
             const uint8_t *k = collision_triangle[j];
@@ -98,6 +106,7 @@ static int sweep_pair(const Ccd *ccd, CollisionPair *pair) {
         if (feature_is_apart(&hulls, margin, NULL)) return 0;
     }
 
+    sweep_boxes(&p), sweep_boxes(&q);
     count += sweep_all_nodes(ccd, pair, pair->a, &p, &q, of_b, COLLISION_NODE_OF_A, &plane);
     if (pair->a != pair->b) count += sweep_all_nodes(ccd, pair, pair->b, &q, &p, of_a, COLLISION_NODE_OF_B, &plane);
 
@@ -110,8 +119,8 @@ static int sweep_pair(const Ccd *ccd, CollisionPair *pair) {
         unsigned corners = of_b[k[0]] | (k[1] < 4 ? of_b[k[1]] : 0);
         Float4 low = float4_min(p.low[k[0]], p.low[k[1]]) - plan->gap;
         Float4 high = float4_max(p.high[k[0]], p.high[k[1]]) + plan->gap;
-        unsigned sides = four_meet(&q.boxes.sides, low, high) & plan->owned[pair->b] >> 4 & ~narrow_around(corners);
-        unsigned spokes = four_meet(&q.boxes.spokes, low, high) & ~corners;
+        unsigned sides = four_meet(&q.sides, low, high) & plan->owned[pair->b] >> 4 & ~narrow_around(corners);
+        unsigned spokes = four_meet(&q.spokes, low, high) & ~corners;
         if (pair->a == pair->b) { // each pair once
             sides &= 14u << i;
             spokes = i < 4 ? spokes : 0;

@@ -130,19 +130,19 @@ static void write_repulsion(const CollisionPlan *plan, const CollisionPair *pair
     out->a = pair->a;
     out->b = pair->b;
     for (int c = 0; c < 2; c++) {
-        int left = REPULSION_ONE, largest = 0;
-        for (int i = 0; i < 4; i++) {
-            out->weight[c][i] = (uint16_t)(REPULSION_ONE * (weight[c][i] > 0 ? weight[c][i] : 0) + 0.5f);
-            left -= out->weight[c][i];
-            if (weight[c][i] > weight[c][largest]) largest = i;
-        }
-        out->weight[c][largest] = (uint16_t)(out->weight[c][largest] + left);
+        const Float4 share = float4_load(weight[c]);
+        const Float4Mask whole =
+            __builtin_convertvector(REPULSION_ONE * float4_max(share, float4_all(0)) + 0.5f, Float4Mask);
+        const int left = REPULSION_ONE - (whole[0] + whole[1] + whole[2] + whole[3]);
+        const int largest = __builtin_ctz(float4_bits(share == float4_all(float4_largest(share))) | 8);
+        for (int i = 0; i < 4; i++) out->weight[c][i] = (uint16_t)whole[i];
+        out->weight[c][largest] = (uint16_t)(whole[largest] + left);
     }
 
-    for (int d = 0; d < 3; d++) {
-        const float along = REPULSION_UNIT * near->separation[d] / near->distance;
-        out->normal[d] = (int16_t)(along < 0 ? along - 0.5f : along + 0.5f);
-    }
+    const Float4 along = REPULSION_UNIT * near->separation / near->distance;
+    const Float4 half = float4_select(along < 0, float4_all(-0.5f), float4_all(0.5f));
+    const Float4Mask normal = __builtin_convertvector(along + half, Float4Mask);
+    for (int d = 0; d < 3; d++) out->normal[d] = (int16_t)normal[d];
 
     out->target = (uint16_t)(REPULSION_FULL * (keep / plan->thickness));
 }

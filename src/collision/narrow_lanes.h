@@ -45,11 +45,11 @@ static inline FourVectors four_turned(FourVectors a) {
 
 static inline float float4_smallest(Float4 a) {
     Float4 b = float4_min(a, FLOAT4_SHUFFLE(a, a, 2, 3, 0, 1));
-    return b[0] < b[1] ? b[0] : b[1];
+    return float4_min(b, FLOAT4_SHUFFLE(b, b, 1, 0, 3, 2))[0];
 }
 static inline float float4_largest(Float4 a) {
     Float4 b = float4_max(a, FLOAT4_SHUFFLE(a, a, 2, 3, 0, 1));
-    return b[0] > b[1] ? b[0] : b[1];
+    return float4_max(b, FLOAT4_SHUFFLE(b, b, 1, 0, 3, 2))[0];
 }
 static inline float float4_sum(Float4 a) { return (a[0] + a[1]) + (a[2] + a[3]); }
 
@@ -67,17 +67,17 @@ static inline unsigned four_meet(const FourBoxes *four, Float4 low, Float4 high)
     return float4_bits(meet);
 }
 
-typedef struct NarrowBoxes {
-    FourBoxes triangles, sides, spokes;
-} NarrowBoxes;
-
-/// Boxes of a cell whose corners and centroid are somewhere from `low` to `high`.
-static inline void narrow_boxes(FourVectors low, FourVectors high, Float4 centroid_low, Float4 centroid_high,
-                                NarrowBoxes *out) {
-    FourVectors min = four_all(centroid_low), max = four_all(centroid_high);
-    out->sides = (FourBoxes){four_min(low, four_turned(low)), four_max(high, four_turned(high))};
-    out->spokes = (FourBoxes){four_min(low, min), four_max(high, max)};
-    out->triangles = (FourBoxes){four_min(out->sides.low, min), four_max(out->sides.high, max)};
+/// Boxes around the sides, the lines to the centroid, and the triangles of a cell whose corners and centroid are somewhere
+/// from `low` to `high`.
+static inline FourBoxes narrow_sides(FourVectors low, FourVectors high) {
+    return (FourBoxes){four_min(low, four_turned(low)), four_max(high, four_turned(high))};
+}
+static inline FourBoxes narrow_spokes(FourVectors low, FourVectors high, Float4 centroid_low, Float4 centroid_high) {
+    return (FourBoxes){four_min(low, four_all(centroid_low)), four_max(high, four_all(centroid_high))};
+}
+static inline FourBoxes narrow_triangles(FourVectors low, FourVectors high, Float4 centroid_low, Float4 centroid_high) {
+    const FourBoxes sides = narrow_sides(low, high);
+    return narrow_spokes(sides.low, sides.high, centroid_low, centroid_high);
 }
 
 /// Bit k: triangle or side k has one of the corners `bits`.

@@ -85,40 +85,39 @@ void narrow_cell_set(const CollisionPlan *plan, const Shell *shell, uint32_t cel
     collision_nodes(shell->cells[cell], x, origin, out->node);
     out->corner = four_of(out->node);
     out->turned = four_turned(out->corner);
+    const Float4 *p = out->node; // the centroid lies between
+    out->low = float4_min(float4_min(p[0], p[1]), float4_min(p[2], p[3]));
+    out->high = float4_max(float4_max(p[0], p[1]), float4_max(p[2], p[3]));
     uint32_t owned = plan->owned[cell];
     out->owned = (owned & 15) | 16 | (owned >> 4) << 8 | 15u << 12;
-    out->boxed = false;
-}
-
-static void cell_boxes(NarrowCell *cell) {
-    if (cell->boxed) return;
-    cell->boxed = true;
-    narrow_boxes(cell->corner, cell->corner, cell->node[4], cell->node[4], &cell->boxes);
+    out->has_slab = out->has_triangles = false;
 }
 
 float narrow_boxes_distance(const NarrowCell *a, const NarrowCell *b) {
-    const Float4 *p = a->node, *q = b->node; // the centroids lie between
-    Float4 low_a = float4_min(float4_min(p[0], p[1]), float4_min(p[2], p[3]));
-    Float4 high_a = float4_max(float4_max(p[0], p[1]), float4_max(p[2], p[3]));
-    Float4 low_b = float4_min(float4_min(q[0], q[1]), float4_min(q[2], q[3]));
-    Float4 high_b = float4_max(float4_max(q[0], q[1]), float4_max(q[2], q[3]));
-    Float4 gap = float4_max(float4_max(low_b - high_a, low_a - high_b), float4_all(0));
+    Float4 gap = float4_max(float4_max(b->low - a->high, a->low - b->high), float4_all(0));
     return sqrtf(float4_dot(gap, gap));
 }
 
 /// As narrow_slabs_distance, for the planes through a's diagonals only.
-static float separation_along(const NarrowCell *a, const NarrowCell *b) {
-    Float4 normal = float4_cross(a->node[2] - a->node[0], a->node[3] - a->node[1]);
-    float square = float4_dot(normal, normal);
-    if (!(square > 0)) return -1;
+static float separation_along(NarrowCell *a, const NarrowCell *b) {
+    if (!a->has_slab) {
+        a->has_slab = true;
+        Float4 normal = float4_cross(a->node[2] - a->node[0], a->node[3] - a->node[1]);
+        float square = float4_dot(normal, normal);
+        a->length = square > 0 ? sqrtf(square) : 0;
+        a->normal = four_all(normal);
+        Float4 along = four_dot(a->normal, a->corner); // the centroid lies between
+        a->slab_low = float4_smallest(along);
+        a->slab_high = float4_largest(along);
+    }
 
-    FourVectors n = four_all(normal);
-    Float4 p = four_dot(n, a->corner), q = four_dot(n, b->corner); // the centroids lie between
-    float above = float4_smallest(p) - float4_largest(q), below = float4_smallest(q) - float4_largest(p);
-    return (above > below ? above : below) / sqrtf(square);
+    if (!(a->length > 0)) return -1;
+    Float4 along = four_dot(a->normal, b->corner);
+    float above = a->slab_low - float4_largest(along), below = float4_smallest(along) - a->slab_high;
+    return (above > below ? above : below) / a->length;
 }
 
-float narrow_slabs_distance(const NarrowCell *a, const NarrowCell *b) {
+float narrow_slabs_distance(NarrowCell *a, NarrowCell *b) {
     float one = separation_along(a, b), two = separation_along(b, a);
     return one > two ? one : two;
 }
@@ -168,13 +167,27 @@ static void narrow_note(Search *search, const FourNear *four, unsigned meet, int
     }
 }
 
-/// Nodes that p owns against triangles of q; bits of same[i] are the corners of q that are corner i of p.
-static void find_nodes(Search *search, const NarrowCell *p, const NarrowCell *q, const unsigned same[4], int kind) {
-    FourVectors centroid = four_all(q->node[4]);
-    for (int i = 0; i < 5; i++) {
-        if (!(p->owned >> i & 1)) continue;
+/// Bits of the nodes that are in the box from `low` to `high`.
+static inline unsigned nodes_within(const NarrowCell *cell, Float4 low, Float4 high) {
+    const FourVectors *p = &cell->corner;
+    Float4Mask in = (p->x >= float4_all(low[0])) & (p->x <= float4_all(high[0]));
+    in &= (p->y >= float4_all(low[1])) & (p->y <= float4_all(high[1]));
+    in &= (p->z >= float4_all(low[2])) & (p->z <= float4_all(high[2]));
+    Float4Mask centroid = (cell->node[4] >= low) & (cell->node[4] <= high);
+    return float4_bits(in) | (unsigned)((float4_bits(centroid) & 7) == 7) << 4;
+}
 
-        unsigned meet = four_meet(&q->boxes.triangles, p->node[i] - search->far, p->node[i] + search->far);
+/// Nodes that p owns against triangles of q; bits of same[i] are the corners of q that are corner i of p.
+static void find_nodes(Search *search, const NarrowCell *p, NarrowCell *q, const unsigned same[4], int kind) {
+    unsigned near = nodes_within(p, q->low - search->far, q->high + search->far) & p->owned;
+    if (!near) return;
+
+    if (!q->has_triangles) q->triangles = narrow_triangles(q->corner, q->corner, q->node[4], q->node[4]);
+    q->has_triangles = true;
+    FourVectors centroid = four_all(q->node[4]);
+    for (; near; near &= near - 1) {
+        const int i = __builtin_ctz(near);
+        unsigned meet = four_meet(&q->triangles, p->node[i] - search->far, p->node[i] + search->far);
         if (i < 4) meet &= ~narrow_around(same[i]);
         if (!meet) continue;
 
@@ -196,21 +209,25 @@ int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a
                      .listed = float4_all(far->listed * far->listed),
                      .adjacent = float4_all(far->adjacent * far->adjacent)};
 
-    cell_boxes(a), cell_boxes(b);
     find_nodes(&search, a, b, of_b, COLLISION_NODE_OF_A);
     find_nodes(&search, b, a, of_a, COLLISION_NODE_OF_B);
 
+    *nearest = sqrtf(float4_smallest(search.square));
+    if (!far->edges) return search.count;
+
     // edges that a owns against edges of b
     FourVectors centroid = four_all(b->node[4]);
-    for (int i = 0; far->edges && i < 8; i++) {
+    const FourBoxes sides_of_b = narrow_sides(b->corner, b->corner);
+    const FourBoxes spokes_of_b = narrow_spokes(b->corner, b->corner, b->node[4], b->node[4]);
+    for (int i = 0; i < 8; i++) {
         if (!(a->owned >> (8 + i) & 1)) continue;
 
         const uint8_t *k = collision_edge[i];
         unsigned corners = of_b[k[0]] | (k[1] < 4 ? of_b[k[1]] : 0);
         Float4 start = a->node[k[0]], end = a->node[k[1]];
         Float4 low = float4_min(start, end) - search.far, high = float4_max(start, end) + search.far;
-        unsigned sides = four_meet(&b->boxes.sides, low, high) & b->owned >> 8 & ~narrow_around(corners);
-        unsigned spokes = four_meet(&b->boxes.spokes, low, high) & ~corners;
+        unsigned sides = four_meet(&sides_of_b, low, high) & b->owned >> 8 & ~narrow_around(corners);
+        unsigned spokes = four_meet(&spokes_of_b, low, high) & ~corners;
 
         if (sides) {
             FourNear four = from_segments(four_all(start), four_all(end), b->corner, b->turned);

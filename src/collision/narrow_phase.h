@@ -8,9 +8,15 @@ typedef struct NarrowCell {
     Float4 node[5];     ///< fourth components are 0
     FourVectors corner; ///< 0 to 3
     FourVectors turned; ///< 1, 2, 3, 0
+    Float4 low, high;   ///< of the nodes
     uint32_t owned;     ///< bit i: the cell owns node i, the centroid included; bit 8 + i: edge i
-    bool boxed;         ///< narrow_features has set `boxes`
-    NarrowBoxes boxes;
+
+    // set when they are needed
+    bool has_slab, has_triangles;
+    FourVectors normal;        ///< four times, across the diagonals
+    float slab_low, slab_high; ///< of the corners along `normal`
+    float length;              ///< of it, or 0
+    FourBoxes triangles;       ///< boxes around them
 } NarrowCell;
 
 /// Two features and their nearest points.
@@ -31,7 +37,7 @@ void narrow_cell_set(const CollisionPlan *plan, const Shell *shell, uint32_t cel
 float narrow_boxes_distance(const NarrowCell *a, const NarrowCell *b);
 
 /// Lower bound by the slabs that they lie in; negative if slabs give no bound.
-float narrow_slabs_distance(const NarrowCell *a, const NarrowCell *b);
+float narrow_slabs_distance(NarrowCell *a, NarrowCell *b);
 
 /// m by which narrow_features may overestimate a distance of a feature of the cell, as it computes in float. Negligible
 /// except for slivers.
