@@ -26,7 +26,7 @@ static const Command commands[] = {
     {"verify", command_verify, &verify_command, "look",
      "finds faults in a cache: crossings, inverted cells, bad edges and values"},
     {"sweep", command_sweep, &sweep_command, "many",
-     "burns a scene many times with other parameters, here or on a farm"},
+     "burns a scene many times with different parameters, here or on a farm"},
     {"fit", command_fit, &fit_command, "many", "fits a scene's parameters to measurements"},
     {"replay", command_replay, &replay_command, "research",
      "repeats a recording of a run, and names the first step that differs"},

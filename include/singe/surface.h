@@ -60,7 +60,7 @@ typedef struct SingeRenderMeshDef {
     const uint32_t *triangles; ///< [3 * triangle_count] counter-clockwise seen from outside
     float reach;               ///< m, no vertex is farther from the sheet, >= 0; 0, the default: the side of a cell
     float edge_max; ///< m, longer edges are halved, >= 0; 0, the default, is half a side of a cell, which is the most
-    float rigid;    ///< m, parts that hang together and are at most this large keep their shape, as buttons do; 0: none
+    float rigid;    ///< m, connected parts up to this size keep their shape, as buttons do; 0: none
     bool beside;    ///< the sheet is drawn, too; false
     /// vertices are bound where the sheet has their uv, and lie on it there, wherever they are themselves: for meshes that
     /// were modelled elsewhere or in another pose; false. `reach` and `rigid` do not matter then

@@ -288,11 +288,11 @@ typedef struct SingeSolverDef {
     float regularisation[SINGE_COLOUR_COUNT];
     bool attachments; ///< strand: keeps vertices within their geodesic distance of the pins
     bool early_exit;  ///< paper, paper-literal, all-at-once: stops where the error is below tolerance of the lengths
-    float tolerance;  ///< 1e-12 to 1; the same: of the conjugate gradients and the early exit
+    float tolerance;  ///< 1e-12 to 1; the same methods: of the conjugate gradients and of the early exit
     float stiffness;  ///< N/m, 1e-6 to 1e9; mass-spring: of every spring
     /// 1/s, 0 to 1e6; internal friction: rate at which second differences of velocity along strands are lost
     float smoothing;
-    float smoothing_length; ///< m, 0 to 1000; distance of the nodes they are taken over; neighbours are always included
+    float smoothing_length; ///< m, 0 to 1000; distance between the nodes compared; at least that of neighbours
     /// 0 to 1; smallest height of a cell's centre over its corners, in thicknesses; 0 is off, and cells may be inverted
     float height_min;
     float height_gain; ///< 0 to 1; share of a height's error that is corrected in a substep
@@ -305,8 +305,8 @@ typedef struct SingeSolverDef {
     /// strand: yes: bending is the same in all directions of the mesh, for what drapes or curls and, with substeps: 0
     /// and curvature_max of 130 1/m for cells of 2 mm, folds off the mesh; no: softest along the diagonals
     bool isotropic;
-    /// 0 to 0.5; strand: share of what the springs moved a node in the last substep with which the next one starts: 0.4
-    /// takes a third or more off the strain of sheets that hang, swing or drape, or as much off their substeps
+    /// 0 to 0.5; strand: a substep starts with this share of what the springs moved each node in the last one; 0.4 cuts
+    /// the strain of sheets that hang, swing or drape by a third or more, or saves as many of their substeps
     float start;
 } SingeSolverDef;
 

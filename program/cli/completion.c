@@ -9,7 +9,7 @@
 
 const ArgCommand completion_command = {.name = "completion",
                                        .operand = "SHELL",
-                                       .summary = "Prints a script by which bash, zsh or fish complete commands, "
+                                       .summary = "Prints a script that lets bash, zsh or fish complete commands, "
                                                   "options and files.",
                                        .footer = "Packages install these scripts. Exit codes: 0 success, 2 bad input.",
                                        .examples = "eval \"$(singe completion bash)\"\n"

@@ -69,8 +69,8 @@ static const ArgOption convert_options[] = {
     {"to", 0, "FORMAT", "format to write (see docs/formats.md); may be repeated", .read = read_to},
     {"single", 0, NULL, "writes all frames into one file: `usd` or `glb`", .read = args_switch,
      offsetof(ConvertOptions, single)},
-    {"plain", 0, NULL, "does not pack a single GLB: for readers without EXT_meshopt_compression", .read = args_switch,
-     offsetof(ConvertOptions, plain)},
+    {"plain", 0, NULL, "leaves a single GLB uncompressed, for readers without EXT_meshopt_compression",
+     .read = args_switch, offsetof(ConvertOptions, plain)},
     {"set", 0, "PATH=VALUE", "sets a value of the scene (output.texture_size, gas.detail); may be repeated",
      .read = args_set, offsetof(ConvertOptions, sets)},
     {ARGS_FRAMES("writes", ", and no root file"), offsetof(ConvertOptions, frames)},
@@ -91,7 +91,7 @@ const ArgCommand convert_command = {
     "DIR",
     "Writes the frames of a cache in other formats, beside it.",
     ARGS_OPTIONS(convert_options),
-    "Existing frames are written again. Exit codes: 0 success, 1 failed or interrupted, 2 bad input.",
+    "Existing frames are overwritten. Exit codes: 0 success, 1 failed or interrupted, 2 bad input.",
     "singe convert out --to usd\n"
     "singe convert out --to glb --single\n"
     "singe convert out --to vtp --to textures --set output.texture_size=512\n"

@@ -20,7 +20,7 @@ static const ArgOption manual_options[] = {
 
 const ArgCommand manual_command = {"manual",
                                    "[COMMAND]",
-                                   "Prints the manual page of a command, or that of singe, for the program man.",
+                                   "Prints the manual page of a command, or of singe itself, for man.",
                                    ARGS_OPTIONS(manual_options),
                                    "Exit codes: 0 success, 1 a page could not be written, 2 bad input.",
                                    "singe manual run | man -l -\n"

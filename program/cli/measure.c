@@ -45,7 +45,7 @@ static const ArgOption measure_options[] = {
 
 const ArgCommand measure_command = {"measure",
                                     "DIR",
-                                    "Measures what a cache looks like: creases, wrinkles, jitter, embers, flames.",
+                                    "Measures the look of a cache: creases, wrinkles, jitter, embers, flames.",
                                     ARGS_OPTIONS(measure_options),
                                     "docs/cli.md describes the numbers. Exit codes: 0 success, 1 failed, 2 bad input.",
                                     "singe measure out\n"

@@ -47,7 +47,7 @@ const ArgCommand new_command = {
     "letter  a sheet of paper burns on a table\n"
     "cloth   a cloth hangs, and burns in the wind\n"
     "mesh    a sample mesh burns; replace it with yours\n"
-    "sweep   the letter burns many times with other parameters\n\n"
+    "sweep   the letter burns many times with different parameters\n\n"
     "Exit codes: 0 success, 1 a file could not be written, 2 bad input, or the file already exists.",
     "singe new letter\n"
     "singe new mesh -o lamp",
@@ -132,7 +132,7 @@ int command_new(int argc, char **argv) {
 const ArgCommand materials_command = {
     .name = "materials",
     .operand = "[MATERIAL]",
-    .summary = "Lists the built-in materials, or prints the file of one, to change it.",
+    .summary = "Lists the built-in materials, or prints one as a file that you can change.",
     .footer = "A scene names a material by `material: newsprint`, or a file by `material: mine.yaml`.\n"
               "Exit codes: 0 success, 2 bad input.",
     .examples = "singe materials\n"

@@ -320,8 +320,8 @@ SingeResult gas_detail_shape(const SingeGas *coarse, int detail, SingeGas *fine,
     for (int c = 0; c < 3; c++) fine->size[c] *= (uint32_t)detail;
     if (gas_shape_is_good(fine)) return SINGE_OK;
     return refuse(error, SINGE_ERROR_LIMIT, "gas", -1,
-                  "the gas with detail %d has %u x %u x %u cells: at most 4096 a side and %d in all are possible",
-                  detail, fine->size[0], fine->size[1], fine->size[2], GAS_CELL_LIMIT);
+                  "the gas with detail %d has %u x %u x %u cells: the limits are 4096 a side and %d in total", detail,
+                  fine->size[0], fine->size[1], fine->size[2], GAS_CELL_LIMIT);
 }
 
 SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Pictures *pictures, int detail,

@@ -36,7 +36,7 @@ typedef struct Verify {
 
 static const ArgOption verify_options[] = {
     {ARGS_FRAMES("reads", " [all]"), offsetof(Verify, frames)},
-    {"stretch", 0, "X", "edges longer than X times their length at rest are stretched [2]", .read = args_number,
+    {"stretch", 0, "X", "counts edges longer than X times their rest length as stretched [2]", .read = args_number,
      offsetof(Verify, stretch), 1, ARG_HIGHEST},
     {"csv", 0, "FILE", "also writes the counts of every frame to FILE", .read = args_text, offsetof(Verify, csv)},
 };
@@ -91,12 +91,12 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
         // what the run wrote about the frame besides its surface
         const StatsRow *stats = stats_table_row(&verify->stats, frame);
         if (verify->stats.rows && !stats)
-            findings_add(findings, FAULT_STATS, "stats.csv has no line of frame %d", frame);
+            findings_add(findings, FAULT_STATS, "stats.csv has no line for frame %d", frame);
         if (stats && stats->triangles != cache.triangle_count)
-            findings_add(findings, FAULT_STATS, "stats.csv has %.0f triangles, the frame %u", stats->triangles,
-                         cache.triangle_count);
+            findings_add(findings, FAULT_STATS, "stats.csv lists %.0f triangles, but the frame has %u",
+                         stats->triangles, cache.triangle_count);
         if (stats && !isnan(cache.time) && !(fabs(stats->time - cache.time) <= 1e-6 * fmax(1, fabs(cache.time))))
-            findings_add(findings, FAULT_STATS, "stats.csv has the time %.9g s, the frame %.9g s", stats->time,
+            findings_add(findings, FAULT_STATS, "stats.csv gives the time %.9g s, but the frame %.9g s", stats->time,
                          cache.time);
 
         if (stats && stats->inverted_cells != 0) {

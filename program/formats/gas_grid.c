@@ -109,8 +109,8 @@ SingeResult gas_copy(const SingeGas *gas, SingeAllocator allocator, Gas *copy, S
     *copy = (Gas){.allocator = allocator};
     if (!gas_shape_is_good(gas))
         return refuse(error, SINGE_ERROR_LIMIT, "gas", -1,
-                      "a gas of %u x %u x %u cells: at most 4096 a side and %d in all", gas->size[0], gas->size[1],
-                      gas->size[2], GAS_CELL_LIMIT);
+                      "a gas of %u x %u x %u cells: the limits are 4096 a side and %d in total", gas->size[0],
+                      gas->size[1], gas->size[2], GAS_CELL_LIMIT);
 
     size_t count = gas_cells(gas);
     if (!count) return SINGE_OK;

@@ -41,7 +41,7 @@ static SingeResult take_string(Parser *parser) {
     const uint8_t *begin = ++parser->at;
 
     for (; parser->at < parser->end && *parser->at != '"'; parser->at++) {
-        if (*parser->at < ' ') return json_bad(parser, "a string has a control character");
+        if (*parser->at < ' ') return json_bad(parser, "a string contains a control character");
         if (*parser->at == '\\' && parser->at + 1 < parser->end) parser->at++;
     }
 

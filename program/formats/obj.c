@@ -240,7 +240,7 @@ static SingeResult obj_finish(Obj *obj, Polygons *polygons) {
             if (!polygons->uv) continue;
             if (corner.uv < 0)
                 return obj_refuse_at(obj, SINGE_ERROR_MESH, obj->faces[f].line,
-                                     "a corner has no texture coordinate, though others have");
+                                     "a corner has no texture coordinate, but others have one");
             memcpy(polygons->uv + 2 * i, obj->uvs[corner.uv], 2 * sizeof *polygons->uv);
         }
     }

@@ -66,7 +66,7 @@ static SingeResult ply_header_name(Ply *ply, Word *word) {
     *word = ply_word(ply);
     if (word->begin == word->end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a name is missing");
     for (const uint8_t *p = word->begin; p < word->end; p++)
-        if (*p < 32 || *p == 127) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a name has a control character");
+        if (*p < 32 || *p == 127) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a name contains a control character");
     if (word->end - word->begin > 200) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a name is longer than 200 bytes");
     return SINGE_OK;
 }

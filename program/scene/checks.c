@@ -94,7 +94,7 @@ void finish_pin(Reader *reader, const YamlNode *map, void *object) {
     const YamlNode *path = node_find(map, "path"), *motion = node_find(map, "motion");
     check_times(reader, path, pin->keys, sizeof *pin->keys, pin->key_count);
     if (path && motion) complain(reader, motion->key_location, "'path' and 'motion' exclude each other; give one");
-    if (pin->holder && motion) complain(reader, motion->key_location, "a pin with a 'motion' has no 'holder'");
+    if (pin->holder && motion) complain(reader, motion->key_location, "a pin with 'motion' cannot have a 'holder'");
 }
 
 /// What the formats need of the sheets is known when those have been read.

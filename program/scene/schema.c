@@ -96,18 +96,17 @@ static const Schema schema_checkpoints = {
     .title = "checkpoints",
     .size = sizeof(SceneCheckpoints),
     ROWS(checkpoints_rows),
-    .doc =
-        "A run always keeps its last two checkpoints, to resume from. With more, a branch begins at once ([directing.md](directing.md)); otherwise it first simulates the earlier frames again."};
+    .doc = "A run always keeps its last two checkpoints, to resume from. With more, a branch begins at once "
+           "([directing.md](directing.md)); otherwise it first simulates the earlier frames again."};
 
 static const SchemaRow output_rows[] = {
     {"formats", ROW_FORMATS, DIM_NONE, AT(SceneOutput, formats),
-     .doc =
-         "formats of the frames, each in its own folder ([formats.md](formats.md)); `ply` is the cache, which is always "
-         "written"},
+     .doc = "formats of the frames, each in its own folder ([formats.md](formats.md)); `ply` is the cache, which is "
+            "always written"},
     {"events", ROW_BOOL, DIM_NONE, AT(SceneOutput, events),
      .doc = "`events.csv`: ignitions, holes and pieces that come free, with time and position"},
     {"texture_size", ROW_INT, DIM_NONE, AT(SceneOutput, texture_size), WITHIN(16, 8192),
-     .doc = "pixels a side of `textures`"},
+     .doc = "width and height of `textures` in pixels"},
 };
 static const Schema schema_output = {
     .title = "the output",
@@ -125,8 +124,8 @@ static const SchemaRow pace_rows[] = {
 static const Schema schema_pace = {.title = "a pace's entry",
                                    .size = sizeof(SingeValueKey),
                                    ROWS(pace_rows),
-                                   .doc =
-                                       "The pace of the fire at a time, interpolated linearly. Times must increase."};
+                                   .doc = "The pace of the fire at one time; between entries it is interpolated "
+                                          "linearly. Times must increase."};
 
 static const SchemaRow burn_by_rows[] = {
     {"fraction", ROW_FLOAT, DIM_FRACTION, AT(SceneBurnBy, fraction), .flags = ROW_REQUIRED, .min = 1e-3, .max = 1,
@@ -138,8 +137,8 @@ static const Schema schema_burn_by = {
     .title = "burn_by",
     .size = sizeof(SceneBurnBy),
     ROWS(burn_by_rows),
-    .doc =
-        "The pace follows the fire from frame to frame, between a thousandth and a thousand of `pace`, so that this share has burnt by that frame. From then on it is `pace` again."};
+    .doc = "Adjusts the pace from frame to frame, from a thousandth of `pace` to a thousand times `pace`, so that this "
+           "share has burnt by that frame. After it, the pace is `pace` again."};
 
 #define OF Scene
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \

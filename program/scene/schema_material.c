@@ -77,7 +77,7 @@ static const SchemaRow look_rows[] = {
 static const Schema schema_look = {.title = "a look",
                                    .size = sizeof(SceneMaterial),
                                    ROWS(look_rows),
-                                   .doc = "What pictures show of a material. It does not affect the simulation."};
+                                   .doc = "How a material looks in pictures. It does not affect the simulation."};
 
 static const SchemaRow material_rows[] = {
     {"base", ROW_BASE, DIM_NONE, .offset = 0, .flags = ROW_SHORT,

@@ -30,7 +30,7 @@ static const Schema schema_key = {
     .title = "a path's entry",
     .size = sizeof(SceneKey),
     ROWS(key_rows),
-    .doc = "A pose at a time. Positions are interpolated linearly. They are constant before the first entry and "
+    .doc = "A pose at one time. Positions are interpolated linearly. They are constant before the first entry and "
            "after the last. Times must increase."};
 
 static const SchemaRow strength_rows[] = {
@@ -42,7 +42,8 @@ static const Schema schema_strength = {
     .title = "a strength's entry",
     .size = sizeof(SingeValueKey),
     ROWS(strength_rows),
-    .doc = "The strength of a texture source at a time, interpolated linearly. Times must increase."};
+    .doc = "The strength of a texture source at one time; between entries it is interpolated linearly. Times must "
+           "increase."};
 
 static const SchemaRow motion_rows[] = {
     {"mesh", ROW_FILE, DIM_NONE, AT(SceneMotion, mesh), .flags = ROW_REQUIRED | ROW_NUMBERED,
@@ -85,26 +86,25 @@ static const Schema schema_grid = {.title = "a grid",
 
 static const SchemaRow render_mesh_rows[] = {
     {"mesh", ROW_FILE, DIM_NONE, AT(SceneRenderMesh, mesh), .flags = ROW_REQUIRED,
-     .doc = "a file of triangles, quads or polygons, in the same `units`, `up` and place as the sheet's own"},
+     .doc = "a file of triangles, quads or polygons, with the `units`, `up` and position of the sheet's own mesh"},
     {"reach", ROW_FLOAT, DIM_LENGTH, AT(SceneRenderMesh, reach), WITHIN(0, 1e4),
-     .doc = "no vertex is farther from the sheet; 0: the side of a cell"},
+     .doc = "largest distance of a vertex from the sheet; 0: the side of a cell"},
     {"edge", ROW_FLOAT, DIM_LENGTH, AT(SceneRenderMesh, edge_max), WITHIN(0, 1e4),
-     .doc = "longer edges are halved until they are not; 0: half the side of a cell, which is the most"},
+     .doc = "longer edges are halved until none is longer; 0: half the side of a cell, which is also the maximum"},
     {"rigid", ROW_FLOAT, DIM_LENGTH, AT(SceneRenderMesh, rigid), WITHIN(0, 1e4),
-     .doc = "parts that hang together and are at most this large keep their shape, as buttons do; 0: none"},
-    {"beside", ROW_BOOL, DIM_NONE, AT(SceneRenderMesh, beside), .doc = "the sheet is drawn, too"},
+     .doc = "connected parts up to this size keep their shape, as buttons do; 0: none"},
+    {"beside", ROW_BOOL, DIM_NONE, AT(SceneRenderMesh, beside), .doc = "yes: the sheet is drawn as well"},
     {"by_uv", ROW_BOOL, DIM_NONE, AT(SceneRenderMesh, by_uv),
-     .doc = "its vertices lie on the sheet where that has their uv, wherever the file has them: for meshes that were "
-            "modelled elsewhere or in another pose"},
+     .doc = "yes: each vertex lies where the sheet has the same uv, and its position in the file is ignored; for "
+            "meshes that were modelled elsewhere or in another pose"},
 };
 static const Schema schema_render_mesh = {
     .title = "a render mesh",
     .size = sizeof(SceneRenderMesh),
     ROWS(render_mesh_rows),
-    .doc =
-        "A mesh that is drawn in place of a sheet: finer, thick, with hems, seams and buttons "
-        "([render-meshes.md](render-meshes.md)). It is bound to the sheet by positions at rest or by uv, and burns and tears "
-        "with it."};
+    .doc = "A mesh that is drawn in place of a sheet: finer, thick, with hems, seams and buttons "
+           "([render-meshes.md](render-meshes.md)). It is bound to the sheet by positions at rest or by uv, and burns "
+           "and tears with it."};
 
 #define OF SceneSheet
 #define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
@@ -120,9 +120,10 @@ static const SchemaRow sheet_rows[] = {
     {"render_mesh", ROW_MAP, DIM_NONE, AT(SceneSheet, render_mesh), EXTRA(SceneSheet, render_mesh.given),
      .sub = &schema_render_mesh, .doc = "a mesh that is drawn in place of the sheet; the sheet itself by default"},
     {"picture", ROW_FILE, DIM_NONE, AT(SceneSheet, picture),
-     .doc = "PNG or JPEG, in the preview printed on the side from which it reads, on cloth on both"},
+     .doc = "PNG or JPEG that the preview prints on the side from which it reads the right way round; on cloth, on "
+            "both sides"},
     {"back", ROW_FILE, DIM_NONE, AT(SceneSheet, back),
-     .doc = "the same for the other side, as it reads from there; its left is behind the right of `picture`"},
+     .doc = "the same for the other side, as seen from there: its left edge lies behind the right edge of `picture`"},
     {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneSheet, colour), .length = 3, WITHIN(0, 1),
      .doc = "linear red, green, blue; tints the picture"},
     {"transmittance", ROW_FLOAT, DIM_FRACTION, AT(SceneSheet, transmittance), WITHIN(0, 1),
@@ -137,8 +138,8 @@ static const SchemaRow sheet_rows[] = {
      .doc = "vertices on open edges of the mesh that are this close are merged, whatever their uv; 0: 1/100000 of its "
             "size"},
     {"quads", ROW_ENUM, DIM_NONE, AT(SceneSheet, quads), .names = quads_names,
-     .doc =
-         "how triangles and polygons become quads: `pair` joins triangles two by two; `split` cuts every face of n corners into n quads with sides half as long"},
+     .doc = "how triangles and polygons become quads: `pair` joins triangles two by two; `split` cuts every face of n "
+            "corners into n quads with sides half as long"},
     {"rotate", ROW_VECTOR, DIM_ANGLE, AT(SceneSheet, rotate), .length = 3, TURN,
      .doc = "about x, then y, then z, after the scaling and `up`"},
     {"translate", ROW_VECTOR, DIM_LENGTH, AT(SceneSheet, translate), .length = 3, WITHIN(-9000, 9000),
@@ -219,8 +220,8 @@ static const SchemaRow collider_rows[] = {
      .doc = "unit of the mesh file's numbers: `m`, `cm`, `mm`, `in` or `ft`"},
     {"picture", ROW_FILE, DIM_NONE, AT(SceneCollider, picture), .kinds = BIT(SINGE_COLLIDER_HEIGHTFIELD),
      .flags = ROW_REQUIRED,
-     .doc =
-         "PNG or JPEG of the heights seen from above, x to the right and y up: a height at each pixel's centre, linear in between"},
+     .doc = "PNG or JPEG of the heights seen from above, x to the right and y up: a height at each pixel's centre, "
+            "linear in between"},
     {"heights", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, heights), .length = 2,
      .kinds = BIT(SINGE_COLLIDER_HEIGHTFIELD), WITHIN(-1e3, 1e3), .doc = "local z of black, and of white"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,

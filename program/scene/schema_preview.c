@@ -33,7 +33,7 @@ static const Schema schema_camera_key = {
     .title = "an entry of the camera's path",
     .size = sizeof(SceneCameraKey),
     ROWS(camera_key_rows),
-    .doc = "The camera at a time, in place of `camera`'s eye, target, focus and fov. It moves smoothly through the "
+    .doc = "The camera at one time, in place of `camera`'s eye, target, focus and fov. It moves smoothly through the "
            "entries, and stands still before the first and after the last. Times must increase."};
 
 static const Schema schema_camera = {.title = "the camera",
@@ -66,8 +66,7 @@ static const SchemaRow environment_rows[] = {
      .doc = "`even`: the same from everywhere above; `studio`: a dim room with a tall window across from the light and "
             "a lamp; `open`: a clear day"},
     {"picture", ROW_FILE, DIM_NONE, AT(ScenePreview, environment_picture),
-     .doc =
-         "PNG or JPEG of the whole surroundings, instead of a kind: twice as wide as high; its centre faces +y, its top is up"},
+     .doc = "PNG or JPEG panorama of the surroundings, twice as wide as high, instead of a kind; its centre faces +y"},
 #include "preview/preview.def"
 };
 static const Schema schema_environment = {
@@ -103,8 +102,8 @@ static const Schema schema_wall = {
     .title = "the wall",
     .size = sizeof(ScenePreview),
     ROWS(wall_rows),
-    .doc = "A vertical wall that is drawn behind the scene, for the light of the fire and for shadows. It is seen from "
-           "the side of the z axis only."};
+    .doc = "A vertical wall that is drawn behind the scene, for the light of the fire and for shadows. It is visible "
+           "from the side of the z axis only."};
 
 #define PREVIEW_MAIN PREVIEW_ROW
 static const SchemaRow preview_rows[] = {

@@ -31,14 +31,15 @@ static const ArgOption fit_options[] = {
      offsetof(SweepOptions, quiet)},
 };
 
-const ArgCommand fit_command = {"fit",
-                                "PLAN",
-                                "Finds the parameters with which a scene best matches measurements.",
-                                ARGS_OPTIONS(fit_options),
-                                "docs/sweep.md describes plans. The same command continues a fit that was stopped.\n"
-                                "Exit codes: 0 success, 1 a row failed or the fit was interrupted, 2 bad input.",
-                                "singe fit fit.yaml -o out",
-                                .operand_field = offsetof(SweepOptions, plan)};
+const ArgCommand fit_command = {
+    "fit",
+    "PLAN",
+    "Finds the parameters with which a scene best matches measurements.",
+    ARGS_OPTIONS(fit_options),
+    "docs/sweep.md describes plans. Repeat the command to continue a fit that was stopped.\n"
+    "Exit codes: 0 success, 1 a row failed or the fit was interrupted, 2 bad input.",
+    "singe fit fit.yaml -o out",
+    .operand_field = offsetof(SweepOptions, plan)};
 
 /// Changes of the coordinates in [0, 1] below this end the search.
 static const double parameter_tolerance = 1e-3;

@@ -26,9 +26,9 @@ static const ArgOption sweep_options[] = {
      offsetof(SweepOptions, no_preview)},
     {"print", 0, NULL, "prints a command for each unfinished row, and runs nothing", .read = args_switch,
      offsetof(SweepOptions, print)},
-    {"openjd", 0, NULL, "prints a job of Open Job Description, and runs nothing", .read = args_switch,
+    {"openjd", 0, NULL, "prints an Open Job Description job, and runs nothing", .read = args_switch,
      offsetof(SweepOptions, openjd)},
-    {"row", 0, "N", "runs only this row, as a job of a farm does", .read = args_int, offsetof(SweepOptions, row), 1,
+    {"row", 0, "N", "runs only this row; jobs on a farm use this", .read = args_int, offsetof(SweepOptions, row), 1,
      PLAN_ROWS_MAX},
     {"report", 0, NULL, "writes the report of the rows that are complete, and runs nothing", .read = args_switch,
      offsetof(SweepOptions, report)},
@@ -54,9 +54,9 @@ static bool sweep_check(const ArgCommand *command, void *options) {
 const ArgCommand sweep_command = {
     "sweep",
     "PLAN",
-    "Runs a scene many times with other parameters, and writes a report.",
+    "Runs a scene many times with different parameters, and writes a report.",
     ARGS_OPTIONS(sweep_options),
-    "docs/sweep.md describes plans. The same command continues a sweep that was stopped.\n"
+    "docs/sweep.md describes plans. Repeat the command to continue a sweep that was stopped.\n"
     "Exit codes: 0 all rows are complete, 1 a row failed or the sweep was interrupted, 2 bad input.",
     "singe sweep sweep.yaml -o out --jobs 4\n"
     "singe sweep sweep.yaml -o out --print\n"

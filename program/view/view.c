@@ -32,9 +32,10 @@ static const ArgOption view_options[] = {
 const ArgCommand view_command = {
     "view",
     "SCENE|DIR",
-    "Shows a burn in a browser: the cache in DIR, or SCENE while it burns, again each time its file is saved.",
+    "Shows a burn in a browser: the cache in DIR, or SCENE as it burns, restarted each time its file is saved.",
     ARGS_OPTIONS(view_options),
-    "The address works on this machine only; keep it secret. From another machine: ssh -L PORT:127.0.0.1:PORT and --port PORT.\nExit codes: 0 ended by Ctrl-C, 1 failed, 2 bad input.",
+    "The address works on this machine only; keep it secret. From another machine: ssh -L PORT:127.0.0.1:PORT and "
+    "--port PORT.\nExit codes: 0 ended by Ctrl-C, 1 failed, 2 bad input.",
     "singe view letter.yaml\n"
     "singe view out",
     .operand_field = offsetof(ViewOptions, what)};
