@@ -67,6 +67,9 @@ typedef enum Number {
     EMBER,
     PALE,
     LEMON,
+    FOOT,
+    FOOT_STRONG,
+    ASTRAY,
     NUMBERS
 } Number;
 
@@ -87,6 +90,9 @@ static const struct {
     [EMBER] = {"ember_width_mm", "width of the ember line in some frames, mm", "%.2f", true},
     [PALE] = {"flame_pale_percent", "flames nearly white in some frames, %", "%.1f", true},
     [LEMON] = {"flame_lemon_percent", "flames of one clipped yellow in some, %", "%.1f", true},
+    [FOOT] = {"flame_foot_p50_mm", "flames' feet from what burns, median mm", "%.1f", true},
+    [FOOT_STRONG] = {"flame_foot_p90_mm", "flames' feet from what burns, p90", "%.1f", true},
+    [ASTRAY] = {"flame_astray_percent", "flames before paper, on nothing, %", "%.1f", true},
 };
 
 /// Vertices of the input mesh that have not burnt, in one frame.
@@ -232,6 +238,7 @@ static void fill_row(const Wrinkles *frame, const Folds *folds, const Rim *rim, 
     row[CURL_STRONG] = rim_percentile(rim->curl, 0.9);
     row[CURL_MAX] = isnan(row[CURL]) ? (double)NAN : rim->curl_max;
     row[JITTER] = row[JITTER_COLD] = row[EMBER] = row[PALE] = row[LEMON] = (double)NAN;
+    row[FOOT] = row[FOOT_STRONG] = row[ASTRAY] = (double)NAN;
 }
 
 static SingeResult out_of_memory(SingeError *error) {
@@ -294,12 +301,17 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
         const uint8_t *rgb;
         result = pictures_ember_width(measure->embers, surface, read.time, &width, error);
         if (!result) result = frame_draw(&read, measure->flames, &rgb, error);
+        FlameFeet feet;
+        if (!result) result = pictures_flame_feet(measure->flames, surface, &feet, error);
 
         if (!result) {
             const FlameShares shares = pictures_flame_shares(measure->flames);
             row[EMBER] = 1e3 * width;
             row[PALE] = 100 * shares.pale;
             row[LEMON] = 100 * shares.lemon;
+            row[FOOT] = 1e3 * feet.median;
+            row[FOOT_STRONG] = 1e3 * feet.most;
+            row[ASTRAY] = 100 * feet.astray;
         }
     }
 

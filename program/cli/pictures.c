@@ -101,6 +101,7 @@ const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, co
     PreviewCamera camera;
     scene_camera(pictures->scene, time, &camera);
     camera.aperture = pictures->def.camera.aperture; // a picture to be measured is sharp
+    pictures->def.camera = camera;                   // measures look through it
 
     SingeResult result = preview_set_camera(pictures->preview, &camera, error);
     if (!result) result = preview_set_shapes(pictures->preview, pictures->shapes, count, error);
@@ -148,6 +149,11 @@ FlameShares pictures_flame_shares(const Pictures *pictures) {
     FlameShares shares;
     preview_flame_shares(&pictures->def, &pictures->layers, pictures->rgb, &shares);
     return shares;
+}
+
+SingeResult pictures_flame_feet(const Pictures *pictures, const SingeSurface *surface, FlameFeet *feet,
+                                SingeError *error) {
+    return preview_flame_feet(&pictures->def, &pictures->layers, pictures->rgb, surface, feet, error);
 }
 
 /// Ids as they are written: counted from 1, so that 0 is none.

@@ -37,6 +37,10 @@ SINGE_NODISCARD SingeResult pictures_ember_width(Pictures *pictures, const Singe
 /// How pale and flat the flames of the last frame drawn are.
 FlameShares pictures_flame_shares(const Pictures *pictures);
 
+/// How far they stand from what burns.
+SINGE_NODISCARD SingeResult pictures_flame_feet(const Pictures *pictures, const SingeSurface *surface, FlameFeet *feet,
+                                                SingeError *error);
+
 void pictures_size(const Pictures *pictures, int *width, int *height);
 void pictures_close(Pictures *pictures);
 

@@ -243,6 +243,16 @@ typedef struct FlameShares {
 /// From a frame's fire, beauty and pixels (fire_measure.c).
 void preview_flame_shares(const PreviewDef *def, const PreviewLayers *layers, const uint8_t *rgb, FlameShares *shares);
 
+/// How far the feet of flames are in the picture from what gives off fuel, m: the median and the 90th percentile; and the
+/// share of the flames before whole paper that stand on nothing. NaN where there is none.
+typedef struct FlameFeet {
+    double median, most, astray;
+} FlameFeet;
+
+/// From a frame's fire, beauty, depth, burn, sheet and pixels (fire_measure.c), and its surface.
+SINGE_NODISCARD SingeResult preview_flame_feet(const PreviewDef *def, const PreviewLayers *layers, const uint8_t *rgb,
+                                               const SingeSurface *surface, FlameFeet *feet, SingeError *error);
+
 /// A frame for a renderer elsewhere (pack.c has the layout): the sheets' fields as they are shaded here, the gas that is
 /// seen, the lamps. No ray is traced. Set its shapes and gas before. Free *bytes, from malloc.
 SINGE_NODISCARD SingeResult preview_pack(Preview *preview, const SingeSurface *surface, double time, uint8_t **bytes,

@@ -75,7 +75,8 @@ class Measure(Case):
         self.singe("run", letter, "-o", self.path("o"), "--no-preview", "--frames", "14",
                    *(word for value in sets for word in ("--set", value)))
         drawn, without = self.rows()[1], self.rows("--no-preview")[1]
-        seen = "ember_width_mm", "flame_pale_percent", "flame_lemon_percent"
+        seen = ("ember_width_mm", "flame_pale_percent", "flame_lemon_percent", "flame_foot_p50_mm", "flame_foot_p90_mm",
+                "flame_astray_percent")
         for name in seen:
             self.assertTrue(any(row[name] for row in drawn), name)
             self.assertFalse(any(row[name] for row in without), name)

@@ -70,6 +70,41 @@ TEST(only_sheets_count) {
     assert_true(isnan(measured(&frame)));
 }
 
+/// Flames as tongues of 6 x 30 mm, 20 mm apart, from `left` on, that begin `up` above a line of fuel 200 mm long through the
+/// middle of white paper.
+static FlameFeet feet_of(int left, int up) {
+    enum { VERTICES = 201, TONGUES = 5 };
+    static uint8_t rgb[HIGH * WIDE * 3];
+    static float beauty[HIGH * WIDE][3], fire[HIGH * WIDE][4], burn[HIGH * WIDE];
+    static float position[VERTICES][3], rate[VERTICES];
+    const PreviewDef def = camera_above();
+    memset(rgb, 0, sizeof rgb), memset(fire, 0, sizeof fire);
+    for (int i = 0; i < HIGH * WIDE; i++) {
+        frame.depth[i] = 1, frame.sheet[i] = 0;
+        beauty[i][0] = beauty[i][1] = beauty[i][2] = 1;
+    }
+    for (int v = 0; v < VERTICES; v++) position[v][0] = 1e-3f * (float)(v - VERTICES / 2), rate[v] = 1;
+    for (int i = 0; i < TONGUES * 6 * 30; i++) {
+        const int x = WIDE / 2 + left + 20 * (i / 180) + i % 6, y = HIGH / 2 - up - i % 180 / 6, at = y * WIDE + x;
+        memcpy(rgb + 3 * at, (const uint8_t[]){255, 180, 60}, 3);
+        fire[at][0] = fire[at][1] = fire[at][2] = 0.9f;
+    }
+
+    PreviewLayers layers = {.beauty = beauty, .fire = fire, .burn = burn, .depth = frame.depth, .sheet = frame.sheet};
+    const SingeSurface surface = {.vertex_count = VERTICES, .position = position, .burn_rate = rate};
+    FlameFeet feet;
+    assert_int_equal(preview_flame_feet(&def, &layers, rgb, &surface, &feet, NULL), SINGE_OK);
+    return feet;
+}
+
+/// Flames on what burns, above it, and beside it.
+TEST(feet_have_their_distance) {
+    const FlameFeet on = feet_of(-80, 1), above = feet_of(-80, 20), beside = feet_of(112, 1);
+    assert_true(on.median < 2e-3 && on.most < 2e-3 && on.astray == 0);
+    assert_true(fabs(above.median - 20e-3) < 2e-3 && above.astray == 0);
+    assert_true(beside.median > 40e-3 && beside.most > 80e-3 && beside.astray > 0.85); // one leans that far
+}
+
 /// Of a hundred rows twenty are pale, thirty lemon and fifty orange; white paper that a flame lights does not count.
 TEST(flames_have_their_shares) {
     static const uint8_t colours[4][3] = {{255, 245, 190}, {255, 240, 60}, {250, 150, 20}, {255, 250, 240}};
