@@ -47,8 +47,8 @@ static void find_roots(Preview *preview) {
 
     memset(fire->roots, 0, fire->cell_capacity * sizeof *fire->roots);
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
-        const float rate = scene->vertices[i].flaming;
-        if (rate < 0.02f) continue;
+        const float rate = scene->vertices[i].feeds;
+        if (rate < FLAMES_FROM) continue;
         const Float3 g = float3_scale(float3_sub(float3_load(scene->positions[i]), fire->origin), 1 / fire->cell);
         const float at[3] = {g.x, g.y, g.z};
         int low[3], high[3];
@@ -181,7 +181,8 @@ static void sway_cells(Fire *fire) {
                 fire_sway(fire, p, sway[2], sway);
                 FireCell *cell = &fire->cells[fire_at(fire, x, y, z)];
                 if (!(cell->flame > 0)) continue;
-                const float fed = fire_feed(fire, p, sway[2], cell->flame);
+                const float off = fire_leans(fire->apart[fire_at(fire, x, y, z)]);
+                const float fed = maxf(fire_feed(fire, p, sway[2], cell->flame) - off, 0);
                 cell->rise *= fed / cell->flame;
                 cell->flame = fed;
             }
@@ -262,6 +263,7 @@ void fire_raise(Preview *preview) {
     fire->visible = false;
     if (!fire->size[0]) return;
 
+    fire_find_feet(preview);
     find_roots(preview);
     root_cells(fire);
     raise_cells(preview);
@@ -305,6 +307,7 @@ static void free_cells(const Preview *preview, const Fire *fire) {
     allocator_resize(*allocator, fire->burns, fire->burns ? fire->cell_capacity : 0, 0);
     allocator_resize(*allocator, fire->source, fire->source ? fire->cell_capacity * sizeof *fire->source : 0, 0);
     allocator_resize(*allocator, fire->sway, fire->sway ? fire->cell_capacity * sizeof *fire->sway : 0, 0);
+    allocator_resize(*allocator, fire->apart, fire->apart ? fire->cell_capacity * sizeof *fire->apart : 0, 0);
     allocator_resize(*allocator, fire->roots, fire->roots ? fire->cell_capacity * sizeof *fire->roots : 0, 0);
 }
 
@@ -324,12 +327,13 @@ static bool make_room(const Preview *preview, Fire *fire) {
         fire->source = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->source);
         fire->sway = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->sway);
         fire->roots = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->roots);
+        fire->apart = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->apart);
         fire->cell_capacity = cells;
         fire->brick_capacity = bricks;
         free_cells(preview, &old);
     }
 
-    return fire->cells && fire->seen && fire->burns && fire->source && fire->sway && fire->roots;
+    return fire->cells && fire->seen && fire->burns && fire->source && fire->sway && fire->roots && fire->apart;
 }
 
 static SingeResult check_gas(const SingeGas *gas, SingeError *error) {

@@ -79,6 +79,7 @@ typedef struct Fire {
     uint8_t *seen;      ///< [bricks] FIRE_FLAME and FIRE_SMOKE that eddies may bring there
     float (*source)[4]; ///< [cells] displacement of the gas along x and y as it rises by one; its flame; its rise, m/s
     float (*roots)[4];  ///< [cells] rate at which paper burns around, and its place in cells times that
+    float *apart;       ///< [cells] m, how far aside of flames that stand on what burns
     float (*sway)[4]; ///< [cells] m, how far eddies move a flame along x and y; its height above the paper; 1 where it
                       ///< burns, one more for each cell from there, 0 beyond
     uint8_t *burns;   ///< [cells] whether flame may be within reach of the small eddies
@@ -95,6 +96,7 @@ typedef struct Fire {
 
 #define FIRE_SCALE_CELL 0.010f ///< m, cells above which flames are larger, in proportion
 #define FIRE_FINE_CELL 0.008f  ///< m, cells below which flames are smaller, in proportion
+#define FLAMES_FROM 0.02f      ///< 1/s, rate at which paper burns, from which on it gives flames
 #define FLAME_SEEN 0.15f       ///< a smaller value is outside of all flames
 #define FLAME_HEIGHT 0.08f     ///< m, typical height of tongues
 #define FLAME_END 0.30f        ///< m, max height of a flame
@@ -113,6 +115,13 @@ typedef struct Preview Preview;
 
 /// Corner (x, y, z) of the noise, each from 0 to FIRE_NOISE.
 static inline size_t fire_noise_at(int x, int y, int z) { return (size_t)(x + FIRE_CORNERS * (y + FIRE_CORNERS * z)); }
+
+// fire_feet.c
+/// Finds what feeds flames that are seen, and how far aside of these each cell is.
+void fire_find_feet(Preview *preview);
+
+/// What a flame loses where it is so far aside (m) of those that stand on what burns.
+float fire_leans(float apart);
 
 // fire.c
 void fire_free(Preview *preview);

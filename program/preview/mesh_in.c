@@ -62,12 +62,12 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
 
     const Ember ember = ember_at(surface, i, out->burn, rate);
     out->burn = ember.burn;
-    out->flaming = ember.flaming;
+    out->flaming = out->feeds = ember.flaming;
     out->starved = ember.starved;
 
     if (preview->def.plain) {
         out->temperature = out->peak = 293;
-        out->burn = out->burn_rate = out->flaming = out->starved = out->age = 0;
+        out->burn = out->burn_rate = out->flaming = out->feeds = out->starved = out->age = 0;
     }
 
     float *position = preview->scene.positions[i];
@@ -218,7 +218,7 @@ static SingeResult check_surface(const SingeSurface *surface, SingeError *error)
 
 SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError *error) {
     PreviewScene *scene = &preview->scene;
-    scene->vertex_count = scene->triangle_count = 0;
+    scene->vertex_count = scene->triangle_count = scene->bvh.triangle_count = 0;
     TRY(check_surface(surface, error));
 
     const uint32_t vertices = surface->vertex_count;

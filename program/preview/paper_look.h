@@ -22,6 +22,7 @@ typedef struct PaperVertex {
     float burn;          ///< apparent burnt share, 0 to 1
     float burn_rate;     ///< 1/s
     float flaming;       ///< 1/s, the part of it that feeds a flame: 0 where char glows
+    float feeds;         ///< 1/s, of that, what feeds a flame that no sheet covers
     float starved;       ///< 1/s, that part where there is char, which the flame keeps from air
     float gradient;      ///< 1/m, of burn in rest space
     int32_t sheet;       ///< -1: none

@@ -97,7 +97,34 @@ TEST(feet_are_over_what_burns) {
 
     print_message("feet: %.3f of the light is over what gives off no fuel\n",
                   (double)(light[1] / (light[0] + light[1])));
-    assert_true(light[1] < 0.12f * (light[0] + light[1])); // .47
+    assert_true(light[1] < 0.06f * (light[0] + light[1])); // .47
+}
+
+/// Paper that burns below a whole sheet has no flames above that, though the gas burns there. Flames stood on the clean
+/// letters of examples/stack. Where the upper sheet has burnt, they are seen through it.
+TEST(no_flame_stands_on_a_sheet_that_covers_it) {
+    enum { FRAMES = 3, ABOVE = 5, HIGH = 30, COVER = 2 * WIDE }; // mm up
+    static float fire[W * H][4], mean[H][4];
+    float light[2] = {0, 0};
+
+    line_make(&line, 0.003f), burning_make(&paper);
+    for (int v = 0; v < 4 * WIDE; v++) paper.rate[v] = paper.position[v][0] < 0;
+    for (int v = COVER; v < COVER + 4; v++) {
+        const float aside = v - COVER == 0 || v - COVER == 3 ? -0.08f : 0.08f, back = v < COVER + 2 ? -0.03f : 0.03f;
+        memcpy(paper.position[v], (float[3]){aside, back, 0.004f}, sizeof paper.position[v]);
+        paper.rate[v] = 0;
+    }
+    for (int burnt = 0; burnt < 2; burnt++) {
+        for (int v = COVER; v < COVER + 4; v++) paper.burn[v] = (float)burnt;
+        for (int k = 0; k < FRAMES; k++) {
+            see_line(&paper.surface, &line.gas, 0.3 + k / 6.0, fire, mean, 1);
+            for (int i = (H - 1 - HIGH) * W; i < (H - ABOVE) * W; i++) light[burnt] += luminance(fire[i]);
+        }
+    }
+
+    print_message("cover: %.1f of light over a whole sheet, %.1f over a burnt one\n", (double)light[0],
+                  (double)light[1]);
+    assert_true(light[1] > 100 && light[0] < 0.02f * light[1]);
 }
 
 /// Flames behind each other, as over a bed of fire that is seen from low, are no comb of vertical stripes: their light changes
@@ -493,7 +520,7 @@ TEST(bad_gas_is_refused) {
         if (result) assert_int_equal(error.code, SINGE_ERROR_MEMORY);
     }
 
-    assert_in_range(needed, 1, 8);
+    assert_in_range(needed, 1, 9);
     preview_destroy(preview);
     test_allocator_check(&allocator);
 }
