@@ -16,7 +16,7 @@ import write_types
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 FILE = ROOT / "web/view/look.js"
-CONSTANTS = ("ember.h", "paper_look.h", "fire.h", "shade_paper.c", "fire_shade.c", "fire_march.c", "airborne.c", "sparks.c", "light.h", "fire.c",
+CONSTANTS = ("ember.h", "paper_look.h", "fire.h", "shade_paper.c", "fire_shade.c", "fire_march.c", "airborne.c", "sparks.c", "light.h", "fire.c", "fire_feet.c",
              "shade_ground.c", "shade_metal.c")
 PARTS = {
     "PAPER": {

@@ -17,6 +17,8 @@ export interface Fire {
     cells: Uint8Array;
     /** what burns in each cell, whatever eddies do, until the next fire is made; none once it is refined */
     burns: Float32Array;
+    /** how far aside of flames that stand on what burns, m (fire_feet.c), as long */
+    apart: Float32Array;
     /** box of what is not empty, m; null if nothing is */
     bounds: { low: [number, number, number]; high: [number, number, number] } | null;
 }
@@ -67,6 +69,38 @@ function rootsOf(gas: Gas, surface: Surface): Float32Array {
     return roots;
 }
 
+/** How far each cell is aside of flames that stand on what burns and lean, m; and the flames of what burns itself (fire_feet.c). */
+function feetOf({ size, cell, origin }: Gas, surface: Surface, power: Float32Array): Float32Array {
+    const [nx, ny, nz] = size, apart = zeros("apart", nx * ny * nz).fill(1), reach = LOOK.LEAN_REACH / cell, burning = new Map<number, number[]>();
+    for (let i = 0; i < surface.vertex_count; i++) {
+        const rate = surface.burn_rate[i]!;
+        if (rate < LOOK.FLAMES_FROM || surface.mass[i]! - surface.char_fraction[i]! - surface.ash_fraction[i]! < 0.01) continue;
+        const at = [0, 1, 2].map((c) => (surface.position[3 * i + c]! - origin[c]!) / cell - 0.5), key = at.reduce((sum, x) => 8192 * sum + clamp(Math.round(2 * x), -9, 8000) + 9, 0);
+        if (rate > (burning.get(key)?.[0] ?? 0)) burning.set(key, [rate, ...at]); // in half a cell one stands for all
+    }
+    if (!burning.size) return apart.fill(0);
+    for (const [rate, gx, gy, gz] of burning.values() as Iterable<[number, number, number, number]>) {
+        const own = LOOK.RIM_FLAME * step(LOOK.RIM_LOW, LOOK.RIM_HIGH, rate), toX = Math.min(Math.floor(gx + reach), nx - 1), toY = Math.min(Math.floor(gy + reach), ny - 1);
+        for (let z = Math.max(Math.ceil(gz) - 3, 0); z <= Math.min(Math.floor(gz + 3), nz - 1); z++)
+            for (let y = Math.max(Math.ceil(gy - reach), 0); y <= toY; y++)
+                for (let x = Math.max(Math.ceil(gx - reach), 0); x <= toX; x++) {
+                    const i = x + nx * (y + ny * z), aside = (x - gx) * (x - gx) + (y - gy) * (y - gy), up = z - gz;
+                    apart[i] = Math.min(apart[i]!, cell * (Math.sqrt(aside) - (up > 0 ? LOOK.LEAN * up : LOOK.LEAN_BELOW * Math.min(up + LOOK.BELOW_FREE, 0))));
+                    if (aside > LOOK.RIM_REACH * LOOK.RIM_REACH || z + 2 >= nz) continue;
+                    const over = up > 0 ? LOOK.RIM_UP * up : LOOK.RIM_BELOW * up, above = Math.max(power[i + nx * ny]!, power[i + 2 * nx * ny]!);
+                    power[i] = Math.max(power[i]!, Math.min(above, own * (1 - Math.sqrt(aside + over * over) / LOOK.RIM_REACH)));
+                }
+    }
+    for (let z = 1; z < nz; z++)
+        for (let y = 0, i = nx * ny * z; y < ny; y++)
+            for (let x = 0; x < nx; x++, i++) {
+                const under = i - nx * ny, left = x > 0 ? apart[under - 1]! : 1, right = x + 1 < nx ? apart[under + 1]! : 1;
+                const aside = Math.min(left, right, y > 0 ? apart[under - nx]! : 1, y + 1 < ny ? apart[under + nx]! : 1);
+                apart[i] = Math.min(apart[i]!, Math.min(apart[under]!, aside + cell) - LOOK.LEAN * cell);
+            }
+    return apart;
+}
+
 /** Near paper the gas is too rich to burn: flames that begin a few cells above what burns come down to it. */
 function comeDown([nx, ny, nz]: Fire["size"], roots: Float32Array, power: Float32Array): void {
     for (let z = nz - 2; z >= 0; z--)
@@ -84,6 +118,7 @@ export function fireOf(gas: Gas, surface: Surface, time: number): Fire {
     const thin = Math.max(gas.cell / LOOK.FLAME_THICK, 1), scale = flameScale(gas.cell), roots = rootsOf(gas, surface);
     const cells = new Uint8Array(4 * count), burns = zeros("burns", count), known = new Uint8Array(count), index = (x: number, y: number, z: number) => x + nx * (y + ny * z);
     for (let i = 0; i < count; i++) power[i] = thin * gas.flame[i]! > FLAME_LOW ? Math.min(Math.log((thin * gas.flame[i]!) / FLAME_LOW) / FLAME_RANGE, 1) : 0;
+    const apart = feetOf(gas, surface, power);
     comeDown(gas.size, roots, power);
 
     // height times flame, layer by layer: where the gas came from, at (x - vx/vz, y - vy/vz) below; over paper mostly its
@@ -130,12 +165,12 @@ export function fireOf(gas: Gas, surface: Surface, time: number): Fire {
             }
     }
     spreadHeight(gas.size, cells, known, 1 + Math.floor((scale * LOOK.FIRE_SWAY) / gas.cell), (255 * gas.cell) / (FLAME_END * scale));
-    const fire = { size: gas.size, origin: gas.origin, cell: gas.cell, scale, cells, burns };
+    const fire = { size: gas.size, origin: gas.origin, cell: gas.cell, scale, cells, burns, apart };
     return { ...fire, bounds: feed(fire, (i) => rise[i]! / flame[i]!, time % 1000) };
 }
 
 /** What eddies add and take, by the height of each flame. Returns the box of what is seen. */
-function feed({ size, origin, cell, scale, cells, burns }: Omit<Fire, "bounds">, height: (i: number) => number, time: number): Fire["bounds"] {
+function feed({ size, origin, cell, scale, cells, burns, apart }: Omit<Fire, "bounds">, height: (i: number) => number, time: number): Fire["bounds"] {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     for (let z = 0, i = 0; z < size[2]; z++)
         for (let y = 0; y < size[1]; y++)
@@ -143,6 +178,7 @@ function feed({ size, origin, cell, scale, cells, burns }: Omit<Fire, "bounds">,
                 let f = burns[i]!;
                 if (f > 0) {
                     f = fed(origin[0] + (x + 0.5) * cell, origin[1] + (y + 0.5) * cell, origin[2] + (z + 0.5) * cell, height(i), f, time, scale);
+                    f = Math.max(f - LOOK.LEAN_FALLS * Math.max(apart[i]! - LOOK.LEAN_FOOT, 0), 0);
                     cells[4 * i] = Math.min((255 / LOOK.FLAME_MOST) * f, 255);
                 }
                 if (f <= LOOK.FLAME_SEEN && cells[4 * i + 2]! < 2) continue;
