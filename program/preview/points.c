@@ -9,19 +9,26 @@ void sample_offset(int sample, float at[2]) {
     for (int c = 0; c < 2; c++) at[c] = 0.9f * (at[c] < 0.5f ? sqrtf(2 * at[c]) - 1 : 1 - sqrtf(2 - 2 * at[c]));
 }
 
+// What is spread over few pixels is the mean of sharp pictures, which lie closer than a pixel, if all pixels have the same
+// points of the lens and of time: its edges are smooth. With points of their own their pixels would differ, like teeth. What
+// is spread over many pixels needs these: the pictures would be seen.
+#define TURNED_LENS 1.5f ///< pixels
+#define TURNED_TIME 4.0f ///< pixels: their times lie along a line
+
 void block_aim(const Preview *preview, Block *block, int sample, const float at[2]) {
     bool lens = preview->camera.lens > 0 && sample >= 0, shutter = preview->def.shutter > 0 && sample >= 0;
+    const bool turned = block->spread > TURNED_LENS, late = block->spread > TURNED_TIME;
     for (int i = 0; i < LANES; i++) {
         float x = 2 * ((float)block->x[i] + 0.5f + at[0]) / (float)preview->def.width - 1;
         float y = 1 - 2 * ((float)block->y[i] + 0.5f + at[1]) / (float)preview->def.height;
         float square[2], disc[2] = {0, 0};
         if (lens) {
-            sample_lens((uint32_t)sample, block->key[i], square);
+            sample_lens((uint32_t)sample, turned ? block->key[i] : 0, square);
             sample_disc(square, disc);
         }
 
         camera_ray(&preview->camera, x, y, disc, &block->origin[i], &block->direction[i]);
-        block->time[i] = shutter ? sample_time((uint32_t)sample, block->key[i]) : 0.5f;
+        block->time[i] = shutter ? sample_time((uint32_t)sample, late ? block->key[i] : 0) : 0.5f;
     }
 }
 

@@ -10,7 +10,9 @@
 
 #include <string.h>
 
-static const float CALM = 0.026f; ///< range of a pixel's first samples, as l / (1 + l), that needs no more of them
+static const float CALM = 0.026f;  ///< range of a pixel's first samples, as l / (1 + l), that needs no more of them
+static const float UNEVEN = 0.15f; ///< range of a block's, beyond which its pixels need more
+static const float BLURRED = 0.3f; ///< the same where lens and shutter spread what is seen: all pixels get all samples
 
 static void store(float (*layer)[3], size_t pixel, Float3 value) {
     if (layer) float3_store(layer[pixel], value);
@@ -158,24 +160,32 @@ static bool is_beside_edge(const Block *block, int lane) {
     return false;
 }
 
-/// The lanes whose first samples differ by more than `calm`, or from their neighbours'. Returns how many.
-static int find_restless(const Block *block, const int *active, float calm, int *more) {
-    int count = 0, hits = 0, samples = 0;
+/// How much the samples of all pixels differ.
+static float block_range(const Block *block) {
     float low = INFINITY, high = -INFINITY;
     for (int i = 0; i < LANES; i++) {
         low = minf(low, block->low[i]);
         high = maxf(high, block->high[i]);
+    }
+    return high - low;
+}
+
+/// The lanes whose first samples differ by more than `calm`, or from their neighbours'. Returns how many.
+static int find_restless(const Block *block, const int *active, float calm, int *more) {
+    int count = 0, hits = 0, samples = 0;
+    const float range = block_range(block);
+    for (int i = 0; i < LANES; i++) {
         hits += block->layer[i].hits;
         samples += block->layer[i].samples;
     }
 
     // where what is blurred ends, few samples agree by chance
-    const bool ends = block->spread > 2 && hits > 0 && hits < samples;
+    const bool ends = block->spread > 1 && hits > 0 && hits < samples;
 
     for (int i = 0; i < LANES; i++) {
-        bool rests = !is_edge(&block->layer[i]) && block->high[i] - block->low[i] < calm;
+        bool rests = !is_edge(&block->layer[i]) && block->high[i] - block->low[i] < calm && range < UNEVEN;
         if (block->spread > 1) rests = rests && !ends && block->high[i] - block->low[i] < 0.7f * calm;
-        else rests = rests && !is_beside_edge(block, i) && high - low < 0.15f;
+        else rests = rests && !is_beside_edge(block, i);
         more[i] = active[i] && !rests ? -1 : 0;
         count += more[i] != 0;
     }
@@ -201,9 +211,10 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
     for (int s = first; s < samples && on; s++) {
         // after half of the samples: only lanes whose samples still differ visibly; soften.c smooths what lenses blur
         if (s == samples / 2) {
+            const bool blurred = block->spread > 1 && block_range(block) > BLURRED;
             on = false;
             for (int i = 0; i < LANES; i++) {
-                if (more[i] && !is_edge(&block->layer[i]) && block->high[i] - block->low[i] < 0.22f) {
+                if (more[i] && !blurred && !is_edge(&block->layer[i]) && block->high[i] - block->low[i] < 0.22f) {
                     more[i] = 0;
                     taken[i] = s;
                 }
