@@ -35,7 +35,7 @@ PARTS = {
     "FLAME": {
         "calls": ["Noise noise_at(vec3 q);", "FireCell cell_at(vec3 p);"],
         "structs": {"fire.h": ["FireCell", "FirePoint", "Matter", "Smoke"], "fire_shade.c": ["Noise"]},
-        "functions": {"fire_shade.c": ["eddies_passed", "eddies", "fire_sway", "shade_flame", "fire_between", "fire_smoke_at", "fold_sum", "fire_smoke_between"]},
+        "functions": {"fire_shade.c": ["eddies_passed", "eddies", "fire_sway", "shade_flame", "fire_between", "fire_smoke_at", "fold_sum", "fold_sum_twice", "fire_smoke_between"]},
     },
 }
 TYPES = {"Float3": "vec3", "uint32_t": "float", "int32_t": "float", "int": "float"}

@@ -33,6 +33,7 @@
 #define FIRE_PASSING 0.75f ///< share of the gas over burning paper that came from flames below
 #define SMOKE_COLD 450.0f  ///< K: what is colder is all smoke
 #define SMOKE_HOT 650.0f   ///< K: what is hotter is none yet
+#define SMOKE_LEAVES 0.25f ///< of the gas's height, from the top down, in which smoke fades: there the gas is cut
 
 static size_t fire_at(const Fire *fire, int x, int y, int z) {
     return (size_t)x + (size_t)fire->size[0] * ((size_t)y + (size_t)fire->size[1] * (size_t)z);
@@ -424,7 +425,8 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
     const float thin = maxf(gas->cell / FLAME_THICK, 1);
     size_t from = 0;
 
-    for (uint32_t z = 0; z < gas->size[2]; z++)
+    for (uint32_t z = 0; z < gas->size[2]; z++) {
+        const float below = (float)(gas->size[2] - z) / (float)gas->size[2], left = stepf(0, SMOKE_LEAVES, below);
         for (uint32_t y = 0; y < gas->size[1]; y++)
             for (uint32_t x = 0; x < gas->size[0]; x++, from++) {
                 size_t to = fire_at(fire, (int)x + FIRE_BORDER, (int)y + FIRE_BORDER, (int)z + FIRE_BORDER);
@@ -433,9 +435,10 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
                 fire->source[to][2] = flame > FLAME_LOW ? minf(logf(flame / FLAME_LOW) / range, 1) : 0;
                 fire->source[to][3] = up;
                 const float cold = gas->temperature ? 1 - stepf(SMOKE_COLD, SMOKE_HOT, gas->temperature[from]) : 1;
-                fire->cells[to].smoke = smoke > 0 ? cold * GAS_EXTINCTION * smoke : 0;
+                fire->cells[to].smoke = smoke > 0 ? left * cold * GAS_EXTINCTION * smoke : 0;
                 for (int c = 0; c < 2; c++) fire->source[to][c] = clampf(gas->velocity[from][c] / up, -1, 1);
             }
+    }
 
     return SINGE_OK;
 }

@@ -37,6 +37,7 @@ typedef struct Smoke {
     Float3 light; ///< radiance that it scatters, per unit of extinction
     float dense;  ///< 1/m, extinction in the middle of a fold
     float fold;   ///< 0 there
+    float old;    ///< 0 at the fire to 1 far from it, where folds have spread
 } Smoke;
 
 /// The steps of a ray from `from` to `distance`: after a step, `light` has been added and `clear` is the transmittance.

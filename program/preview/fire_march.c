@@ -27,7 +27,10 @@ typedef struct SmokeLine {
 } SmokeLine;
 
 static Smoke smoke_mix(const Smoke *a, const Smoke *b, float part) {
-    return (Smoke){float3_mix(a->light, b->light, part), mixf(a->dense, b->dense, part), mixf(a->fold, b->fold, part)};
+    return (Smoke){.light = float3_mix(a->light, b->light, part),
+                   .dense = mixf(a->dense, b->dense, part),
+                   .fold = mixf(a->fold, b->fold, part),
+                   .old = mixf(a->old, b->old, part)};
 }
 
 /// The smoke of a place of one of the rays that have it.

@@ -71,8 +71,8 @@
 #define GROUP 0.2f
 #define GROUP_UNLIKE 1.1f   ///< octaves
 #define FED_WHOLLY 0.3f     ///< what burns less gains and loses less
-#define SMOKE_SEEN_AS 40.0f ///< times its extinction, in the middle of a fold; what lies between folds is clear
-#define SMOKE_FULL 0.9f     ///< 1/m, from which on it is wholly
+#define SMOKE_SEEN_AS 60.0f ///< times its extinction, in the middle of a fold; what lies between folds is clear
+#define SMOKE_FULL 0.6f     ///< 1/m, from which on it is wholly
 #define SMOKE_FILLS 0.03f   ///< m: dense smoke has less clear air
 #define SMOKE_EDDY 0.032f   ///< m across
 #define SMOKE_SMALL 0.53f   ///< of that
@@ -80,8 +80,13 @@
 #define SMOKE_FOLD 0.055f   ///< width of a fold's sharp side, of the noise whose zeros folds are
 #define SMOKE_SOFT 2.0f     ///< times as wide is the other one
 #define SMOKE_GREY 0.09f    ///< light of flames, of which smoke is half as warm as they are
-#define SMOKE_FAR 0.15f     ///< light of flames, from which on smoke is amid them and less of it is left
-#define SMOKE_NEAR 0.6f     ///< none
+#define SMOKE_SOFTEST 8.0f  ///< far from the fire
+#define SMOKE_WIDENS 1.0f   ///< by which the sharp side is wider there
+#define SMOKE_THINS 2.0f    ///< by which its middle is thinner there
+#define SMOKE_CALM 0.5f     ///< of what eddies move, they do there
+#define SMOKE_FINE 0.65f    ///< of folds, the share of small eddies at the fire
+#define SMOKE_COARSE 0.45f  ///< and far from it
+#define SMOKE_DARK 0.4f     ///< light of flames, of which fresh smoke, which is brown, swallows half
 #define SMOKE_SLOW 0.4f     ///< m/s, at which wide eddies rise
 #define SMOKE_SPEED 0.5f    ///< m/s, small ones
 
@@ -395,49 +400,67 @@ FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
     return point;
 }
 
-/// Smoke lies in thin folds, where a noise is 0, in some of the wide eddies and not in others: between them the air is
-/// clear. Wide eddies rise slower than small ones, so that folds bend and curl as they pass. Flames burn smoke, so it
-/// begins at their tips. Firelight comes from below and is less warm where it is faint, daylight comes from above.
+/// Smoke lies in folds, where a noise is 0, in some of the wide eddies and not in others: between them the air is clear. Wide
+/// eddies rise slower than small ones, so that folds bend and curl as they pass. At the fire folds are thin threads. What is
+/// further, by the light that reaches it, is older: its folds have spread to soft veils, and its small eddies have died.
+/// Flames burn smoke, so it begins at their tips, where it is brown and hides more than it shines. Firelight comes from
+/// below and is less warm where it is faint, daylight comes from above.
 Smoke fire_smoke_at(const Fire *fire, Float3 p) {
-    const float eddy = fire->scale * SMOKE_EDDY, small = SMOKE_SMALL * eddy,
-                bend = SMOKE_BEND * fire->scale * SMOKE_WARP;
+    const float eddy = fire->scale * SMOKE_EDDY, small = SMOKE_SMALL * eddy, warp = fire->scale * SMOKE_WARP;
     const Noise wide = eddies(fire, p, (SMOKE_SLOW * fire->moment - p.z) / eddy, eddy, 0.72f);
-    Float3 moved = float3_mad(p, float3(wide.a, wide.b, wide.c), fire->scale * SMOKE_WARP);
-    const FireCell cell = cell_at(fire, moved);
-    const float passed = (SMOKE_SPEED * fire->moment - moved.z) / eddy;
+    const Float3 by = float3(wide.a, wide.b, wide.c);
+    const FireCell cell = cell_at(fire, float3_mad(p, by, warp));
+    const float near = cell.glow / (cell.glow + SMOKE_GREY), moves = mixf(SMOKE_CALM, 1, near);
+
+    Float3 moved = float3_mad(p, by, moves * warp);
+    const float passed = (SMOKE_SPEED * fire->moment - moved.z) / eddy, bend = moves * SMOKE_BEND * warp;
     const Noise curl = eddies(fire, moved, passed, small, 0.7f);
     moved = float3_mad(moved, float3(curl.a, curl.b, curl.c), bend);
     const float turned = passed - bend * curl.c / eddy;
     const float here = eddies(fire, moved, turned, small, 0.8f).d,
                 below = eddies(fire, moved, turned + 0.25f, small, 0.8f).d;
 
-    const float fold = 0.35f * wide.d + 0.65f * here, up = 2 * (here - below);
+    const float fold = mixf(wide.d, here, mixf(SMOKE_COARSE, SMOKE_FINE, near)), up = 2 * (here - below);
     const float down = clampf(up - 12 * fold * up, -1, 1); // what faces down, or is below the middle of a fold
-    const float near = cell.glow / (cell.glow + SMOKE_GREY);
-    const Float3 glow = float3_scale(float3_mix(float3(0.78f, 0.8f, 0.83f), float3(1, 0.45f, 0.14f), near), cell.glow);
+    const Float3 warm = float3_mix(float3(0.78f, 0.8f, 0.83f), float3(1, 0.45f, 0.14f), near);
+    const Float3 glow = float3_scale(warm, cell.glow / (1 + cell.glow / SMOKE_DARK));
     Smoke smoke;
-    smoke.light = float3_mad(float3_scale(fire->daylight, 0.33f - 0.2f * down), glow, 1.1f + 1.1f * down);
+    smoke.light = float3_mad(float3_scale(fire->daylight, 0.33f - 0.2f * down), glow, 1.8f + 1.5f * down);
     smoke.dense = SMOKE_SEEN_AS * cell.smoke * stepf(SMOKE_THIN, SMOKE_FULL, cell.smoke) *
-                  stepf(-0.2f, 0.35f, wide.d + SMOKE_FILLS * cell.smoke) * (1 - stepf(0.05f, 0.4f, cell.flame)) *
-                  (1 - stepf(SMOKE_FAR, SMOKE_NEAR, cell.glow));
+                  stepf(-0.35f, 0.35f, wide.d + SMOKE_FILLS * cell.smoke) * (1 - stepf(0.05f, 0.4f, cell.flame));
     smoke.fold = fold;
+    smoke.old = 1 - near;
     return smoke;
 }
 
 /// The integral of a fold's profile, up to x of its width: (1 + x)^2 before its edge, and behind it the softer
-/// (1 - x/SOFT)^2.
-static inline float fold_sum(float x) {
-    const float edge = clampf(1 + x, 0, 1), left = clampf(1 - x / SMOKE_SOFT, 0, 1);
-    return (edge * edge * edge + (x > 0 ? SMOKE_SOFT * (1 - left * left * left) : 0)) / 3;
+/// (1 - x/soft)^2.
+static inline float fold_sum(float x, float soft) {
+    const float edge = clampf(1 + x, 0, 1), left = clampf(1 - x / soft, 0, 1);
+    return (edge * edge * edge + (x > 0 ? soft * (1 - left * left * left) : 0)) / 3;
 }
 
+/// The integral of that.
+static inline float fold_sum_twice(float x, float soft) {
+    const float edge = clampf(1 + x, 0, 1), left = clampf(1 - x / soft, 0, 1), left2 = left * left;
+    const float edge2 = edge * edge, behind = maxf(x, 0);
+    return edge2 * edge2 / 12 + (1 + soft) * behind / 3 - soft * soft * (1 - left2 * left2) / 12;
+}
+
+/// Between two places the fold and the extinction are linear, and the light is even.
 Matter fire_smoke_between(const Fire *fire, const Smoke *a, const Smoke *b, float blur) {
-    float dense = 0.5f * (a->dense + b->dense);
-    if (dense <= 0) return (Matter){float3(0, 0, 0), 0};
-    const float width = SMOKE_FOLD + 1.2f * blur / (fire->scale * SMOKE_EDDY), first = a->fold / width;
+    if (a->dense + b->dense <= 0) return (Matter){float3(0, 0, 0), 0};
+    const float old = 0.5f * (a->old + b->old), soft = mixf(SMOKE_SOFT, SMOKE_SOFTEST, old);
+    const float sharp = SMOKE_FOLD * (1 + SMOKE_WIDENS * old);
+    const float width = sharp + 1.2f * blur / (fire->scale * SMOKE_EDDY), first = a->fold / width;
     float apart = b->fold / width - first;
     apart = fabsf(apart) > 0.02f ? apart : 0.02f;
-    dense *= SMOKE_FOLD / width * (fold_sum(first + apart) - fold_sum(first)) / apart;
+    const float last = first + apart, sum = fold_sum(last, soft), mean = (sum - fold_sum(first, soft)) / apart;
+
+    // of the mean, what counts by the end's extinction: a fold is as dense as the air where it is
+    float end = 0.5f * mean;
+    if (fabsf(apart) > 0.1f) end = (sum - (fold_sum_twice(last, soft) - fold_sum_twice(first, soft)) / apart) / apart;
+    const float dense = (a->dense * (mean - end) + b->dense * end) * sharp / (width * (1 + SMOKE_THINS * old));
     return (Matter){float3_scale(float3_mix(a->light, b->light, 0.5f), dense), dense};
 }
 

@@ -134,6 +134,7 @@ export function fireOf(gas: Gas, surface: Surface, time: number): Fire {
     for (let z = 0, i = 0; z < nz; z++) {
         const [lowX, highX, lowY, highY] = [fromX - 2, toX + 2, fromY - 2, toY + 2];
         [fromX, toX, fromY, toY] = [nx, -1, ny, -1];
+        const left = step(0, LOOK.SMOKE_LEAVES, (nz - z) / nz);
         for (let y = 0; y < ny; y++)
             for (let x = 0; x < nx; x++, i++) {
                 const up = Math.max(gas.velocity[3 * i + 2]!, 0.1), root = roots[4 * i]!;
@@ -161,7 +162,7 @@ export function fireOf(gas: Gas, surface: Surface, time: number): Fire {
                 }
                 known[i] = root > 0 || burns[i]! > 0.5 * LOOK.FLAME_SEEN ? 1 : 0;
                 cells[4 * i + 1] = 255 * clamp(r / (FLAME_END * scale), 0, 1);
-                cells[4 * i + 2] = clamp((255 * Math.max(gas.smoke[i]!, 0) * EXTINCTION) / 20, 0, 255);
+                cells[4 * i + 2] = clamp((255 * left * Math.max(gas.smoke[i]!, 0) * EXTINCTION) / 20, 0, 255);
             }
     }
     spreadHeight(gas.size, cells, known, 1 + Math.floor((scale * LOOK.FIRE_SWAY) / gas.cell), (255 * gas.cell) / (FLAME_END * scale));

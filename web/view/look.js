@@ -1,5 +1,5 @@
 // Made by scripts/write_look.py from program/preview: do not edit.
-export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.01, FIRE_FINE_CELL: 0.008, FLAMES_FROM: 0.02, FLAME_SEEN: 0.15, FLAME_HEIGHT: 0.08, FLAME_END: 0.3, FLAME_MOST: 2, FIRE_SWAY: 0.021, RISE_MOST: 0.55, EDDY_RATE: 8, LICK_WIDE: 0.045, LICK_FULL: 0.05, LICK: 0.6, UNLIKE: 1.2, JOIN: 0.5, JOIN_BEGINS: 0.02, JOIN_FULL: 0.08, GROUP_WIDE: 0.075, GROUP_RATE: 2, GROUP: 0.2, GROUP_UNLIKE: 1.1, FED_WHOLLY: 0.3, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 6.5, TAPER: 0.55, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, ROOT_REACH: 4.4, ROOT_OVER: 1.5, ROOT_FALLS: 0.05, ROOT_WIDE: 0.6, ROOT_LEAN: 0.4, NOISE_LARGER: 0.85, NOISE_SIZES: 0.68, FIRE_PASSING: 0.75, LEAN: 1, LEAN_BELOW: 2, BELOW_FREE: 1.5, LEAN_FOOT: 0.002, LEAN_FALLS: 160, RIM_FLAME: 0.85, RIM_REACH: 1.5, RIM_UP: 0.6, RIM_BELOW: 2, RIM_LOW: 0.1, RIM_HIGH: 1, LEAN_REACH: 0.04, SLAB: 0.55, SHAPE_GAIN: 0.3, SHAPE_MIDDLE: 80, SHAPE_LIMB: 330, SHAPE_BELOW: 150, SCALE_COOLER: 150 };
+export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.01, FIRE_FINE_CELL: 0.008, FLAMES_FROM: 0.02, FLAME_SEEN: 0.15, FLAME_HEIGHT: 0.08, FLAME_END: 0.3, FLAME_MOST: 2, FIRE_SWAY: 0.021, RISE_MOST: 0.55, EDDY_RATE: 8, LICK_WIDE: 0.045, LICK_FULL: 0.05, LICK: 0.6, UNLIKE: 1.2, JOIN: 0.5, JOIN_BEGINS: 0.02, JOIN_FULL: 0.08, GROUP_WIDE: 0.075, GROUP_RATE: 2, GROUP: 0.2, GROUP_UNLIKE: 1.1, FED_WHOLLY: 0.3, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 6.5, TAPER: 0.55, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, ROOT_REACH: 4.4, ROOT_OVER: 1.5, ROOT_FALLS: 0.05, ROOT_WIDE: 0.6, ROOT_LEAN: 0.4, NOISE_LARGER: 0.85, NOISE_SIZES: 0.68, FIRE_PASSING: 0.75, SMOKE_LEAVES: 0.25, LEAN: 1, LEAN_BELOW: 2, BELOW_FREE: 1.5, LEAN_FOOT: 0.002, LEAN_FALLS: 160, RIM_FLAME: 0.85, RIM_REACH: 1.5, RIM_UP: 0.6, RIM_BELOW: 2, RIM_LOW: 0.1, RIM_HIGH: 1, LEAN_REACH: 0.04, SLAB: 0.55, SHAPE_GAIN: 0.3, SHAPE_MIDDLE: 80, SHAPE_LIMB: 330, SHAPE_BELOW: 150, SCALE_COOLER: 150 };
 
 export const PAPER = /* glsl */ `
 const float EMBER_BURN = 0.74;
@@ -348,8 +348,8 @@ const float THREAD_WARP = 0.01;
 const float ROLL = 0.5;
 const float SWAY_WIDE = 0.08;
 const float SWAY_SLOPE = 0.55;
-const float SMOKE_SEEN_AS = 40.0;
-const float SMOKE_FULL = 0.9;
+const float SMOKE_SEEN_AS = 60.0;
+const float SMOKE_FULL = 0.6;
 const float SMOKE_FILLS = 0.03;
 const float SMOKE_EDDY = 0.032;
 const float SMOKE_SMALL = 0.53;
@@ -357,8 +357,13 @@ const float SMOKE_BEND = 0.5;
 const float SMOKE_FOLD = 0.055;
 const float SMOKE_SOFT = 2.0;
 const float SMOKE_GREY = 0.09;
-const float SMOKE_FAR = 0.15;
-const float SMOKE_NEAR = 0.6;
+const float SMOKE_SOFTEST = 8.0;
+const float SMOKE_WIDENS = 1.0;
+const float SMOKE_THINS = 2.0;
+const float SMOKE_CALM = 0.5;
+const float SMOKE_FINE = 0.65;
+const float SMOKE_COARSE = 0.45;
+const float SMOKE_DARK = 0.4;
 const float SMOKE_SLOW = 0.4;
 const float SMOKE_SPEED = 0.5;
 const float SOOT_DENSE = 198.0;
@@ -391,7 +396,7 @@ const float FIRE_SOFT = 6.0;
 struct FireCell { float flame; float rise; float smoke; float glow; };
 struct FirePoint { vec3 soot; vec3 root; float depth; float profile; float shell; float opaque; };
 struct Matter { vec3 light; float dense; };
-struct Smoke { vec3 light; float dense; float fold; };
+struct Smoke { vec3 light; float dense; float fold; float old; };
 struct Noise { float a; float b; float c; float d; };
 Noise noise_at(vec3 q);
 FireCell cell_at(vec3 p);
@@ -486,40 +491,50 @@ void fire_between(FirePoint a, FirePoint b, float step_, inout Matter matter) {
     matter.dense += part * mix(a.opaque, b.opaque, from);
 }
 Smoke fire_smoke_at(vec3 p) {
-    float eddy = fireScale * SMOKE_EDDY, small = SMOKE_SMALL * eddy,
-                bend = SMOKE_BEND * fireScale * SMOKE_WARP;
+    float eddy = fireScale * SMOKE_EDDY, small = SMOKE_SMALL * eddy, warp = fireScale * SMOKE_WARP;
     Noise wide = eddies(p, (SMOKE_SLOW * fireMoment - p.z) / eddy, eddy, 0.72);
-    vec3 moved = float3_mad(p, vec3(wide.a, wide.b, wide.c), fireScale * SMOKE_WARP);
-    FireCell cell = cell_at(moved);
-    float passed = (SMOKE_SPEED * fireMoment - moved.z) / eddy;
+    vec3 by = vec3(wide.a, wide.b, wide.c);
+    FireCell cell = cell_at(float3_mad(p, by, warp));
+    float near = cell.glow / (cell.glow + SMOKE_GREY), moves = mix(SMOKE_CALM, 1.0, near);
+    vec3 moved = float3_mad(p, by, moves * warp);
+    float passed = (SMOKE_SPEED * fireMoment - moved.z) / eddy, bend = moves * SMOKE_BEND * warp;
     Noise curl = eddies(moved, passed, small, 0.7);
     moved = float3_mad(moved, vec3(curl.a, curl.b, curl.c), bend);
     float turned = passed - bend * curl.c / eddy;
     float here = eddies(moved, turned, small, 0.8).d,
                 below = eddies(moved, turned + 0.25, small, 0.8).d;
-    float fold = 0.35 * wide.d + 0.65 * here, up = 2.0 * (here - below);
+    float fold = mix(wide.d, here, mix(SMOKE_COARSE, SMOKE_FINE, near)), up = 2.0 * (here - below);
     float down = clamp(up - 12.0 * fold * up, -1.0, 1.0);
-    float near = cell.glow / (cell.glow + SMOKE_GREY);
-    vec3 glow = float3_scale(mix(vec3(0.78, 0.8, 0.83), vec3(1.0, 0.45, 0.14), near), cell.glow);
+    vec3 warm = mix(vec3(0.78, 0.8, 0.83), vec3(1.0, 0.45, 0.14), near);
+    vec3 glow = float3_scale(warm, cell.glow / (1.0 + cell.glow / SMOKE_DARK));
     Smoke smoke;
-    smoke.light = float3_mad(float3_scale(fireDaylight, 0.33 - 0.2 * down), glow, 1.1 + 1.1 * down);
+    smoke.light = float3_mad(float3_scale(fireDaylight, 0.33 - 0.2 * down), glow, 1.8 + 1.5 * down);
     smoke.dense = SMOKE_SEEN_AS * cell.smoke * stepf(SMOKE_THIN, SMOKE_FULL, cell.smoke) *
-                  stepf(-0.2, 0.35, wide.d + SMOKE_FILLS * cell.smoke) * (1.0 - stepf(0.05, 0.4, cell.flame)) *
-                  (1.0 - stepf(SMOKE_FAR, SMOKE_NEAR, cell.glow));
+                  stepf(-0.35, 0.35, wide.d + SMOKE_FILLS * cell.smoke) * (1.0 - stepf(0.05, 0.4, cell.flame));
     smoke.fold = fold;
+    smoke.old = 1.0 - near;
     return smoke;
 }
-float fold_sum(float x) {
-    float edge = clamp(1.0 + x, 0.0, 1.0), left = clamp(1.0 - x / SMOKE_SOFT, 0.0, 1.0);
-    return (edge * edge * edge + (x > 0.0 ? SMOKE_SOFT * (1.0 - left * left * left) : 0.0)) / 3.0;
+float fold_sum(float x, float soft) {
+    float edge = clamp(1.0 + x, 0.0, 1.0), left = clamp(1.0 - x / soft, 0.0, 1.0);
+    return (edge * edge * edge + (x > 0.0 ? soft * (1.0 - left * left * left) : 0.0)) / 3.0;
+}
+float fold_sum_twice(float x, float soft) {
+    float edge = clamp(1.0 + x, 0.0, 1.0), left = clamp(1.0 - x / soft, 0.0, 1.0), left2 = left * left;
+    float edge2 = edge * edge, behind = max(x, 0.0);
+    return edge2 * edge2 / 12.0 + (1.0 + soft) * behind / 3.0 - soft * soft * (1.0 - left2 * left2) / 12.0;
 }
 Matter fire_smoke_between(Smoke a, Smoke b, float blur) {
-    float dense = 0.5 * (a.dense + b.dense);
-    if (dense <= 0.0) return Matter(vec3(0.0, 0.0, 0.0), 0.0);
-    float width = SMOKE_FOLD + 1.2 * blur / (fireScale * SMOKE_EDDY), first = a.fold / width;
+    if (a.dense + b.dense <= 0.0) return Matter(vec3(0.0, 0.0, 0.0), 0.0);
+    float old = 0.5 * (a.old + b.old), soft = mix(SMOKE_SOFT, SMOKE_SOFTEST, old);
+    float sharp = SMOKE_FOLD * (1.0 + SMOKE_WIDENS * old);
+    float width = sharp + 1.2 * blur / (fireScale * SMOKE_EDDY), first = a.fold / width;
     float apart = b.fold / width - first;
     apart = abs(apart) > 0.02 ? apart : 0.02;
-    dense *= SMOKE_FOLD / width * (fold_sum(first + apart) - fold_sum(first)) / apart;
+    float last = first + apart, sum = fold_sum(last, soft), mean = (sum - fold_sum(first, soft)) / apart;
+    float end = 0.5 * mean;
+    if (abs(apart) > 0.1) end = (sum - (fold_sum_twice(last, soft) - fold_sum_twice(first, soft)) / apart) / apart;
+    float dense = (a.dense * (mean - end) + b.dense * end) * sharp / (width * (1.0 + SMOKE_THINS * old));
     return Matter(float3_scale(mix(a.light, b.light, 0.5), dense), dense);
 }
 `;
