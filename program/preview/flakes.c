@@ -170,7 +170,7 @@ static Flake flake_make(const Preview *preview, const EmberSite *site, uint32_t 
 
     // char of 20 g/m2, ash of 6; most are small, and char
     const float ash = r[0] * r[0] * r[0], grammage = mixf(0.020f, 0.006f, ash), drag = 1.3f;
-    const float size = 0.0011f + 0.0032f * r[1] * r[1] * r[1];
+    const float size = 0.0013f + 0.0040f * r[1] * r[1] * r[1];
     Flake flake = {.from = float3_mad(site->position, float3(r[2] - 0.5f, r[3] - 0.5f, r[4] - 0.5f), 0.010f),
                    .drift = float3(0.24f * (r[5] - 0.5f), 0.24f * (r[6] - 0.5f), 0),
                    .up = (0.8f + 0.4f * flames) * clampf(1.3f * r[7] - 0.25f, 0, 1),

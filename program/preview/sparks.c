@@ -20,6 +20,10 @@ enum { SPARKS_A_SLOT = 4 }; ///< that a site may throw in a slot
 #define COOLING 1.7f
 #define SPARK_OPEN (1 / 120.0f) ///< s, the shortest exposure of a spark: eye and film keep it
 #define BLUR_MOST 2.0f          ///< pixels
+#define STREAK_MOST 0.04f       ///< of the picture's height
+#define STREAK_SHORT 24.0f      ///< pixels, which no streak is too long with
+#define BUSY_RATE 0.8f          ///< 1/s, at which a site throws many and then few
+#define BUSY 3.2f               ///< times as many, at most
 #define SPARKS_A_METRE 1300.0f  ///< 1/(m s), of sites that glow along a few cm
 #define SPARKS_CROWD 0.25f      ///< m of glowing line above which sparks become rarer
 
@@ -55,6 +59,14 @@ static void spark_draw(Preview *preview, const Spark *spark, float begin, float 
         memcpy(last, at, sizeof last);
     }
     airborne_sight(preview, points, SIGHT_POINTS, seen);
+
+    // the last part of a way that is too long: it would be a comet
+    const float most = maxf(STREAK_MOST * (float)preview->def.height, STREAK_SHORT);
+    if (streak > most) {
+        strength *= most / streak;
+        begin = mixf(end, begin, most / streak);
+        streak = most;
+    }
 
     const float pixel = preview->camera.pixel * depth;
     // a wide lens would draw those that pass before the focus as capsules, which no eye takes for sparks
@@ -100,7 +112,9 @@ void sparks_draw(Preview *preview) {
             // a rim that collapses throws many at once
             const uint32_t moment = hash_u32(sites[i].key ^ (uint32_t)slot * 0x8da6b343u);
             const bool burst = hash_unit(moment) < 0.012f;
-            const float chance = rate * sites[i].length * SLOT * (burst ? 14 : 0.8f) / SPARKS_A_SLOT;
+            const float busy =
+                BUSY * stepf(-0.2f, 0.5f, noise2(BUSY_RATE * SLOT * (float)slot, 0, sites[i].key & 0xffff));
+            const float chance = rate * sites[i].length * SLOT * (burst ? 14 : busy) / SPARKS_A_SLOT;
             for (uint32_t k = 0; k < SPARKS_A_SLOT; k++) {
                 const uint32_t key = hash_u32(moment + 97 * k);
                 const float strength = clampf(5 * (1 - hash_unit(key) / chance), 0, 1);
@@ -119,7 +133,7 @@ void sparks_draw(Preview *preview) {
                                      .air = float3(0.28f * (r[8] - 0.5f), 0.28f * (r[9] - 0.5f),
                                                    updraft * (0.12f + 1.6f * r[9] * r[9]) - 0.7f * large),
                                      .life = LIFE * (0.2f + 0.8f * r[3] * r[3]),
-                                     .hot = 1300 + 700 * r[4] * r[4] * r[4],
+                                     .hot = 1280 + 520 * r[4] * r[4] * r[4],
                                      .size = 0.00012f + 0.0007f * large,
                                      .wander = 0.02f + 0.10f * r[6],
                                      .turn = {2 * PI_F * r[7], 2 * PI_F * r[8]},

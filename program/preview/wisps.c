@@ -5,10 +5,12 @@
 //
 //     p(a) = p0 + z h(a) + (N1(s), N2(s), N3(s)) g(a),   g = 0 up to the age LAMINAR, then growing:
 //
-// a thread is straight for some centimetres, then buckles, and rolls where what left later overtakes what left before. A
+// a thread sways little for some centimetres, then buckles, and rolls where what left later overtakes what left before. A
 // wisp is a ribbon of THREADS of these, which is as narrow as its ember below and whose swings differ a little: where the
-// ribbon turns its edge or folds it is denser. Smoke hardly diffuses, so its sheets stay sharp. Each thread is a row of soft
-// dots.
+// ribbon turns its edge or folds it is denser. It is bent across, so that it has a width from every side. Each thread is a
+// row of soft dots, which grow: a wisp that stayed as wide and as bright would be a wire.
+//
+// Of smoke that comes to a flame soon only the straight part would be seen, a rod: such an ember has no wisp.
 
 #include "preview/airborne.h"
 
@@ -24,8 +26,11 @@ enum {
 #define SPEEDING 0.13f    ///< m/s2
 #define RIBBON 0.0045f    ///< m, half of its width at half a second
 #define LAMINAR 0.16f     ///< s, in the mean
+#define SWAY 0.010f       ///< m, by which it does before it buckles
+#define BURNT_SOON 0.25f  ///< s, of smoke that is not seen
+#define BURNT_LATE 0.8f   ///< that is seen wholly
 #define THREAD 0.0005f    ///< m, radius at the ember
-#define WISP_DEPTH 12e-3f ///< m, optical depth across a wisp times its width
+#define WISP_DEPTH 26e-3f ///< m, optical depth across a wisp times its width
 #define STRONG 1.2f       ///< by which strong wisps are weakened, or they would be white cords
 #define AMID 0.6f         ///< light of a wisp that is amid flames, which burn most of it; of a third it is whole
 #define FLAME_FAINT 0.08f ///< of a cell whose flame burns smoke
@@ -89,17 +94,18 @@ static void wisp_follow(const Fire *fire, Wisp *wisp) {
 /// Where a thread's smoke of an age is. `place`: of the thread across the ribbon, -1 to 1.
 static Float3 wisp_at(const Wisp *wisp, float age, float place) {
     const float moment = wisp->now - age, loose = maxf(age - wisp->laminar, 0);
-    const float bend = 0.20f * loose * loose / (0.08f + loose), roll = 0.50f * loose * loose * loose / (0.1f + loose);
-    const float neck = 0.08f + 0.5f * age + 1.5f * loose + 1.4f * loose * loose; // a point of the ember feeds it
+    const float bend = SWAY * minf(age / 0.15f, 1) + 0.20f * loose * loose / (0.08f + loose),
+                roll = 0.50f * loose * loose * loose / (0.1f + loose);
+    const float neck = 0.10f + 0.9f * age + 3.2f * loose + 4.0f * loose * loose; // a point of the ember feeds it
     const float turn = 3 * age + 1.8f * noise2(moment * 1.3f, 3, wisp->seed), c = cosf(turn), s = sinf(turn);
-    const float side = wisp->wide * RIBBON * place * neck, drift = 0.045f * age;
+    const float half = wisp->wide * RIBBON * neck, drift = 0.045f * age;
+    const float side = half * place, deep = 0.7f * half * noise2(1.3f * place + 5, 2.1f * moment, wisp->seed + 31);
+    const float u = c * side - s * deep, v = s * side + c * deep;
     const float x = age * (KNOTS / WISP_LIFE);
     const int knot = (int)minf(x, KNOTS - 1);
     Float3 p = float3_mix(wisp->path[knot], wisp->path[knot + 1], x - (float)knot);
-    p.x +=
-        side * (c * wisp->across.x - s * wisp->across.y) + drift * noise2(1.7f * moment, 0.2f * place, wisp->seed + 21);
-    p.y +=
-        side * (s * wisp->across.x + c * wisp->across.y) + drift * noise2(1.7f * moment, 0.2f * place, wisp->seed + 22);
+    p.x += u * wisp->across.x - v * wisp->across.y + drift * noise2(1.7f * moment, 0.2f * place, wisp->seed + 21);
+    p.y += u * wisp->across.y + v * wisp->across.x + drift * noise2(1.7f * moment, 0.2f * place, wisp->seed + 22);
     p.x += bend * swing(wisp, moment, 3.4f, 0.6f * place, 11) + roll * swing(wisp, moment, 8, 1.5f * place, 13);
     p.y += bend * swing(wisp, moment, 3.4f, 0.6f * place, 12) + roll * swing(wisp, moment, 8, 1.5f * place, 14);
     p.z += 0.6f * bend * swing(wisp, moment + 0.07f, 3.4f, 0.6f * place, 11);
@@ -145,7 +151,7 @@ static void thread_draw(Preview *preview, const Wisp *wisp, float place) {
 
         // steps of half of a dot; what rises faster is thinner
         const float pixel = preview->camera.pixel * depth, fast = RISE + 2 * SPEEDING * age;
-        const float loose = maxf(age - wisp->laminar, 0), wide = THREAD + 0.0008f * age + 0.0032f * loose * loose;
+        const float loose = maxf(age - wisp->laminar, 0), wide = THREAD + 0.0022f * age + 0.0080f * loose * loose;
         const float radius = maxf(wide / pixel + camera_blur(&preview->camera, depth), 1.1f);
         const float step = minf(0.45f * radius * pixel / (1.4f * fast), 0.02f), left = 1 - age / WISP_LIFE;
         const float patchy = clampf(0.85f + 0.8f * swing(wisp, wisp->now - age, 4, 1.1f * place, 17), 0.1f, 2);
@@ -171,7 +177,7 @@ void wisps_draw(Preview *preview) {
         if (!(area > 0)) continue;
         Wisp wisp = {.path = {sites[i].ember}};
         wisp_follow(&preview->fire, &wisp);
-        strength[i] = area / (area + WISP_AREA) * (1 - upright) * stepf(0.05f, 0.4f, wisp.burnt);
+        strength[i] = area / (area + WISP_AREA) * (1 - upright) * stepf(BURNT_SOON, BURNT_LATE, wisp.burnt);
         count += strength[i] > 0.15f;
     }
     const float still = 0.80f - 0.30f * minf(SMOKING / (float)(count + 1), 1);
