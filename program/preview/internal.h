@@ -135,15 +135,16 @@ typedef struct Point {
     float bent;                               ///< 1/m, of a sheet, how much it bends
     float gloss, shininess;                   ///< Blinn-Phong lobe of the sun
     float mirror;                             ///< reflectance for the blurred sky
-    Float3 shine, brush;                      ///< of a shape: what it mirrors seen from above, and along its scratches
-    float rough[2];                           ///< widths of that lobe along them and across
-    Float3 across[2];                         ///< unit, across the warp and the weft of woven sheets
-    Mirrored mirrored;                        ///< in front of the sky
-    bool glints;                              ///< its mirror image is traced, and no lobe holds flames and sky
-    float footprint;                          ///< m, a pixel's size here
-    float fade;                               ///< 0 visible to 1 faded into the background
-    bool lit;                                 ///< false: glow only
-    float distance;                           ///< m, from the lens; infinite: nothing
+    float fuzz;          ///< cosine by which lamps light more of what is round: fibres scatter light
+    Float3 shine, brush; ///< of a shape: what it mirrors seen from above, and along its scratches
+    float rough[2];      ///< widths of that lobe along them and across
+    Float3 across[2];    ///< unit, across the warp and the weft of woven sheets
+    Mirrored mirrored;   ///< in front of the sky
+    bool glints;         ///< its mirror image is traced, and no lobe holds flames and sky
+    float footprint;     ///< m, a pixel's size here
+    float fade;          ///< 0 visible to 1 faded into the background
+    bool lit;            ///< false: glow only
+    float distance;      ///< m, from the lens; infinite: nothing
     float temperature, burn;
     float moved;          ///< m, its way across the view while the shutter is open
     int32_t sheet, piece; ///< -1: none

@@ -26,7 +26,8 @@ typedef struct Cluster {
 /// Embers are drawn on the film's scale, which compresses bright parts (blackbody.c). The light they cast is not
 /// compressed, and an eye in the dark sees it better than a camera set for daylight. Flames dazzle it.
 static const float EMBER_CAST = 5;
-static const float DAZZLED = 0.3f; ///< the share of it that is left beside flames that light far more
+static const float LAMP_WRAP = 0.2f; ///< cosine by which lamps light more than what faces them
+static const float DAZZLED = 0.3f;   ///< the share of it that is left beside flames that light far more
 
 static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster *clusters) {
     const PreviewScene *scene = &preview->scene;
@@ -148,8 +149,11 @@ static inline Four four_max(Four a, Four b) {
     return a;
 }
 
-/// What a lamp in that direction gives: wrapped, as lamps have an extent that points do not.
-static inline float lamp_before(float cosine) { return maxf((cosine + 0.2f) * (1 / 1.2f), 0); }
+/// What a lamp in that direction gives: wrapped, as lamps have an extent that points do not, and fuzz scatters their light.
+static inline float lamp_before(const Point *point, float cosine) {
+    const float wrap = LAMP_WRAP + point->fuzz;
+    return maxf((cosine + wrap) / (1 + wrap), 0);
+}
 
 static inline float four_sum(Four a) { return a[0] + a[1] + (a[2] + a[3]); }
 
@@ -159,7 +163,7 @@ static Float3 lamps_gather(const PreviewScene *scene, const Point *point, float 
     const EmberLights *l = &scene->lights;
     const int count = scene->light_count;
     Float3 p = point->position, n = point->normal;
-    const float through = point->transmission;
+    const float through = point->transmission, wrap = LAMP_WRAP + point->fuzz;
     const Float3 tint = float3_sub(point->through, float3(1, 1, 1));
     Four r = {0, 0, 0, 0}, g = r, b = r, all = r, zero = r;
     for (int k = 0; k < count; k += 4) {
@@ -170,7 +174,7 @@ static Float3 lamps_gather(const PreviewScene *scene, const Point *point, float 
         // wrapped: clusters have an extent that points do not, and their own sheet must be lit, too
         const Four red = four_load(l->strength[0] + k), green = four_load(l->strength[1] + k),
                    blue = four_load(l->strength[2] + k);
-        Four seen = four_max((cosine + 0.2f) * (1 / 1.2f), zero);
+        Four seen = four_max((cosine + wrap) * (1 / (1 + wrap)), zero);
         if (through > 0) {
             const Four before = seen;
             seen = four_max(seen, -through * cosine);
@@ -252,9 +256,10 @@ static void ask_lamps(const Preview *preview, Block *block, const float wanted[L
         // a part of a lamp in front that is behind the sheet shines through it
         const Float3 centre = float3_sub(float3(l->x[lamp], l->y[lamp], l->z[lamp]), point->position);
         to = float3_sub(to, point->position);
-        const float cosine = float3_dot(point->normal, centre) / maxf(float3_length(centre), 1e-6f);
+        const float cosine = maxf(float3_dot(point->normal, centre), float3_dot(point->geometric, centre)) /
+                             maxf(float3_length(centre), 1e-6f);
         const bool before =
-            float3_dot(point->geometric, to) > 0 || lamp_before(cosine) >= -point->transmission * cosine;
+            float3_dot(point->geometric, to) > 0 || lamp_before(point, cosine) >= -point->transmission * cosine;
         aim_ray(&block->shadow, i,
                 float3_mad(point->position, point->geometric, before ? scene->epsilon : -scene->epsilon),
                 float3_scale(to, 1 / float3_length(to)), 0, far, block->time[i]);

@@ -4,6 +4,9 @@
 // that they stay where they are while it burns. Where a pixel no longer resolves them, they fade, and what is left is the
 // unevenness of bundles of 2, 4, 8, ... threads.
 //
+// Whole cloth is worn and washed: it has creases of some sizes, which wander, cross, and lie in patches. Fibres stand out of its
+// threads: where it turns away from the eye they are what is seen, pale and soft, whatever its dye.
+//
 // Burnt cloth falls to pieces in rounded holes of many sizes, and its threads lie in waves. Beyond its ends strands of some
 // threads, and single ones where a pixel resolves them, stand out, each to its own length, and curl. There is a hole where
 // neither thread is left.
@@ -20,6 +23,13 @@
 #define SHRUNKEN 0.36f   ///< the same of char
 #define RIM_GLOW 2.0f    ///< threads, half the width of the line that glows along a burnt edge
 #define RIM_HOT 1190.0f  ///< K, of that line at most
+
+#define CREASE_WIDE 0.052f ///< m, from one of the largest creases to the next
+#define CREASE_STEEP 0.42f ///< slope of their sides
+#define CREASE_MOST 0.60f  ///< slope that none reaches where they cross
+#define CREASE_LONG 3.2f   ///< their length over their width
+#define FUZZ_WRAP 0.12f    ///< cosine by which light goes around what is round, by its fibres
+#define FUZZ_MOST 0.42f    ///< share of fibres that stand out in what is seen, where cloth turns away
 
 #define SCORCH_FIRST 2.5f  ///< K, at which cloth yellows
 #define SCORCH_LAST 420.0f ///< K, at which it is as brown as heat alone makes it
@@ -98,10 +108,57 @@ static float oblique(const float at[2], float size, float wide, uint32_t seed) {
     return shown * noise2(c * at[0] + s * at[1], 0.55f * (c * at[1] - s * at[0]), seed);
 }
 
+/// The creases of whole cloth: how high it lies, about -1 to 1, and its slope along u and v.
+typedef struct Creases {
+    float height, slope[2];
+} Creases;
+
+/// noise2 and its gradient.
+static float noise2_slope(float x, float y, uint32_t seed, float slope[2]) {
+    float fx, fy;
+    const uint32_t ix = (uint32_t)noise_floor(x, &fx) * 0x8da6b343u, iy = (uint32_t)noise_floor(y, &fy) * 0xd8163841u;
+    const uint32_t jx = ix + 0x8da6b343u, jy = iy + 0xd8163841u, s = seed * 0xcb1ab31fu;
+    const float a = noise_corner(ix ^ iy ^ s), b = noise_corner(jx ^ iy ^ s), c = noise_corner(ix ^ jy ^ s),
+                d = noise_corner(jx ^ jy ^ s);
+    const float sx = fx * fx * (3 - 2 * fx), sy = fy * fy * (3 - 2 * fy);
+    slope[0] = 6 * fx * (1 - fx) * mixf(b - a, d - c, sy);
+    slope[1] = 6 * fy * (1 - fy) * mixf(c - a, d - b, sx);
+    return mixf(mixf(a, b, sx), mixf(c, d, sx), sy);
+}
+
+/// Creases lie where noise, long in an oblique direction, changes sign: sharp on their ridges, and soft between.
+static Creases cloth_creases(const Weave *weave, const PaperState *state, float footprint) {
+    static const float direction[6][2] = {{0.940f, 0.342f},  {0.766f, -0.643f}, {0.574f, 0.819f},
+                                          {0.906f, -0.423f}, {0.259f, 0.966f},  {0.643f, 0.766f}};
+    const float x = state->uv[0] * weave->threads[0] * weave->pitch,
+                y = state->uv[1] * weave->threads[1] * weave->pitch;
+    const float bow = 0.35f * CREASE_WIDE * noise2(x / 0.06f, y / 0.06f, 241);
+    const float patch = stepf(-0.7f, 0.5f, noise2(x / 0.13f + 3.7f, y / 0.13f, 242));
+    Creases creases = {.height = 0};
+    float size = CREASE_WIDE, weight = 0.8f;
+    for (uint32_t k = 0; k < 6; k++) {
+        const float shown = clampf(1.6f - 9 * footprint / size, 0, 1);
+        if (shown <= 0) break;
+        const float c = direction[k][0] / size, s = direction[k][1] / size, px = x + bow, py = y - 0.7f * bow;
+        float slope[2];
+        const float n = noise2_slope(c * px + s * py, (c * py - s * px) / CREASE_LONG, 243 + k, slope);
+        const float sharp = sqrtf(n * n + 0.012f), steep = shown * weight * mixf(0.35f, 1, patch);
+        const float fall = -steep * CREASE_STEEP * n / sharp; // of the ridge, over the slope of the noise
+        slope[1] /= CREASE_LONG;
+        creases.height += steep * 0.5f * (0.45f - 1.3f * sharp);
+        creases.slope[0] += fall * (direction[k][0] * slope[0] - direction[k][1] * slope[1]);
+        creases.slope[1] += fall * (direction[k][1] * slope[0] + direction[k][0] * slope[1]);
+        if (k & 1) size *= 0.42f, weight *= 0.9f;
+    }
+    const float steep = hypotf(creases.slope[0], creases.slope[1]) / CREASE_MOST, less = 1 / sqrtf(1 + steep * steep);
+    creases.slope[0] *= less, creases.slope[1] *= less;
+    return creases;
+}
+
 /// How far burnt cloth has fallen to pieces there, about -1 to 1: rounded holes of sizes in octaves.
 static float cloth_damage(const float at[2], float wide) {
-    float sum = 0, weight = 0.62f, size = 60;
-    for (uint32_t octave = 0; octave < 5; octave++, size *= 0.45f, weight *= 0.78f)
+    float sum = 0, weight = 0.76f, size = 60;
+    for (uint32_t octave = 0; octave < 5; octave++, size *= 0.45f, weight *= 0.62f)
         sum += weight * oblique(at, size, wide, 151 + octave);
     return sum;
 }
@@ -113,19 +170,21 @@ static void cloth_bend(float x, float y, float burnt, float loose, float wide, f
     for (uint32_t k = 0; k < 2 && burnt > 0; k++) {
         at[k] += burnt * 20 * oblique(from, 70, wide, 63 + k);
         at[k] += burnt * 9 * oblique(from, 22, wide, 65 + k);
+        at[k] += burnt * 4 * oblique(from, 11, wide, 61 + k);
         if (loose > 0) at[k] += loose * 30 * oblique(from, 36, wide, 67 + k);
     }
 }
 
 /// How far a thread stands out beyond cloth's end, in threads: strands of some that stick together, each to its own length, and
-/// single ones where a pixel resolves them.
-static float thread_reach(float at, float along, float single, float most, float tuft, uint32_t seed) {
+/// single ones where a pixel resolves them. A strand is at least a pixel wide, or it were a row of crumbs.
+static float thread_reach(float at, float along, float pixel, float most, float tuft, uint32_t seed) {
     float within;
     const uint32_t strand = hash_u32((uint32_t)noise_floor(at / STRANDS, &within) * 0x85ebca6bu + seed);
     const float length = hash_unit(strand), middle = 0.2f + 0.6f * hash_unit(strand + 1);
-    const float wide = STRAND * (1 + 0.4f * noise2(along / 9, length, seed + 3)),
+    const float single = resolved(1, pixel);
+    const float wide = maxf(STRAND * (1 + 0.4f * noise2(along / 9, length, seed + 3)), 0.3f * pixel),
                 off = STRANDS * fabsf(within - middle);
-    float reach = (tuft < 0 ? 0.62f : 0.12f) * tuft - 0.03f; // pinholes, and no islands
+    float reach = (tuft < 0 ? 0.40f : 0.12f) * tuft - 0.03f; // pinholes, and no islands
     if (single > 0) {
         const float fate = hash_unit((uint32_t)noise_floor(at, &within) * 0x85ebca6bu + seed);
         reach += single * (0.8f * fate * fate * fate * fate + 0.2f * noise2(at, along / 23, seed + 2));
@@ -174,7 +233,7 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
         cloth->gone[k] = fabsf(cloth->across[k]) > 1;
         if (!firm)
             cloth->gone[k] = cloth->gone[k] || edge < 0.5f ||
-                             left + thread_reach(at[k], along, single, k ? lean : 1 - lean, tuft, seed) < 0;
+                             left + thread_reach(at[k], along, wide, k ? lean : 1 - lean, tuft, seed) < 0;
     }
 
     cloth->top = (thread[0] + thread[1]) & 1;
@@ -194,22 +253,38 @@ float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *clot
     Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, 0.6f * cloth->shown), point->normal);
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
 
-    // slubs: bundles of threads that are thicker for some way
-    const float fine = clampf(2 - 0.9f * wide, 0, 1), coarse = resolved(9, wide);
+    // slubs: bundles of threads that are thicker for some way, too short to cross each other in a plaid
+    const float fine = clampf(2 - 0.9f * wide, 0, 1), coarse = resolved(5, wide);
     float slub = 0;
     for (int k = 0; k < 2; k++) {
         const float at = state->uv[k] * weave->threads[k], along = state->uv[1 - k] * weave->threads[1 - k];
-        if (fine > 0) slub += fine * 0.05f * noise2(0.4f * at, 0.011f * along, 91 + (uint32_t)k);
-        if (coarse > 0) slub += coarse * 0.03f * noise2(0.11f * at, 0.004f * along, 93 + (uint32_t)k);
+        if (fine > 0) slub += fine * 0.05f * noise2(0.4f * at, 0.08f * along, 91 + (uint32_t)k);
+        if (coarse > 0) slub += coarse * 0.02f * noise2(0.19f * at, 0.04f * along, 93 + (uint32_t)k);
     }
+
+    const float facing = maxf(float3_dot(point->geometric, point->view), 0.2f);
+    const Creases creases = cloth_creases(weave, state, point->footprint / facing);
+    const float whole = 1 - cloth->burnt, side = point->back ? whole : -whole;
+    Float3 creased = float3_mad(float3_mad(point->normal, point->across[0], side * creases.slope[0]), point->across[1],
+                                side * creases.slope[1]);
+    creased = float3_unit_or(creased, point->normal);
+    const float hidden = maxf(0.06f - float3_dot(creased, point->view), 0); // what turns away from the eye is not seen
+    point->normal = float3_unit_or(float3_mad(creased, point->view, hidden), point->normal);
+    const float hollow = 1 + 0.16f * clampf(point->back ? -creases.height : creases.height, -1, 1) * whole;
+
+    point->fuzz = FUZZ_WRAP * whole;
+    const float away = 1 - maxf(float3_dot(point->normal, point->view), 0);
+    const float fuzz = FUZZ_MOST * whole * away * away * away;
+    point->albedo = float3_mix(point->albedo, float3(0.80f, 0.79f, 0.77f), fuzz);
 
     const float a2 = across * across, dip = over * over;
     const float tone = 1 + 0.16f * cloth->tone[top] - 0.30f * a2 * a2 - 0.22f * dip * dip;
-    return (1 + slub) * mixf(1, 1.12f * tone, cloth->shown);
+    return hollow * (1 + slub) * mixf(1, 1.12f * tone, cloth->shown);
 }
 
 /// Cloth browns by the logarithm of its heat, which falls off evenly from a front: a fire's vapour condenses on cloth that is
-/// hardly warm. Along threads all this spreads farther.
+/// hardly warm. Along threads all this spreads farther, and the ridges of creases, which stand in the hot gas, are browner than
+/// their hollows.
 float cloth_scorch(const Weave *weave, const PaperState *state, Point *point) {
     const float above = maxf(state->peak, state->temperature) - CLOTH_WARM, wide = point->footprint / weave->pitch;
     if (above <= 0) return 0;
@@ -217,6 +292,9 @@ float cloth_scorch(const Weave *weave, const PaperState *state, Point *point) {
     float uneven = 0.5f * oblique(at, 90, wide, 211) + 0.2f * oblique(at, 30, wide, 212);
     for (int k = 0; k < 2; k++)
         uneven += 0.3f * resolved(4, wide) * noise2(at[k] / 4, at[1 - k] / 60, 213 + (uint32_t)k);
+    const float facing = maxf(float3_dot(point->geometric, point->view), 0.2f);
+    const float height = cloth_creases(weave, state, point->footprint / facing).height;
+    uneven += 1.1f * (point->back ? -height : height);
     const float by_heat = (logf(above / SCORCH_FIRST) + uneven) / logf(SCORCH_LAST / SCORCH_FIRST);
     const float scorch = 1 - (1 - SCORCH_MOST * powf(clampf(by_heat, 0, 1), 0.8f)) * expf(-4 * maxf(state->burn, 0));
     point->albedo = float3_mix(point->albedo, float3(0.66f, 0.65f, 0.62f), 0.8f * stepf(0.2f, 0.7f, scorch));
@@ -267,7 +345,7 @@ float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth
     point->albedo = float3_mix(point->albedo, float3(0.060f, 0.030f, 0.015f), 0.7f * brown);
     point->albedo = float3_scale(point->albedo, 1 + charred * clampf(0.5f * up, -0.5f, 0.6f));
     point->albedo = float3_mix(point->albedo, float3(0.155f, 0.150f, 0.143f), 0.6f * ash);
-    point->albedo = float3_mix(point->albedo, float3(0.230f, 0.222f, 0.210f), 0.8f * torn);
+    point->albedo = float3_mix(point->albedo, float3(0.190f, 0.182f, 0.170f), 0.7f * torn);
     Float3 lean = float3_mad(float3_scale(point->across[0], relief[0]), point->across[1], relief[1]);
     Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, -0.36f * charred), point->normal);
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;

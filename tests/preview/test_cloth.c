@@ -49,6 +49,66 @@ TEST(threads_are_seen_from_near_alone) {
     assert_true(aslant < aslant_paper + 1);
 }
 
+/// Whole cloth of threads of 0.4 mm in pixels of 0.9 mm, that leans to the right by that angle (rad) under a low sun, into
+/// rgb. `tone`: of its dye.
+static void draw_whole(float weave, float lean, uint8_t tone) {
+    uint8_t texel[3] = {tone, tone, tone};
+    const Image image = {.width = 1, .height = 1, .rgb = texel}, *pictures[1] = {&image};
+    quad_make(&q, 0.12f, 0);
+    for (int i = 0; i < 4; i++) {
+        q.position[i][2] = sinf(lean) * q.position[i][0], q.position[i][0] *= cosf(lean);
+        q.normal[i][0] = -sinf(lean), q.normal[i][2] = cosf(lean);
+    }
+    const PreviewLook look = {.weave = weave};
+    const PreviewStart start = {4, 1, q.position[0], QUAD, q.uv[0], NULL};
+    PreviewDef def = above();
+    def.camera.fov = 0.12f;
+    def.sun_direction[0] = -1, def.sun_direction[1] = 0.5f, def.sun_direction[2] = 0.5f;
+    def.looks = &look, def.starts = &start, def.sheet_count = 1, def.ground_height = -INFINITY, def.pictures = pictures;
+    draw(&def, &q.surface, 0, rgb);
+}
+
+/// How much its light varies over 8 pixels along a row, over the mean; *step: the largest change from pixel to pixel, of 255.
+static float crease(float weave, float lean, int *step) {
+    draw_whole(weave, lean, 200);
+    float squares = 0, sum = 0;
+    *step = 0;
+    for (int y = 8; y < H - 8; y++)
+        for (int x = W / 2 - 20; x < W / 2 + 12; x++) {
+            const int here = pixel(rgb, x, y)[1], beside = abs(pixel(rgb, x + 1, y)[1] - here);
+            const float far = (float)(pixel(rgb, x + 8, y)[1] - here);
+            squares += far * far, sum += (float)here, *step = beside > *step ? beside : *step;
+        }
+    return sqrtf(squares * (float)((H - 16) * 32)) / sum;
+}
+
+/// Cloth has creases where paper lies flat, and they are soft.
+TEST(whole_cloth_has_soft_creases) {
+    int paper_step, flat_step, aslant_step;
+    const float paper = crease(0, 0, &paper_step), flat = crease(4e-4f, 0, &flat_step),
+                aslant = crease(4e-4f, 1.2f, &aslant_step);
+    print_message("light varies by %.3f on paper, %.3f on cloth, %.3f aslant; steps %d, %d, %d\n", (double)paper,
+                  (double)flat, (double)aslant, paper_step, flat_step, aslant_step);
+    assert_true(flat > 3 * paper && aslant > 2 * paper);
+    assert_true(flat_step < 14 && aslant_step < 14);
+}
+
+/// The light of dark cloth's middle.
+static float fuzz(float weave, float lean) {
+    draw_whole(weave, lean, 40);
+    float sum = 0;
+    for (int y = H / 2 - 12; y < H / 2 + 12; y++)
+        for (int x = W / 2 - 6; x < W / 2 + 6; x++) sum += (float)pixel(rgb, x, y)[1];
+    return sum / (24 * 12);
+}
+
+/// Where cloth turns away from the eye its fibres are seen, which are paler than its dye.
+TEST(fibres_pale_what_turns_away) {
+    const float front = fuzz(4e-4f, 0) / fuzz(0, 0), side = fuzz(4e-4f, 1.25f) / fuzz(0, 1.25f);
+    print_message("dark cloth over paper: %.2f seen from the front, %.2f from the side\n", (double)front, (double)side);
+    assert_true(front > 0.7f && front < 1.2f && side > 1.3f * front);
+}
+
 /// How much brighter the right half of char is than its left, of 255, where the sheet's picture had that tone.
 static float right_of_char(float weave, uint8_t tone) {
     uint8_t texels[2 * 1 * 3] = {255, 255, 255, tone, tone, tone};
@@ -225,8 +285,9 @@ TEST(holes_in_burnt_cloth_are_of_many_sizes) {
     }
     const double share = 100.0 * total / (SEEN * SEEN);
     print_message("holes: %.1f %%, %d small, %d large\n", share, small, large);
-    assert_true(share > 8 && share < 25);  // 3.4
-    assert_true(small > 180 && large > 2); // 115 and none
+    assert_true(share > 8 && share < 25); // 3.4
+    assert_true(small > 80 && large > 2); // none large
+    assert_true(small < 170);             // 185: crumbs and pinholes all over
 }
 
 /// What each family of threads loses alone ends along the other's threads, in stairs. All of this sheet is as loose as a border,
