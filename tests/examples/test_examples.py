@@ -408,11 +408,11 @@ class HotIron(Example):
         burnt = sum(v["burnt"] for v in last_under) / len(last_under)
         self.say["char at last"] = f"{burnt:.2f}"
         self.assertTrue(290 < heated < 335 and warmest < 80)
-        self.assertEqual(max(v["burnt"] for v in beside + last_beside), 0)
+        self.assertLess(max(v["burnt"] for v in beside + last_beside), 1e-5)
         self.assertGreater(burnt, 0.5)
         # what it stands on for two seconds does not burn before it is lifted
         self.assertLess(self.rows[lifted - 1]["burnt_fraction"], 0.01)
-        self.assertGreater(self.rows[-1]["burnt_fraction"], 0.05)
+        self.assertGreater(self.rows[-1]["burnt_fraction"], 0.02)
         self.assertEqual(max(self.column("inverted_cells")), 0)
 
 
