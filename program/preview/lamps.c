@@ -256,8 +256,7 @@ static void ask_lamps(const Preview *preview, Block *block, const float wanted[L
         // a part of a lamp in front that is behind the sheet shines through it
         const Float3 centre = float3_sub(float3(l->x[lamp], l->y[lamp], l->z[lamp]), point->position);
         to = float3_sub(to, point->position);
-        const float cosine = maxf(float3_dot(point->normal, centre), float3_dot(point->geometric, centre)) /
-                             maxf(float3_length(centre), 1e-6f);
+        const float cosine = float3_dot(point->normal, centre) / maxf(float3_length(centre), 1e-6f);
         const bool before =
             float3_dot(point->geometric, to) > 0 || lamp_before(point, cosine) >= -point->transmission * cosine;
         aim_ray(&block->shadow, i,

@@ -25,7 +25,7 @@
 #define RIM_HOT 1190.0f  ///< K, of that line at most
 
 #define CREASE_WIDE 0.052f ///< m, from one of the largest creases to the next
-#define CREASE_STEEP 0.42f ///< slope of their sides
+#define CREASE_STEEP 0.56f ///< slope of their sides
 #define CREASE_MOST 0.60f  ///< slope that none reaches where they cross
 #define CREASE_LONG 3.2f   ///< their length over their width
 #define FUZZ_WRAP 0.12f    ///< cosine by which light goes around what is round, by its fibres
@@ -126,7 +126,8 @@ static float noise2_slope(float x, float y, uint32_t seed, float slope[2]) {
     return mixf(mixf(a, b, sx), mixf(c, d, sx), sy);
 }
 
-/// Creases lie where noise, long in an oblique direction, changes sign: sharp on their ridges, and soft between.
+/// Creases lie where noise, long in an oblique direction, changes sign. The largest are round: sharp ones make
+/// facets, as of paper.
 static Creases cloth_creases(const Weave *weave, const PaperState *state, float footprint) {
     static const float direction[6][2] = {{0.940f, 0.342f},  {0.766f, -0.643f}, {0.574f, 0.819f},
                                           {0.906f, -0.423f}, {0.259f, 0.966f},  {0.643f, 0.766f}};
@@ -137,12 +138,13 @@ static Creases cloth_creases(const Weave *weave, const PaperState *state, float 
     Creases creases = {.height = 0};
     float size = CREASE_WIDE, weight = 0.8f;
     for (uint32_t k = 0; k < 6; k++) {
-        const float shown = clampf(1.6f - 9 * footprint / size, 0, 1);
+        const float shown = clampf(2.4f - 14 * footprint / size, 0, 1);
         if (shown <= 0) break;
         const float c = direction[k][0] / size, s = direction[k][1] / size, px = x + bow, py = y - 0.7f * bow;
         float slope[2];
         const float n = noise2_slope(c * px + s * py, (c * py - s * px) / CREASE_LONG, 243 + k, slope);
-        const float sharp = sqrtf(n * n + 0.012f), steep = shown * weight * mixf(0.35f, 1, patch);
+        const float sharp = sqrtf(n * n + 0.015f + 0.09f * size / CREASE_WIDE),
+                    steep = shown * weight * mixf(0.35f, 1, patch);
         const float fall = -steep * CREASE_STEEP * n / sharp; // of the ridge, over the slope of the noise
         slope[1] /= CREASE_LONG;
         creases.height += steep * 0.5f * (0.45f - 1.3f * sharp);
