@@ -30,7 +30,13 @@
 #define ROOT_LEAN 0.4f
 #define NOISE_LARGER 0.85f ///< of the hills of one size, how high those are that are twice as wide
 #define NOISE_SIZES 0.68f  ///< of the smallest, so that all of them vary as one size would
-#define FIRE_PASSING 0.75f ///< share of the gas over burning paper that came from flames below
+#define FIRE_PASSING 0.93f ///< share of the gas over burning paper that came from flames below
+#define MIX_PASSES 2       ///< in which a flame mixes with what is beside it
+#define MIX_SHARE 0.2f     ///< that goes to each of the four cells beside it in one of them
+#define MIX_BEGINS 0.01f   ///< m above the paper
+#define MIX_FULL 0.06f     ///< m
+#define MIX_FEEDS 0.5f     ///< air that it mixes with makes more of it burn, the more fuel is left
+#define MIX_BURNT 1.5f     ///< nothing more does
 #define SMOKE_COLD 450.0f  ///< K: what is colder is all smoke
 #define SMOKE_HOT 650.0f   ///< K: what is hotter is none yet
 #define SMOKE_LEAVES 0.25f ///< of the gas's height, from the top down, in which smoke fades: there the gas is cut
@@ -131,6 +137,44 @@ static void raise_cells(Preview *preview) {
                 const float passing = minf(flame / cell->flame, 1) * (1 - (1 - FIRE_PASSING) * near);
                 cell->rise = mixf(cell->flame * height, cell->rise, passing);
             }
+}
+
+// ---- mixing
+
+/// The share of a flame that has mixed with air, at its height.
+static float mixed_share(const Fire *fire, const FireCell *cell) {
+    return stepf(MIX_BEGINS * fire->scale, MIX_FULL * fire->scale, cell->rise / cell->flame);
+}
+
+/// A flame grows wider as it rises and mixes with the air beside it. The gas has steep sides, a cell or two thick: noise moves
+/// an edge by no more than that, and where the gas stands straight, so did its flame.
+static void mix_cells(Fire *fire) {
+    const size_t row = (size_t)fire->size[0], count = row * (size_t)fire->size[1] * (size_t)fire->size[2];
+    for (int pass = 0; pass < MIX_PASSES; pass++) {
+        for (size_t here = row; here < count - row; here++) {
+            const FireCell *cell = &fire->cells[here];
+            const FireCell *beside[4] = {cell - 1, cell + 1, cell - row, cell + row};
+            float *mixed = fire->sway[here];
+            mixed[0] = cell->flame, mixed[1] = cell->rise;
+            for (int k = 0; k < 4; k++) {
+                const FireCell *more = beside[k]->flame > cell->flame ? beside[k] : cell;
+                if (more->flame <= 0) continue;
+                const float share = MIX_SHARE * mixed_share(fire, more);
+                mixed[0] += share * (beside[k]->flame - cell->flame);
+                mixed[1] += share * (beside[k]->rise - cell->rise);
+            }
+        }
+
+        for (size_t here = row; here < count - row; here++)
+            fire->cells[here].flame = fire->sway[here][0], fire->cells[here].rise = fire->sway[here][1];
+    }
+
+    for (size_t here = row; here < count - row; here++) {
+        FireCell *cell = &fire->cells[here];
+        if (cell->flame <= 0) continue;
+        const float fed = 1 + MIX_FEEDS * maxf(MIX_BURNT - cell->flame, 0) * mixed_share(fire, cell);
+        cell->flame *= fed, cell->rise *= fed;
+    }
 }
 
 // ---- the widest eddies
@@ -278,6 +322,7 @@ void fire_raise(Preview *preview) {
         cell->rise *= left;
     }
 
+    mix_cells(fire);
     sway_cells(fire);
     mark_all(fire);
 

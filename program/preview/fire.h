@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 enum {
-    FIRE_BORDER = 2,  ///< empty cells around the gas, so that interpolation needs no bounds
+    FIRE_BORDER = 4,  ///< empty cells around the gas: eddies move flames there, and interpolation needs no bounds
     FIRE_BRICK = 2,   ///< cells along the side of a brick, the unit of empty space that is skipped
     FIRE_STEPS = 128, ///< max steps of a ray outside empty bricks
     FIRE_RUNS = 8,    ///< max parts of a ray that are near flames
@@ -104,7 +104,7 @@ typedef struct Fire {
 #define FLAME_MOST 2.0f        ///< what eddies feed is more than a full flame, and is drawn elsewhere up to so much
 
 // m, max displacement by eddies
-#define FIRE_SWAY 0.021f
+#define FIRE_SWAY 0.027f
 #define FIRE_WARP_WIDE 0.0062f
 #define FIRE_WARP_FINE 0.0018f
 #define SMOKE_WARP 0.0234f

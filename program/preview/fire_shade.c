@@ -5,7 +5,8 @@
 // grows longer as the gas accelerates, so flames have tongues and streaks and flicker.
 //
 // The widest eddies bend whole tongues and the streaks in them: they move the position first, by an amount that grows from
-// nothing at the paper and is known in each cell (fire.c). Others, half as wide, feed some tongues and starve others there:
+// nothing at the paper and is known in each cell (fire.c). They move it by more than a cell: by less, a flame kept the
+// straight sides of what burns below it. Others, half as wide, feed some tongues and starve others there:
 // where they have creases, tongues join into larger flames as they rise, and between them there are gaps; and some end
 // much lower than others. A noise that is wider still, and moves along what burns, raises tongues here and lowers them
 // there: without it a straight front has a row of like teeth.
@@ -58,18 +59,21 @@
 #define THREAD_WARP 0.01f ///< m, by which wide eddies bend them
 #define ROLL 0.5f         ///< of an eddy's length, by which they roll them
 #define SWAY_WIDE 0.08f   ///< m, of the eddies that bend whole tongues
+#define SWAY_SMALL 0.6f   ///< of that, others that curl them
+#define SWAY_SHARE 0.35f  ///< of what the wide ones do
+#define SWAY_GAIN 1.35f   ///< a smooth noise seldom comes near 1
 #define SWAY_SLOPE 0.55f  ///< m aside per m above the paper
 #define LICK_WIDE 0.045f  ///< m, of the eddies that feed and starve whole tongues
 #define LICK_FULL 0.05f   ///< m above the paper, where they do so fully
 #define LICK 0.6f
-#define UNLIKE 1.2f       ///< octaves, by which the heights of tongues differ
-#define JOIN 0.5f         ///< of a full flame: what they join into where the creases of those eddies are
+#define UNLIKE 1.5f       ///< octaves, by which the heights of tongues differ
+#define JOIN 0.7f         ///< of a full flame: what they join into where the creases of those eddies are
 #define JOIN_BEGINS 0.02f ///< m above the paper
 #define JOIN_FULL 0.08f
 #define GROUP_WIDE 0.075f ///< m along what burns, over which tongues are high or low together
 #define GROUP_RATE 2.0f   ///< 1/s
-#define GROUP 0.2f
-#define GROUP_UNLIKE 1.1f   ///< octaves
+#define GROUP 0.35f
+#define GROUP_UNLIKE 1.5f   ///< octaves
 #define FED_WHOLLY 0.3f     ///< what burns less gains and loses less
 #define SMOKE_SEEN_AS 60.0f ///< times its extinction, in the middle of a fold; what lies between folds is clear
 #define SMOKE_FULL 0.6f     ///< 1/m, from which on it is wholly
@@ -110,7 +114,7 @@
 #define FOOT_COOL 0.20f         ///< of the range of temperatures: soot begins orange
 #define FOOT_HOT 0.50f          ///< of that range: streaks in the foot are hot
 #define JOINED_HOT 0.15f
-#define FILAMENT_HOT 0.42f
+#define FILAMENT_HOT 0.52f
 #define HIGH_COOL 0.18f
 #define SPENT_COOL 0.25f
 #define SPENT_THIN 0.4f
@@ -193,9 +197,10 @@ Float3 fire_cast_colour(const Preview *preview) {
 void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]) {
     const float scale = fire->scale, most = minf(SWAY_SLOPE * maxf(height, 0), FIRE_SWAY * scale);
     const float passed = EDDY_RATE * (fire->moment / sqrtf(scale) - p.z / (scale * RISE_MOST));
-    const Noise n = eddies(fire, p, passed, scale * SWAY_WIDE, 1);
-    sway[0] = most * n.a;
-    sway[1] = most * n.b;
+    const Noise wide = eddies(fire, p, passed, scale * SWAY_WIDE, 0.85f);
+    const Noise small = eddies(fire, p, passed, scale * SWAY_SMALL * SWAY_WIDE, 1.1f);
+    sway[0] = most * clampf(SWAY_GAIN * (wide.a + SWAY_SHARE * small.a), -1, 1);
+    sway[1] = most * clampf(SWAY_GAIN * (wide.b + SWAY_SHARE * small.b), -1, 1);
 }
 
 float fire_feed(const Fire *fire, Float3 p, float height, float flame) {
@@ -270,7 +275,7 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
     float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
     float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.138f;
     hot += FILAMENT_HOT * filament + 0.15f * pane * (1 - clear) - HIGH_COOL * stepf(0.1f, 1.5f, tall);
-    hot += JOINED_HOT * stepf(0.95f, 1.35f, flame); // where tongues have joined
+    hot += JOINED_HOT * stepf(1.1f, 1.6f, flame); // where tongues have joined
     hot += FOOT_HOT * streak * soot * (1 - above) - FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));
 
     // what is above a body of flame without its noise, is cooler and thinner: tongues end faint
@@ -283,7 +288,7 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
         clampf((rise + STAND_OFF) / (8 * STAND_OFF), 0, 1) * (1 - soot) * (1 - stepf(BLUE_ENDS / 2, BLUE_ENDS, rise));
     const float fold = (1 - clear) * (1 - clear) * mixf(0.25f, 1, above);
     soot *= 0.35f + 3.5f * fold * (1 + 0.7f * pane) + 1.2f * clear * clear + 2.5f * streak * (1 - above);
-    soot *= (0.6f + 0.9f * torn * maxf(thread.b, -0.5f)) * (1 - 0.75f * tip) * (1 + 0.8f * filament);
+    soot *= (0.6f + 0.9f * torn * maxf(thread.b, -0.5f)) * (1 - 0.75f * tip) * (1 + 0.95f * filament);
     point->opaque = SOOT_DENSE * soot;
     point->soot = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * soot);
     point->root = float3_scale(float3(0.12f, 0.42f, 1.25f), BLUE_DENSE * root);

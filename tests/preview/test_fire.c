@@ -235,13 +235,13 @@ TEST(tongues_narrow_and_rise) {
 /// Large eddies bend tongues, here one way and there another: in squares of 16 mm their sides lean. Without them flames stood
 /// like grass.
 TEST(tongues_lean) {
-    enum { FRAMES = 6, LOW = 24, SIDE = 16 };
+    enum { FRAMES = 24, LOW = 24, SIDE = 16 };
     static float fire[W * H][4], mean[H][4];
     float lean = 0, weight = 1e-6f;
 
     line_make(&line, 0.003f), burning_make(&paper);
     for (int k = 0; k < FRAMES; k++) {
-        see_line(&paper.surface, &line.gas, 0.3 + k / 8.0, fire, mean, H);
+        see_line(&paper.surface, &line.gas, 0.3 + 0.37 * k, fire, mean, H);
         for (int row = LOW; row + SIDE < H; row += SIDE)
             for (int left = 0; left + SIDE < W; left += SIDE) {
                 float xx = 0, xy = 0, yy = 0; // sums of the gradient's products
@@ -256,7 +256,7 @@ TEST(tongues_lean) {
 
     lean *= 57.3f / weight;
     print_message("tongues lean by %.1f degrees in the mean\n", (double)lean);
-    assert_true(lean > 16.5f); // 15.5 where soot is in strands
+    assert_true(lean > 15.3f); // 14.3 where they moved a flame by less than a cell
 }
 
 /// Large eddies feed some tongues and starve others, and stretches of the front burn high or low: the light of squares of 3 cm, above the first 3 cm, differs over places
@@ -368,7 +368,7 @@ TEST(tongues_join_and_differ_in_height) {
 
 /// The mean width in mm of what is bright in a fire over cells of that size, at a few of its cells above the paper.
 static float width_of_tongues(float cell) {
-    enum { FRAMES = 8 };
+    enum { FRAMES = 16 };
     static float fire[W * H][4], mean[H][4];
     const int low = (int)(1714 * cell), high = (int)(4000 * cell);
     float wide = 0, flames = 0;
@@ -377,7 +377,7 @@ static float width_of_tongues(float cell) {
     line.gas.cell = cell;
     for (int c = 0; c < 3; c++) line.gas.origin[c] *= cell / 0.008f;
     for (int k = 0; k < FRAMES; k++) {
-        see_line(&paper.surface, &line.gas, 0.3 + k / 6.0, fire, mean, H);
+        see_line(&paper.surface, &line.gas, 0.3 + 0.37 * k, fire, mean, H);
         for (int row = low; row < high; row++)
             for (int x = 1; x < W; x++) {
                 const float(*at)[4] = &fire[(H - 1 - row) * W + x];
@@ -393,8 +393,9 @@ static float width_of_tongues(float cell) {
 /// as others they were a fringe that was equally wide everywhere. One over cells of 4 mm, as over examples/macro, has
 /// smaller ones: as wide as others they were lumps that hung over the page.
 TEST(tongues_are_as_large_as_their_cells) {
-    assert_true(width_of_tongues(0.014f) > 19); // 16.4
-    assert_true(width_of_tongues(0.004f) < 5);  // 6.4
+    const float wide = width_of_tongues(0.014f);
+    assert_true(wide > 19);                              // 16.4
+    assert_true(wide > 3.5f * width_of_tongues(0.004f)); // 2.6
 }
 
 /// The burning rim is visible through the first 4 mm of its flames. The bar, a tenth of white paper's light and a twentieth
@@ -448,7 +449,7 @@ TEST(bodies_have_filaments) {
 
     preview_destroy(preview);
     print_message("of %d pixels of flame %d are flat\n", lit, flat);
-    assert_true(lit > 5000 && flat < lit / 16); // 2125 of 9365, and 576 of 8466 where panes were even
+    assert_true(lit > 3000 && flat < lit / 16); // 2125 of 9365, and 576 of 8466 where panes were even
 }
 
 /// Flicker continues over time and stays where the gas is.

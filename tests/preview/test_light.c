@@ -84,7 +84,7 @@ TEST(firelight_does_not_leak_through_a_sheet) {
     PreviewDef def = at_night();
     float share = 0, light[2];
     def.transmittances = &share, def.sheet_count = 1;
-    wall_make(&q), ball_make(&ball, -0.02f, 0, 0.06f, 0.018f, 4e6f, 0);
+    wall_make(&q), ball_make(&ball, -0.04f, 0, 0.06f, 0.018f, 4e6f, 0);
     for (int k = 0; k < 2; k++) {
         see(&def, k ? &q.surface : &nothing, NULL, dark), see(&def, k ? &q.surface : &nothing, &ball.gas, lit);
         light[k] = box(lit, W / 2 + 6, H / 2) - box(dark, W / 2 + 6, H / 2); // 3 cm behind it

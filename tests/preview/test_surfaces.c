@@ -71,7 +71,7 @@ TEST(metal_mirrors_a_flame) {
     for (int k = 0; k < 2; k++) {
         PreviewDef def = box_make(k ? PREVIEW_SURFACE_METAL : PREVIEW_SURFACE_MATT, 0, &box);
         for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
-        ball_make(&ball, 0, -0.12f, -0.05f, 0.02f, 4e6f, 0); // below what the camera sees
+        ball_make(&ball, 0, -0.12f, -0.07f, 0.02f, 4e6f, 0); // below what the camera sees
         PreviewLayers layers = {.beauty = beauty};
         draw_layers(&def, &nothing, &ball.gas, 0.3, &layers);
 

@@ -113,6 +113,40 @@ function comeDown([nx, ny, nz]: Fire["size"], roots: Float32Array, power: Float3
             }
 }
 
+/** A flame grows wider as it rises and mixes with the air beside it: mix_cells of fire.c. */
+function mix([nx, ny, nz]: Fire["size"], flame: Float32Array, rise: Float32Array, scale: number): void {
+    const row = nx, last = flame.length - row, mixedFlame = zeros("mixed flame", flame.length), mixedRise = zeros("mixed rise", flame.length);
+    const share = (i: number) => step(LOOK.MIX_BEGINS * scale, LOOK.MIX_FULL * scale, rise[i]! / flame[i]!), beside = [-1, 1, -row, row];
+    mixedFlame.set(flame); // its sides stay
+    mixedRise.set(rise);
+    for (let pass = 0; pass < LOOK.MIX_PASSES; pass++) {
+        for (let z = 0; z < nz; z++)
+            for (let y = 1; y < ny - 1; y++)
+                for (let x = 1, i = x + nx * (y + ny * z); x < nx - 1; x++, i++) {
+                    const f = flame[i]!, r = rise[i]!;
+                    if (f + flame[i - 1]! + flame[i + 1]! + flame[i - row]! + flame[i + row]! <= 0) continue;
+                    let sumFlame = f, sumRise = r;
+                    for (let k = 0; k < 4; k++) {
+                        const there = i + beside[k]!, other = flame[there]!, more = other > f ? there : i;
+                        if (flame[more]! <= 0) continue;
+                        const part = LOOK.MIX_SHARE * share(more);
+                        sumFlame += part * (other - f);
+                        sumRise += part * (rise[there]! - r);
+                    }
+                    mixedFlame[i] = sumFlame;
+                    mixedRise[i] = sumRise;
+                }
+        flame.set(mixedFlame);
+        rise.set(mixedRise);
+    }
+    for (let i = row; i < last; i++) {
+        if (flame[i]! <= 0) continue;
+        const fed = 1 + LOOK.MIX_FEEDS * Math.max(LOOK.MIX_BURNT - flame[i]!, 0) * share(i);
+        flame[i]! *= fed;
+        rise[i]! *= fed;
+    }
+}
+
 export function fireOf(gas: Gas, surface: Surface, time: number): Fire {
     const [nx, ny, nz] = gas.size, count = nx * ny * nz, flame = zeros("flame", count), rise = zeros("rise", count), power = zeros("power", count);
     const thin = Math.max(gas.cell / LOOK.FLAME_THICK, 1), scale = flameScale(gas.cell), roots = rootsOf(gas, surface);
@@ -158,12 +192,26 @@ export function fireOf(gas: Gas, surface: Surface, time: number): Fire {
                     toX = Math.max(toX, x);
                     fromY = Math.min(fromY, y);
                     toY = Math.max(toY, y);
-                    burns[i] = f * (1 - step(0.6 * FLAME_END, FLAME_END, r / scale));
                 }
-                known[i] = root > 0 || burns[i]! > 0.5 * LOOK.FLAME_SEEN ? 1 : 0;
+                known[i] = root > 0 ? 1 : 0;
                 cells[4 * i + 1] = 255 * clamp(r / (FLAME_END * scale), 0, 1);
                 cells[4 * i + 2] = clamp((255 * left * Math.max(gas.smoke[i]!, 0) * EXTINCTION) / 20, 0, 255);
             }
+    }
+
+    // above their max height flames are too thin to be seen
+    for (let i = 0; i < count; i++) {
+        if (flame[i]! <= 0) continue;
+        const left = 1 - step(0.6 * FLAME_END, FLAME_END, rise[i]! / flame[i]! / scale);
+        flame[i]! *= left;
+        rise[i]! *= left;
+    }
+    mix(gas.size, flame, rise, scale);
+    for (let i = 0; i < count; i++) {
+        const f = (burns[i] = flame[i]!);
+        if (f <= 0.5 * LOOK.FLAME_SEEN) continue;
+        known[i] = 1;
+        cells[4 * i + 1] = 255 * clamp(rise[i]! / f / (FLAME_END * scale), 0, 1);
     }
     spreadHeight(gas.size, cells, known, 1 + Math.floor((scale * LOOK.FIRE_SWAY) / gas.cell), (255 * gas.cell) / (FLAME_END * scale));
     const fire = { size: gas.size, origin: gas.origin, cell: gas.cell, scale, cells, burns, apart };
@@ -189,7 +237,8 @@ function feed({ size, origin, cell, scale, cells, burns, apart }: Omit<Fire, "bo
                     high[c] = Math.max(high[c]!, at + 1);
                 }
             }
-    const place = (at: number[], more: number) => at.map((x, c) => origin[c]! + (x + more) * cell) as [number, number, number];
+    const aside = 1 + Math.floor((scale * LOOK.FIRE_SWAY) / cell); // eddies move flames there
+    const place = (at: number[], more: number) => at.map((x, c) => origin[c]! + (x + (c < 2 ? more * aside : more)) * cell) as [number, number, number];
     return low[0]! < high[0]! ? { low: place(low, -1), high: place(high, 1) } : null;
 }
 

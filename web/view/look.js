@@ -1,5 +1,5 @@
 // Made by scripts/write_look.py from program/preview: do not edit.
-export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.01, FIRE_FINE_CELL: 0.008, FLAMES_FROM: 0.02, FLAME_SEEN: 0.15, FLAME_HEIGHT: 0.08, FLAME_END: 0.3, FLAME_MOST: 2, FIRE_SWAY: 0.021, RISE_MOST: 0.55, EDDY_RATE: 8, LICK_WIDE: 0.045, LICK_FULL: 0.05, LICK: 0.6, UNLIKE: 1.2, JOIN: 0.5, JOIN_BEGINS: 0.02, JOIN_FULL: 0.08, GROUP_WIDE: 0.075, GROUP_RATE: 2, GROUP: 0.2, GROUP_UNLIKE: 1.1, FED_WHOLLY: 0.3, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 6.5, TAPER: 0.55, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, ROOT_REACH: 4.4, ROOT_OVER: 1.5, ROOT_FALLS: 0.05, ROOT_WIDE: 0.6, ROOT_LEAN: 0.4, NOISE_LARGER: 0.85, NOISE_SIZES: 0.68, FIRE_PASSING: 0.75, SMOKE_LEAVES: 0.25, LEAN: 1, LEAN_BELOW: 2, BELOW_FREE: 1.5, LEAN_FOOT: 0.002, LEAN_FALLS: 160, RIM_FLAME: 0.85, RIM_REACH: 1.5, RIM_UP: 0.6, RIM_BELOW: 2, RIM_LOW: 0.1, RIM_HIGH: 1, LEAN_REACH: 0.04, SLAB: 0.55, SHAPE_GAIN: 0.3, SHAPE_MIDDLE: 80, SHAPE_LIMB: 330, SHAPE_BELOW: 150, SCALE_COOLER: 150 };
+export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.01, FIRE_FINE_CELL: 0.008, FLAMES_FROM: 0.02, FLAME_SEEN: 0.15, FLAME_HEIGHT: 0.08, FLAME_END: 0.3, FLAME_MOST: 2, FIRE_SWAY: 0.027, RISE_MOST: 0.55, EDDY_RATE: 8, LICK_WIDE: 0.045, LICK_FULL: 0.05, LICK: 0.6, UNLIKE: 1.5, JOIN: 0.7, JOIN_BEGINS: 0.02, JOIN_FULL: 0.08, GROUP_WIDE: 0.075, GROUP_RATE: 2, GROUP: 0.35, GROUP_UNLIKE: 1.5, FED_WHOLLY: 0.3, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 6.5, TAPER: 0.55, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, ROOT_REACH: 4.4, ROOT_OVER: 1.5, ROOT_FALLS: 0.05, ROOT_WIDE: 0.6, ROOT_LEAN: 0.4, NOISE_LARGER: 0.85, NOISE_SIZES: 0.68, FIRE_PASSING: 0.93, MIX_PASSES: 2, MIX_SHARE: 0.2, MIX_BEGINS: 0.01, MIX_FULL: 0.06, MIX_FEEDS: 0.5, MIX_BURNT: 1.5, SMOKE_LEAVES: 0.25, LEAN: 1, LEAN_BELOW: 2, BELOW_FREE: 1.5, LEAN_FOOT: 0.002, LEAN_FALLS: 160, RIM_FLAME: 0.85, RIM_REACH: 1.5, RIM_UP: 0.6, RIM_BELOW: 2, RIM_LOW: 0.1, RIM_HIGH: 1, LEAN_REACH: 0.04, SLAB: 0.55, SHAPE_GAIN: 0.3, SHAPE_MIDDLE: 80, SHAPE_LIMB: 330, SHAPE_BELOW: 150, SCALE_COOLER: 150 };
 
 export const PAPER = /* glsl */ `
 const float EMBER_BURN = 0.74;
@@ -327,7 +327,7 @@ const float FLAME_SEEN = 0.15;
 const float FLAME_HEIGHT = 0.08;
 const float FLAME_END = 0.3;
 const float FLAME_MOST = 2.0;
-const float FIRE_SWAY = 0.021;
+const float FIRE_SWAY = 0.027;
 const float FIRE_WARP_WIDE = 0.0062;
 const float FIRE_WARP_FINE = 0.0018;
 const float SMOKE_WARP = 0.0234;
@@ -347,6 +347,9 @@ const float FOLD_SHARP = 2.2;
 const float THREAD_WARP = 0.01;
 const float ROLL = 0.5;
 const float SWAY_WIDE = 0.08;
+const float SWAY_SMALL = 0.6;
+const float SWAY_SHARE = 0.35;
+const float SWAY_GAIN = 1.35;
 const float SWAY_SLOPE = 0.55;
 const float SMOKE_SEEN_AS = 60.0;
 const float SMOKE_FULL = 0.6;
@@ -380,7 +383,7 @@ const float STREAK_FULL = 0.0058;
 const float FOOT_COOL = 0.2;
 const float FOOT_HOT = 0.5;
 const float JOINED_HOT = 0.15;
-const float FILAMENT_HOT = 0.42;
+const float FILAMENT_HOT = 0.52;
 const float HIGH_COOL = 0.18;
 const float SPENT_COOL = 0.25;
 const float SPENT_THIN = 0.4;
@@ -415,9 +418,10 @@ Noise eddies(vec3 p, float passed, float width, float often) {
 void fire_sway(vec3 p, float height, inout float sway[2]) {
     float scale = fireScale, most = min(SWAY_SLOPE * max(height, 0.0), FIRE_SWAY * scale);
     float passed = EDDY_RATE * (fireMoment / sqrt(scale) - p.z / (scale * RISE_MOST));
-    Noise n = eddies(p, passed, scale * SWAY_WIDE, 1.0);
-    sway[0] = most * n.a;
-    sway[1] = most * n.b;
+    Noise wide = eddies(p, passed, scale * SWAY_WIDE, 0.85);
+    Noise small = eddies(p, passed, scale * SWAY_SMALL * SWAY_WIDE, 1.1);
+    sway[0] = most * clamp(SWAY_GAIN * (wide.a + SWAY_SHARE * small.a), -1.0, 1.0);
+    sway[1] = most * clamp(SWAY_GAIN * (wide.b + SWAY_SHARE * small.b), -1.0, 1.0);
 }
 void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noise wide,
                         Noise fine, float blur, inout FirePoint point) {
@@ -465,7 +469,7 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     float strong = stepf(0.0, 0.7, edge), low = 1.0 - stepf(0.1, 0.9, tall);
     float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.138;
     hot += FILAMENT_HOT * filament + 0.15 * pane * (1.0 - clear) - HIGH_COOL * stepf(0.1, 1.5, tall);
-    hot += JOINED_HOT * stepf(0.95, 1.35, flame);
+    hot += JOINED_HOT * stepf(1.1, 1.6, flame);
     hot += FOOT_HOT * streak * soot * (1.0 - above) - FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
     float body = stepf(-0.35, 0.1, flame - EDGE - TAPER * (1.0 - exp(-tall)));
     float spent = stepf(0.5, 1.6, tall) * (1.0 - body);
@@ -475,7 +479,7 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
         clamp((rise + STAND_OFF) / (8.0 * STAND_OFF), 0.0, 1.0) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 2.0, BLUE_ENDS, rise));
     float fold = (1.0 - clear) * (1.0 - clear) * mix(0.25, 1.0, above);
     soot *= 0.35 + 3.5 * fold * (1.0 + 0.7 * pane) + 1.2 * clear * clear + 2.5 * streak * (1.0 - above);
-    soot *= (0.6 + 0.9 * torn * max(thread.b, -0.5)) * (1.0 - 0.75 * tip) * (1.0 + 0.8 * filament);
+    soot *= (0.6 + 0.9 * torn * max(thread.b, -0.5)) * (1.0 - 0.75 * tip) * (1.0 + 0.95 * filament);
     point.opaque = SOOT_DENSE * soot;
     point.soot = float3_scale(flame_colour(clamp(hot, 0.0, 1.0)), SOOT_DENSE * soot);
     point.root = float3_scale(vec3(0.12, 0.42, 1.25), BLUE_DENSE * root);
