@@ -73,6 +73,7 @@ TEST(flames_up_a_rim_billow) {
     for (int v = 0; v < 4 * WIDE; v++) {
         const float along = 0.008f * ((float)(v / 4) + 0.5f - 0.5f * WIDE);
         paper.position[v][0] -= along, paper.position[v][2] += along + 0.06f;
+        paper.burn[v] = 0.5f; // else each strip covers those below it
     }
     const float bends = outline_bends(&paper.surface, 8, 60);
     print_message("flames up a rim bend by %.1f mm\n", (double)bends);
