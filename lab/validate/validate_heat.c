@@ -80,8 +80,8 @@ SingeResult validate_heat(Lab *lab, SingeError *error) {
     report_plot(lab->report, &plot);
     report_measure(lab->report, "order_space", "lowest order in the cell size, with steps in proportion to its square",
                    min[0], 1.9, 2.2);
-    report_measure(lab->report, "order_time", "lowest order in steps too long for the second, on cells of 1.25 mm", min[1],
-                   0.9, 1.2);
+    report_measure(lab->report, "order_time", "lowest order in steps too long for the second, on cells of 1.25 mm",
+                   min[1], 0.9, 1.2);
     report_measure(lab->report, "error", "error on the finest cells", off[0][count - 1], 0, 5e-3);
     return SINGE_OK;
 }
