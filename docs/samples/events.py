@@ -2,7 +2,7 @@
 #
 # Prints:
 #   0.01 s: first ignition
-#   0.88 s: first hole
+#   0.87 s: first hole
 #   the probe was hottest with 1100 K at 0.5 s
 import numpy as np
 

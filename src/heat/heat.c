@@ -171,12 +171,6 @@ static void heat_take_over(void *context, int begin, int end) {
     }
 }
 
-/// The smallest theta of the scheme that makes no new extremes, and at least that of second order (conduct.c).
-static float heat_theta(const HeatPlan *plan, float dt) {
-    const float rate = dt * plan->stiffness;
-    return rate > 2 ? 1 - 1 / rate : 0.5f;
-}
-
 SingeResult heat_step(HeatPlan *plan, const StepContext *context, HeatState *heat, HeatCounters *counters) {
     const Shell *shell = context->shell;
     const StateInput *state = &context->state;
@@ -191,7 +185,9 @@ SingeResult heat_step(HeatPlan *plan, const StepContext *context, HeatState *hea
                      .hearer = context->hearer};
     double made = 0;
 
-    pass.theta = heat_theta(plan, pass.dt);
+    // the smallest theta that makes no new extremes, and at least that of second order (conduct.c)
+    const float stiffness = pass.dt * plan->stiffness;
+    pass.theta = stiffness > 2 ? 1 - 1 / stiffness : 0.5f;
     heat_plan_follow(plan, shell, state);
     heat_matrix_follow(plan, shell, state->ablate, pass.theta * pass.dt);
 

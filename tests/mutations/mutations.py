@@ -43,7 +43,7 @@ MUTATIONS = [
      "burn", "rate_stops_growing_at_its_ceiling"),
     ("burn/lose_mass.c", "pyrolysis(job, i, excess + heats * pyrolysis(job, i, excess));", "pyrolysis(job, i, excess);",
      "burn", "fuel_heats_itself_to_second_order"),
-    ("heat/heat.c", "return rate > 2 ? 1 - 1 / rate : 0.5f;", "return 1;",
+    ("heat/heat.c", "pass.theta = stiffness > 2 ? 1 - 1 / stiffness : 0.5f;", "pass.theta = 1;",
      "heat_front", "front_speed_does_not_depend_on_steps"),
     ("burn/supply.c", "return share;", "return float4_all(1);",
      "burn", "a_large_area_burns_what_it_has_air_for"),
