@@ -188,6 +188,8 @@ void airborne_draw(Preview *preview) {
         const float most = maxf(light.x, maxf(light.y, light.z));
         if (most > LIGHT_MOST) light = float3_scale(light, LIGHT_MOST / most); // its colour stays
         preview->picture[i] = float3_mad(light, preview->picture[i], clear);
+        if (preview->layers.glow)
+            float3_store(preview->layers.glow[i], float3_scale(float3_load(preview->layers.glow[i]), clear));
         if (!preview->layers.fire) continue;
         float *fire = preview->layers.fire[i];
         float3_store(fire, float3_mad(light, float3_load(fire), clear));
