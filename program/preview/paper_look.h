@@ -115,7 +115,7 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 #define EMBER_WIDTH 0.00042f ///< m, of the glowing line
 #define EMBER_GAIN 3.4f
 #define EMBER_MOST 6.0f  ///< radiance of the brightest channel, which none reaches
-#define LEAF_LIT 0.017f  ///< a leaf's mean radiance, of one that glows all over at its temperature
+#define LEAF_LIT 0.1f    ///< a leaf's mean radiance, of one that glows all over at its temperature
 #define CLOTH_LIT 0.027f ///< the same of cloth
 
 /// The glowing skin is hotter than the simulation's mean over the sheet's thickness.

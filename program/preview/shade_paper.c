@@ -117,6 +117,14 @@ static float near_border(const PaperState *state, const Bent *bent, float width)
     return minf(1, 5 * state->rim) * (1 - stepf(0.1f * width, width * maxf(uneven, 0.2f), distance));
 }
 
+/// Fibres lie along a direction that wanders over the sheet. 1 on one.
+static float ash_fibre(const Bent *bent, float footprint) {
+    Float3 p = bent->position;
+    float wander = 2.4f * noise3(float3_scale(p, 110), 11), c = cosf(wander), s = sinf(wander);
+    Float3 along = float3(0.16f * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
+    return clampf(1.6f - footprint * 1400, 0, 1) * ridge(noise3(float3_scale(along, 2100), 12), 0.5f);
+}
+
 /// How far cold char has turned to ash, `cloud` its patches and `fibre` its threads: from black at 0 over dark grey to pale at
 /// 1. Plates turn at their borders first, in tongues that follow the fibres, and in time in patches as well. Nothing of it
 /// ends abruptly: what does looks pasted on.
@@ -141,14 +149,7 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
     const float size = point->footprint;
     if (bent->burn < PAPER_WHOLE) return;
     const float cloud = paper_noise(bent->position, 14, size, 19) + 0.5f * bent->coarse + 0.2f * bent->medium;
-
-    // fibres lie along a direction that wanders over the sheet
-    Float3 p = bent->position;
-    float wander = 2.4f * noise3(float3_scale(p, 110), 11), c = cosf(wander), s = sinf(wander);
-    Float3 along = float3(0.16f * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
-    float fibre = clampf(1.6f - size * 1400, 0, 1) * ridge(noise3(float3_scale(along, 2100), 12), 0.5f);
-
-    const float plate = ash_on_char(state, bent, cloud, fibre), whole = ash_amount(bent);
+    const float fibre = ash_fibre(bent, size), plate = ash_on_char(state, bent, cloud, fibre), whole = ash_amount(bent);
     const float amount = maxf(whole, minf(2.2f * plate, 0.92f));
     const float dry = 1 - 0.4f * stepf(2, 9, state->age); // tar dries
     point->gloss *= dry;
@@ -198,10 +199,10 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 #define EMBER_HOT 1180.0f ///< K
 
 /// Of a leaf's glow: what lies behind lines, and these.
-#define LEAF_DULL 1.4f
+#define LEAF_DULL 1.1f
 #define LEAF_LINES 1.4f
 #define LEAF_COOLER 180.0f ///< K, how much cooler it is than these
-#define LEAF_BRIGHT 2.6f
+#define LEAF_BRIGHT 1.25f
 #define LEAF_DIM 150.0f   ///< K, how much cooler a thread's sides are
 #define LEAF_CORE 120.0f  ///< K, how much hotter its core is
 #define FRONT_WIDE 20e-3f ///< m, sizes of the noise whose lines are fronts
@@ -210,7 +211,7 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 #define FRONTS 1.35f         ///< how many of them
 #define FRONT_RATE 0.16f     ///< 1/s, how many pass a place
 #define FRONT_FLAT 25.0f     ///< 1/m, the least slope
-#define FRONT_LINE 0.2e-3f   ///< m, its half width
+#define FRONT_LINE 0.17e-3f  ///< m, its half width
 #define FRONT_TAIL 4e-3f     ///< m behind it in which the glow fades
 #define STARVED_COOLER 90.0f ///< K, how much cooler threads and border of char below a flame are
 #define STARVED_BORDER 0.42f ///< the burn value of its line
@@ -271,7 +272,7 @@ static Float3 ember_line(const Preview *preview, const PaperState *state, const 
     float profile = distance > 0 ? 0.72f * expf(-0.5f * x * x) + 0.28f * expf(-0.8f * x) : expf(-x * x);
     float temperature = ember_temperature(state->temperature) + 210 * (life - 0.6f) + 60 * bent->fine;
     if (distance > 0) temperature -= 45 * minf(x, 3);
-    float strength = activity * profile * (0.05f + 0.95f * life * life) * (0.6f + 0.55f * beads(preview, bent)) * air;
+    float strength = activity * profile * (0.05f + 0.95f * life * life) * (0.85f + 0.4f * bent->fine) * air;
 
     // red-hot cracks in the char next to it
     float near = 0.10f * activity * life * expf(-0.05f * x * x);
@@ -324,7 +325,7 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     const float activity = alone + starved;
     if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
 
-    const float life = maxf(leaf_life(preview, bent), 0.65f * starved) * minf(air, 1.2f), bead = beads(preview, bent);
+    const float life = maxf(leaf_life(preview, bent), 0.55f * starved) * minf(air, 1.2f), bead = beads(preview, bent);
     float line = 0, tail = 0;
     if (life > 0) {
         const float behind = front_behind(preview, state, bent);
@@ -346,7 +347,7 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     Float3 dull = blackbody_glow(preview->blackbody, ember_seen(temperature - LEAF_COOLER));
     const float core = stepf(0.05f, 1.1f, hot); // it cools from there: orange lines in dull red
     Float3 bright = blackbody_glow(preview->blackbody, ember_seen(temperature + mixf(-LEAF_DIM, LEAF_CORE, core)));
-    dull = float3_scale(dull, LEAF_DULL * (0.04f + life * tail) * (alone + 0.1f * starved));
+    dull = float3_scale(dull, LEAF_DULL * (0.04f + life * tail) * alone);
     return float3_scale(float3_mad(dull, bright, LEAF_BRIGHT * hot * activity), EMBER_GAIN * air);
 }
 

@@ -13,10 +13,10 @@ const float EMBER_WIDTH = 0.00042;
 const float EMBER_GAIN = 3.4;
 const float EMBER_MOST = 6.0;
 const float EMBER_HOT = 1180.0;
-const float LEAF_DULL = 1.4;
+const float LEAF_DULL = 1.1;
 const float LEAF_LINES = 1.4;
 const float LEAF_COOLER = 180.0;
-const float LEAF_BRIGHT = 2.6;
+const float LEAF_BRIGHT = 1.25;
 const float LEAF_DIM = 150.0;
 const float LEAF_CORE = 120.0;
 const float FRONT_WIDE = 0.02;
@@ -25,7 +25,7 @@ const float FRONT_UNEVEN = 0.4;
 const float FRONTS = 1.35;
 const float FRONT_RATE = 0.16;
 const float FRONT_FLAT = 25.0;
-const float FRONT_LINE = 0.0002;
+const float FRONT_LINE = 0.00017;
 const float FRONT_TAIL = 0.004;
 const float STARVED_COOLER = 90.0;
 const float STARVED_BORDER = 0.42;
@@ -109,6 +109,12 @@ float near_border(PaperState state, Bent bent, float width) {
     float uneven = 1.0 + 0.5 * bent.coarse + 0.6 * bent.medium + 0.4 * bent.fine;
     return min(1.0, 5.0 * state.rim) * (1.0 - stepf(0.1 * width, width * max(uneven, 0.2), distance_));
 }
+float ash_fibre(Bent bent, float footprint) {
+    vec3 p = bent.position;
+    float wander = 2.4 * noise3(float3_scale(p, 110.0), 11.0), c = cos(wander), s = sin(wander);
+    vec3 along = vec3(0.16 * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
+    return clamp(1.6 - footprint * 1400.0, 0.0, 1.0) * ridge(noise3(float3_scale(along, 2100.0), 12.0), 0.5);
+}
 float ash_on_char(PaperState state, Bent bent, float cloud, float fibre) {
     float cold = stepf(PAPER_WHOLE, 0.5, bent.burn) * (1.0 - stepf(520.0, 760.0, bent.temperature));
     if (cold <= 0.0) return 0.0;
@@ -127,11 +133,7 @@ void ash_shade(PaperState state, Bent bent, float ink, inout Point point) {
     float size = point.footprint;
     if (bent.burn < PAPER_WHOLE) return;
     float cloud = paper_noise(bent.position, 14.0, size, 19.0) + 0.5 * bent.coarse + 0.2 * bent.medium;
-    vec3 p = bent.position;
-    float wander = 2.4 * noise3(float3_scale(p, 110.0), 11.0), c = cos(wander), s = sin(wander);
-    vec3 along = vec3(0.16 * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
-    float fibre = clamp(1.6 - size * 1400.0, 0.0, 1.0) * ridge(noise3(float3_scale(along, 2100.0), 12.0), 0.5);
-    float plate = ash_on_char(state, bent, cloud, fibre), whole = ash_amount(bent);
+    float fibre = ash_fibre(bent, size), plate = ash_on_char(state, bent, cloud, fibre), whole = ash_amount(bent);
     float amount = max(whole, min(2.2 * plate, 0.92));
     float dry = 1.0 - 0.4 * stepf(2.0, 9.0, state.age);
     point.gloss *= dry;
@@ -203,7 +205,7 @@ vec3 ember_line(PaperState state, Bent bent, float air,
     float profile = distance_ > 0.0 ? 0.72 * exp(-0.5 * x * x) + 0.28 * exp(-0.8 * x) : exp(-x * x);
     float temperature = ember_temperature(state.temperature) + 210.0 * (life - 0.6) + 60.0 * bent.fine;
     if (distance_ > 0.0) temperature -= 45.0 * min(x, 3.0);
-    float strength = activity * profile * (0.05 + 0.95 * life * life) * (0.6 + 0.55 * beads(bent)) * air;
+    float strength = activity * profile * (0.05 + 0.95 * life * life) * (0.85 + 0.4 * bent.fine) * air;
     float near = 0.10 * activity * life * exp(-0.05 * x * x);
     if (near > 0.003) strength += near * paper_cracks(bent, 1.6, 0.12, footprint);
     return float3_scale(blackbody_glow(ember_seen(temperature)), EMBER_GAIN * max(strength, 0.0));
@@ -240,7 +242,7 @@ vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float alone = ember_activity(state.glowing), starved = ember_starved(state.starved, bent.burn, alone);
     float activity = alone + starved;
     if (activity < 0.02 || ember_temperature(state.temperature) < BLACKBODY_MIN) return vec3(0.0, 0.0, 0.0);
-    float life = max(leaf_life(bent), 0.65 * starved) * min(air, 1.2), bead = beads(bent);
+    float life = max(leaf_life(bent), 0.55 * starved) * min(air, 1.2), bead = beads(bent);
     float line = 0.0, tail = 0.0;
     if (life > 0.0) {
         float behind = front_behind(state, bent);
@@ -260,7 +262,7 @@ vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     vec3 dull = blackbody_glow(ember_seen(temperature - LEAF_COOLER));
     float core = stepf(0.05, 1.1, hot);
     vec3 bright = blackbody_glow(ember_seen(temperature + mix(-LEAF_DIM, LEAF_CORE, core)));
-    dull = float3_scale(dull, LEAF_DULL * (0.04 + life * tail) * (alone + 0.1 * starved));
+    dull = float3_scale(dull, LEAF_DULL * (0.04 + life * tail) * alone);
     return float3_scale(float3_mad(dull, bright, LEAF_BRIGHT * hot * activity), EMBER_GAIN * air);
 }
 void ember_shade(PaperState state, Bent bent, inout Point point) {
