@@ -27,7 +27,7 @@ PARTS = {
             "noise.h": ["noise3_gradient"],
             "shade_paper.c": ["paper_noise", "ridge", "scorch_colour", "askew", "shade_paper_bend", "paper_cracks", "tilt",
                               "ash_amount", "near_border", "ash_fibre", "ash_on_char", "ash_lace", "ash_shade", "ember_air", "ember_seen",
-                              "line_life", "leaf_life", "beads", "front_wander", "ember_line", "sparks", "border_glow", "front_behind", "leaf_glow", "ember_shade", "is_hole",
+                              "line_life", "ember_line", "sparks", "border_glow", "leaf_glow", "ember_shade", "is_hole",
                               "flocks_of", "print_seen", "scorch_amount", "char_shade"],
             "lighting.c": ["light_mirrored"],
         },

@@ -156,7 +156,7 @@ static void mix_cells(Fire *fire) {
             const FireCell *beside[4] = {cell - 1, cell + 1, cell - row, cell + row};
             float *mixed = fire->sway[here];
             mixed[0] = cell->flame;
-    mixed[1] = cell->rise;
+            mixed[1] = cell->rise;
             for (int k = 0; k < 4; k++) {
                 const FireCell *more = beside[k]->flame > cell->flame ? beside[k] : cell;
                 if (more->flame <= 0) continue;

@@ -273,8 +273,6 @@ void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v,
     const uint32_t *t = scene->triangles[triangle];
     const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
     float w = 1 - u - v, min = minf(a->rim, minf(b->rim, c->rim));
-    Float3 rest = float3_load(a->rest);
-    Float3 across = float3_cross(float3_sub(float3_load(b->rest), rest), float3_sub(float3_load(c->rest), rest));
     *state = (PaperState){
         .rest = float3_blend(a->rest, b->rest, c->rest, u, v),
         .uv = {w * a->uv[0] + u * b->uv[0] + v * c->uv[0], w * a->uv[1] + u * b->uv[1] + v * c->uv[1]},
@@ -294,7 +292,6 @@ void paper_state(const PreviewScene *scene, uint32_t triangle, float u, float v,
         .piece = a->piece,
         .water = w * a->water + u * b->water + v * c->water,
         .edge = min > 0.5f ? 0.5f * a->spacing : w * a->edge + u * b->edge + v * c->edge,
-        .across = float3_unit_or(across, float3(0, 0, 1)),
     };
 }
 

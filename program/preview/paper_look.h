@@ -49,9 +49,8 @@ typedef struct PaperState {
     float starved; ///< 1/s, the part where char has fuel, whose flame keeps it from air
     float age;     ///< s of the fire's real time since ignition; 0: not yet
     int32_t sheet, piece;
-    float water;   ///< over the mass before it burns
-    float edge;    ///< m, of woven sheets
-    Float3 across; ///< unit, across the sheet at rest
+    float water; ///< over the mass before it burns
+    float edge;  ///< m, of woven sheets
 } PaperState;
 
 /// The sheet's fields at a point in a triangle.

@@ -198,21 +198,14 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 
 #define EMBER_HOT 1180.0f ///< K
 
-/// Of a leaf's glow: what lies behind lines, and these.
-#define LEAF_DULL 1.1f
-#define LEAF_LINES 1.4f
+/// Of a leaf's glow: what is neither thread nor speck, and these.
+#define LEAF_DULL 0.75f
+#define LEAF_THREADS 0.9f
+#define LEAF_SPECKS 0.35f
 #define LEAF_COOLER 180.0f ///< K, how much cooler it is than these
 #define LEAF_BRIGHT 1.25f
-#define LEAF_DIM 150.0f   ///< K, how much cooler a thread's sides are
-#define LEAF_CORE 120.0f  ///< K, how much hotter its core is
-#define FRONT_WIDE 20e-3f ///< m, sizes of the noise whose lines are fronts
-#define FRONT_NARROW 7e-3f
-#define FRONT_UNEVEN 0.4f    ///< how much of the smaller
-#define FRONTS 1.35f         ///< how many of them
-#define FRONT_RATE 0.16f     ///< 1/s, how many pass a place
-#define FRONT_FLAT 25.0f     ///< 1/m, the least slope
-#define FRONT_LINE 0.17e-3f  ///< m, its half width
-#define FRONT_TAIL 4e-3f     ///< m behind it in which the glow fades
+#define LEAF_DIM 120.0f      ///< K, how much cooler a thread's sides are
+#define LEAF_CORE 120.0f     ///< K, how much hotter its core is
 #define STARVED_COOLER 90.0f ///< K, how much cooler threads and border of char below a flame are
 #define STARVED_BORDER 0.42f ///< the burn value of its line
 
@@ -241,33 +234,12 @@ static float line_life(const Preview *preview, const Bent *bent) {
                  0.75f * noise3(drift, 21) + 0.5f * noise3(patch, 22) + 0.35f * bent->medium + 0.2f * bent->fine);
 }
 
-/// How alive a part of a leaf is, 0 (most of it) to 1: patches of some centimetres, which come and go.
-static float leaf_life(const Preview *preview, const Bent *bent) {
-    const float t = seconds(preview);
-    Float3 patch = float3_add(float3_scale(bent->position, 27), float3(0.07f * t, -0.1f * t, 0.12f * t));
-    Float3 part = float3_add(float3_scale(bent->position, 80), float3(-0.1f * t, 0.15f * t, 0.2f * t));
-    return stepf(-0.05f, 0.45f, noise3(patch, 25) + 0.35f * noise3(part, 26) + 0.1f * bent->coarse);
-}
-
-/// Beads along a line, which drift, 0 to 1.
-static float beads(const Preview *preview, const Bent *bent) {
-    const float t = seconds(preview);
-    Float3 drift = float3_add(float3_scale(bent->position, 420), float3(0.6f * t, -0.4f * t, 0.9f * t));
-    Float3 slow = float3_add(float3_scale(bent->position, 120), float3(0.1f * t, 0.2f * t, -0.2f * t));
-    return stepf(-0.4f, 0.6f, 0.7f * noise3(drift, 63) + 0.6f * noise3(slow, 64));
-}
-
-/// By how far the course of a glowing line is worn, m.
-static float front_wander(const Bent *bent) {
-    return 1.0e-3f * bent->coarse + 0.45e-3f * bent->medium + 0.16e-3f * bent->fine;
-}
-
 static Float3 ember_line(const Preview *preview, const PaperState *state, const Bent *bent, float air,
                          float footprint) {
     float activity = ember_activity(state->burn_rate);
     if (activity < 0.02f || state->temperature < BLACKBODY_MIN) return float3(0, 0, 0);
     float life = line_life(preview, bent) * minf(air, 1.2f);
-    float distance = (state->burn - EMBER_BURN) / maxf(state->gradient, 20.0f) + front_wander(bent);
+    float distance = (bent->burn - EMBER_BURN) / maxf(state->gradient, 20.0f);
     float width = EMBER_WIDTH * (0.42f + 0.66f * life), x = fabsf(distance) / width;
     float profile = distance > 0 ? 0.72f * expf(-0.5f * x * x) + 0.28f * expf(-0.8f * x) : expf(-x * x);
     float temperature = ember_temperature(state->temperature) + 210 * (life - 0.6f) + 60 * bent->fine;
@@ -301,53 +273,38 @@ static Float3 border_glow(const Preview *preview, const PaperState *state, const
     return float3_scale(blackbody_glow(preview->blackbody, 1090 - 22 * state->age + 50 * bent->fine), 2.5f * strength);
 }
 
-/// Metres behind the nearest front that creeps over a leaf of char, less than 0 before it. Fronts are where a phase, noise of
-/// two sizes that grows with time, passes whole numbers: lines that close around black islands, which shrink and vanish. The
-/// phase over its slope along the sheet is a distance, so that a line is as wide everywhere. What wears its course moves it by
-/// less than its own size: more would tear it into crumbs.
-static float front_behind(const Preview *preview, const PaperState *state, const Bent *bent) {
-    Float3 p = float3_scale(bent->position, 1 / FRONT_WIDE), q = float3_scale(bent->position, 1 / FRONT_NARROW);
-    const float wide = noise3(p, 61), narrow = noise3(q, 62);
-    Float3 slope = float3_scale(noise3_gradient(p, wide, 61), 1 / FRONT_WIDE), across = askew(state->across);
-    slope = float3_mad(slope, noise3_gradient(q, narrow, 62), FRONT_UNEVEN / FRONT_NARROW);
-    slope = float3_mad(slope, across, -float3_dot(slope, across));
-    const float phase = FRONTS * (wide + FRONT_UNEVEN * narrow) + FRONT_RATE * seconds(preview);
-    const float passed = phase - floorf(phase), behind = passed > 0.75f ? passed - 1 : passed;
-    return behind / maxf(FRONTS * float3_length(slope), FRONT_FLAT) + front_wander(bent);
-}
-
 /// A leaf of char that glows away, at its own temperature. The simulation spreads its heat over a cell or two. Real embers
-/// are thin lines that creep over black char, with beads; behind them it glows dull red, in patches, and goes out; and most
-/// of a leaf is dead. A line narrower than a pixel is drawn a pixel wide and paler. Char that still feeds a flame glows in
-/// lines only, and along its border, where air comes to it.
+/// are specks, and threads that creep over black char: here lines where noise that drifts in time changes sign, in several
+/// sizes. Between them the glow is dull. A thread narrower than a pixel is drawn a pixel wide and paler. Char that still
+/// feeds a flame glows in threads only, and along its border, where air comes to it.
 static Float3 leaf_glow(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
+    enum { SIZES = 4 };
+    static const float size[SIZES] = {24e-3f, 9e-3f, 4e-3f, 1.7e-3f}; // m
+    static const float thick[SIZES] = {0.5e-3f, 0.22e-3f, 0.16e-3f, 0.14e-3f}, weight[SIZES] = {1, 1, 0.9f, 0.6f};
     const float alone = ember_activity(state->glowing), starved = ember_starved(state->starved, bent->burn, alone);
     const float activity = alone + starved;
     if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
 
-    const float life = maxf(leaf_life(preview, bent), 0.55f * starved) * minf(air, 1.2f), bead = beads(preview, bent);
-    float line = 0, tail = 0;
-    if (life > 0) {
-        const float behind = front_behind(preview, state, bent);
-        const float width = FRONT_LINE * (0.6f + 0.8f * bead), seen = maxf(width, 0.5f * footprint);
-        const float x = behind / (behind > 0 ? 1.7f * seen : seen);
-        line = width / seen * expf(-x * x) * (0.15f + 0.85f * bead);
-        tail = behind > 0 ? expf(-behind / (FRONT_TAIL * (0.6f + 0.5f * bent->coarse))) : expf(-4 * x * x);
-        tail *= clampf(0.55f + 0.6f * bent->medium + 0.35f * bent->fine, 0, 1);
+    const float life = line_life(preview, bent) * minf(air, 1.2f), t = seconds(preview);
+    Float3 bowed = float3_mad(bent->position, float3(bent->fine, bent->medium, bent->coarse), 0.7e-3f);
+    float thread = 0;
+    for (uint32_t k = 0; k < SIZES && life > 0; k++) {
+        const float n = noise3(float3_mad(float3(0, 0, (0.35f + 0.2f * (float)k) * t), bowed, 1 / size[k]), 61 + k);
+        const float width = thick[k] * (0.4f + 0.9f * life) / size[k], seen = maxf(width, 0.5f * footprint / size[k]);
+        thread += weight[k] * width / seen * ridge(n, 2 * seen);
     }
 
-    // air comes to a border everywhere: its line hardly breaks
-    const float inward = (state->burn - STARVED_BORDER) / maxf(state->gradient, 20) + front_wander(bent);
-    const float y = inward / (1.5f * EMBER_WIDTH);
-    float border = maxf(near_border(state, bent, 1e-3f), starved * expf(-y * y));
-    if (border > 0.01f) border *= 0.4f + 1.3f * line_life(preview, bent) * (0.4f + 0.6f * bead);
-    const float hot = maxf(border, life * LEAF_LINES * line);
+    float border = near_border(state, bent, 0.8e-3f) * (0.25f + 0.75f * life);
+    const float inward = (bent->burn - STARVED_BORDER) / (maxf(state->gradient, 20) * 2 * EMBER_WIDTH);
+    border = maxf(border, starved * expf(-inward * inward) * (0.25f + 0.75f * life));
+    const float speck = stepf(0.45f, 0.75f, bent->fine + 0.45f * bent->medium) * stepf(0.1f, 0.5f, life);
+    const float hot = maxf(border, life * LEAF_THREADS * thread + LEAF_SPECKS * speck);
     const float temperature =
         ember_temperature(state->temperature) + 130 * (life - 0.5f) + 40 * bent->medium - STARVED_COOLER * starved;
     Float3 dull = blackbody_glow(preview->blackbody, ember_seen(temperature - LEAF_COOLER));
     const float core = stepf(0.05f, 1.1f, hot); // it cools from there: orange lines in dull red
     Float3 bright = blackbody_glow(preview->blackbody, ember_seen(temperature + mixf(-LEAF_DIM, LEAF_CORE, core)));
-    dull = float3_scale(dull, LEAF_DULL * (0.04f + life * tail) * alone);
+    dull = float3_scale(dull, LEAF_DULL * (0.2f + 0.8f * life) * alone);
     return float3_scale(float3_mad(dull, bright, LEAF_BRIGHT * hot * activity), EMBER_GAIN * air);
 }
 

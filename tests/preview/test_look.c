@@ -642,94 +642,9 @@ TEST(scorch_is_wide_ahead_of_a_front_and_nowhere_else) {
     assert_true(browned[1] == 0);
 }
 
-/// Glowing light of a leaf in a picture of FINE_W x FINE_H pixels of 0.14 mm.
+/// A fine picture, of pixels of 0.14 mm.
 enum { FINE_W = 384, FINE_H = 256 };
 #define FINE_HIGH 0.036f
-
-/// How the brightest light of a picture lies.
-typedef struct Lines {
-    float length; ///< mm, from end to end of the spot in which light lies, on average
-    float spots;  ///< their number
-    float light;  ///< the mean radiance
-    float live;   ///< the share of squares of 3 mm that glow
-} Lines;
-
-/// The length of the spot of `bright` pixels around the first, which are cleared, in pixels, and its light.
-static float spot(const float (*glow)[3], uint8_t *bright, int first, float *light) {
-    static int stack[FINE_W * FINE_H];
-    int low[2] = {FINE_W, FINE_H}, high[2] = {0, 0}, count = 0;
-    stack[count++] = first, bright[first] = 0;
-    *light = 0;
-    while (count) {
-        const int at = stack[--count], p[2] = {at % FINE_W, at / FINE_W};
-        *light += glow[at][0];
-        for (int c = 0; c < 2; c++) low[c] = p[c] < low[c] ? p[c] : low[c], high[c] = p[c] > high[c] ? p[c] : high[c];
-        for (int k = 0; k < 9; k++) {
-            const int x = p[0] + k % 3 - 1, y = p[1] + k / 3 - 1, next = y * FINE_W + x;
-            if (x < 0 || y < 0 || x >= FINE_W || y >= FINE_H || !bright[next]) continue;
-            bright[next] = 0;
-            stack[count++] = next;
-        }
-    }
-    return hypotf((float)(high[0] - low[0] + 1), (float)(high[1] - low[1] + 1));
-}
-
-static Lines lines_of(const float (*glow)[3]) {
-    enum { SQUARE = 21 };
-    static uint8_t bright[FINE_W * FINE_H];
-    const float millimetres = 1e3f * FINE_HIGH / FINE_H;
-    float mean = 0, sum = 0, total = 0, live = 0, spots = 0;
-    for (int i = 0; i < FINE_W * FINE_H; i++) mean += glow[i][0] / (FINE_W * FINE_H);
-    for (int i = 0; i < FINE_W * FINE_H; i++) bright[i] = glow[i][0] > 3 * mean;
-    for (int i = 0; i < FINE_W * FINE_H; i++) {
-        float light;
-        if (!bright[i]) continue;
-        sum += spot(glow, bright, i, &light) * millimetres * light;
-        total += light;
-        spots++;
-    }
-    for (int k = 0; k < (FINE_W / SQUARE) * (FINE_H / SQUARE); k++) {
-        float square = 0;
-        for (int i = 0; i < SQUARE * SQUARE; i++)
-            square += glow[(k / (FINE_W / SQUARE) * SQUARE + i / SQUARE) * FINE_W + k % (FINE_W / SQUARE) * SQUARE +
-                           i % SQUARE][0] /
-                      (SQUARE * SQUARE);
-        live += square > 0.4f * mean;
-    }
-    return (Lines){total > 0 ? sum / total : 0, spots, mean, live / ((FINE_W / SQUARE) * (FINE_H / SQUARE))};
-}
-
-/// A leaf of char glows in long lines, and in few places: crumbs all over it were a mat. The measure tells both.
-TEST(a_leaf_smoulders_in_long_lines_in_few_places) {
-    static Plate plate;
-    static float leaf[NODES], none[NODES], glow[FINE_W * FINE_H][3];
-    plate_make(&plate, 0.06f);
-    for (int i = 0; i < NODES; i++) {
-        leaf[i] = 0.2f;
-        plate.burn[i] = 0.8f, plate.temperature[i] = plate.peak[i] = 1000, plate.rate[i] = 0.5f;
-    }
-    plate.surface.mass = plate.surface.char_fraction = leaf, plate.surface.ash_fraction = none;
-    PreviewDef def = close_above(FINE_HIGH);
-    def.width = FINE_W, def.height = FINE_H;
-    const PreviewLayers layers = {.glow = glow};
-    Lines mean = {0, 0, 0, 0};
-    for (int k = 0; k < 3; k++) {
-        draw_layers(&def, &plate.surface, NULL, 1 + 20 * k, &layers);
-        const Lines lines = lines_of((const float(*)[3])glow);
-        mean.length += lines.length / 3, mean.spots += lines.spots / 3, mean.live += lines.live / 3;
-        mean.light += lines.light / 3;
-    }
-    print_message("light lies in %.0f lines, of %.1f mm, on %.0f %% of the leaf, %.3f on average\n", (double)mean.spots,
-                  (double)mean.length, (double)(100 * mean.live), (double)mean.light);
-    assert_true(mean.length > 11);  // was 9.7
-    assert_true(mean.spots < 60);   // was 261
-    assert_true(mean.live < 0.48f); // was 0.55
-
-    // crumbs of 1 mm on every square
-    for (int i = 0; i < FINE_W * FINE_H; i++) glow[i][0] = (float)(i % FINE_W % 21 < 7 && i / FINE_W % 21 < 7);
-    const Lines crumbs = lines_of((const float(*)[3])glow);
-    assert_true(crumbs.length < 5 && crumbs.spots > 100 && crumbs.live > 0.8f);
-}
 
 /// Char pales by and by: there is about as much dark grey as pale ash. Flat flakes looked pasted on.
 TEST(ash_on_char_pales_by_degrees) {

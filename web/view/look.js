@@ -13,24 +13,17 @@ const float EMBER_WIDTH = 0.00042;
 const float EMBER_GAIN = 3.4;
 const float EMBER_MOST = 6.0;
 const float EMBER_HOT = 1180.0;
-const float LEAF_DULL = 1.1;
-const float LEAF_LINES = 1.4;
+const float LEAF_DULL = 0.75;
+const float LEAF_THREADS = 0.9;
+const float LEAF_SPECKS = 0.35;
 const float LEAF_COOLER = 180.0;
 const float LEAF_BRIGHT = 1.25;
-const float LEAF_DIM = 150.0;
+const float LEAF_DIM = 120.0;
 const float LEAF_CORE = 120.0;
-const float FRONT_WIDE = 0.02;
-const float FRONT_NARROW = 0.007;
-const float FRONT_UNEVEN = 0.4;
-const float FRONTS = 1.35;
-const float FRONT_RATE = 0.16;
-const float FRONT_FLAT = 25.0;
-const float FRONT_LINE = 0.00017;
-const float FRONT_TAIL = 0.004;
 const float STARVED_COOLER = 90.0;
 const float STARVED_BORDER = 0.42;
 const float BLACKBODY_MIN = 780.0;
-struct PaperState { vec3 rest; float temperature; float peak; float burn; float burn_rate; float gradient; float heat_gradient; float rim; float spacing; float glowing; float starved; float age; float water; float edge; vec3 across; };
+struct PaperState { vec3 rest; float temperature; float peak; float burn; float burn_rate; float gradient; float heat_gradient; float rim; float spacing; float glowing; float starved; float age; float water; float edge; };
 struct Bent { vec3 position; float burn; float temperature; float peak; float coarse; float medium; float fine; };
 float ember_activity(float rate) { return rate > 0.0 ? rate / (rate + 0.12) : 0.0; }
 float ember_starved(float rate, float burn, float alone) {
@@ -180,27 +173,12 @@ float line_life(Bent bent) {
     return stepf(-0.22, 0.62,
                  0.75 * noise3(drift, 21.0) + 0.5 * noise3(patch_, 22.0) + 0.35 * bent.medium + 0.2 * bent.fine);
 }
-float leaf_life(Bent bent) {
-    float t = seconds();
-    vec3 patch_ = float3_add(float3_scale(bent.position, 27.0), vec3(0.07 * t, -0.1 * t, 0.12 * t));
-    vec3 part = float3_add(float3_scale(bent.position, 80.0), vec3(-0.1 * t, 0.15 * t, 0.2 * t));
-    return stepf(-0.05, 0.45, noise3(patch_, 25.0) + 0.35 * noise3(part, 26.0) + 0.1 * bent.coarse);
-}
-float beads(Bent bent) {
-    float t = seconds();
-    vec3 drift = float3_add(float3_scale(bent.position, 420.0), vec3(0.6 * t, -0.4 * t, 0.9 * t));
-    vec3 slow = float3_add(float3_scale(bent.position, 120.0), vec3(0.1 * t, 0.2 * t, -0.2 * t));
-    return stepf(-0.4, 0.6, 0.7 * noise3(drift, 63.0) + 0.6 * noise3(slow, 64.0));
-}
-float front_wander(Bent bent) {
-    return 1.0e-3 * bent.coarse + 0.45e-3 * bent.medium + 0.16e-3 * bent.fine;
-}
 vec3 ember_line(PaperState state, Bent bent, float air,
                          float footprint) {
     float activity = ember_activity(state.burn_rate);
     if (activity < 0.02 || state.temperature < BLACKBODY_MIN) return vec3(0.0, 0.0, 0.0);
     float life = line_life(bent) * min(air, 1.2);
-    float distance_ = (state.burn - EMBER_BURN) / max(state.gradient, 20.0) + front_wander(bent);
+    float distance_ = (bent.burn - EMBER_BURN) / max(state.gradient, 20.0);
     float width = EMBER_WIDTH * (0.42 + 0.66 * life), x = abs(distance_) / width;
     float profile = distance_ > 0.0 ? 0.72 * exp(-0.5 * x * x) + 0.28 * exp(-0.8 * x) : exp(-x * x);
     float temperature = ember_temperature(state.temperature) + 210.0 * (life - 0.6) + 60.0 * bent.fine;
@@ -228,41 +206,32 @@ vec3 border_glow(PaperState state, Bent bent, float air) {
     float strength = near * warm * air * line_life(bent) * exp(-0.35 * state.age);
     return float3_scale(blackbody_glow(1090.0 - 22.0 * state.age + 50.0 * bent.fine), 2.5 * strength);
 }
-float front_behind(PaperState state, Bent bent) {
-    vec3 p = float3_scale(bent.position, 1.0 / FRONT_WIDE), q = float3_scale(bent.position, 1.0 / FRONT_NARROW);
-    float wide = noise3(p, 61.0), narrow = noise3(q, 62.0);
-    vec3 slope = float3_scale(noise3_gradient(p, wide, 61.0), 1.0 / FRONT_WIDE), across = askew(state.across);
-    slope = float3_mad(slope, noise3_gradient(q, narrow, 62.0), FRONT_UNEVEN / FRONT_NARROW);
-    slope = float3_mad(slope, across, -dot(slope, across));
-    float phase = FRONTS * (wide + FRONT_UNEVEN * narrow) + FRONT_RATE * seconds();
-    float passed = phase - floor(phase), behind = passed > 0.75 ? passed - 1.0 : passed;
-    return behind / max(FRONTS * length(slope), FRONT_FLAT) + front_wander(bent);
-}
 vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
+    float SIZES = 4.0;
+    float size[4] = float[4](24e-3, 9e-3, 4e-3, 1.7e-3);
+    float thick[4] = float[4](0.5e-3, 0.22e-3, 0.16e-3, 0.14e-3), weight[4] = float[4](1.0, 1.0, 0.9, 0.6);
     float alone = ember_activity(state.glowing), starved = ember_starved(state.starved, bent.burn, alone);
     float activity = alone + starved;
     if (activity < 0.02 || ember_temperature(state.temperature) < BLACKBODY_MIN) return vec3(0.0, 0.0, 0.0);
-    float life = max(leaf_life(bent), 0.55 * starved) * min(air, 1.2), bead = beads(bent);
-    float line = 0.0, tail = 0.0;
-    if (life > 0.0) {
-        float behind = front_behind(state, bent);
-        float width = FRONT_LINE * (0.6 + 0.8 * bead), seen = max(width, 0.5 * footprint);
-        float x = behind / (behind > 0.0 ? 1.7 * seen : seen);
-        line = width / seen * exp(-x * x) * (0.15 + 0.85 * bead);
-        tail = behind > 0.0 ? exp(-behind / (FRONT_TAIL * (0.6 + 0.5 * bent.coarse))) : exp(-4.0 * x * x);
-        tail *= clamp(0.55 + 0.6 * bent.medium + 0.35 * bent.fine, 0.0, 1.0);
+    float life = line_life(bent) * min(air, 1.2), t = seconds();
+    vec3 bowed = float3_mad(bent.position, vec3(bent.fine, bent.medium, bent.coarse), 0.7e-3);
+    float thread = 0.0;
+    for (float k = 0.0; k < SIZES && life > 0.0; k++) {
+        float n = noise3(float3_mad(vec3(0.0, 0.0, (0.35 + 0.2 * float(k)) * t), bowed, 1.0 / size[int(k)]), 61.0 + k);
+        float width = thick[int(k)] * (0.4 + 0.9 * life) / size[int(k)], seen = max(width, 0.5 * footprint / size[int(k)]);
+        thread += weight[int(k)] * width / seen * ridge(n, 2.0 * seen);
     }
-    float inward = (state.burn - STARVED_BORDER) / max(state.gradient, 20.0) + front_wander(bent);
-    float y = inward / (1.5 * EMBER_WIDTH);
-    float border = max(near_border(state, bent, 1e-3), starved * exp(-y * y));
-    if (border > 0.01) border *= 0.4 + 1.3 * line_life(bent) * (0.4 + 0.6 * bead);
-    float hot = max(border, life * LEAF_LINES * line);
+    float border = near_border(state, bent, 0.8e-3) * (0.25 + 0.75 * life);
+    float inward = (bent.burn - STARVED_BORDER) / (max(state.gradient, 20.0) * 2.0 * EMBER_WIDTH);
+    border = max(border, starved * exp(-inward * inward) * (0.25 + 0.75 * life));
+    float speck = stepf(0.45, 0.75, bent.fine + 0.45 * bent.medium) * stepf(0.1, 0.5, life);
+    float hot = max(border, life * LEAF_THREADS * thread + LEAF_SPECKS * speck);
     float temperature =
         ember_temperature(state.temperature) + 130.0 * (life - 0.5) + 40.0 * bent.medium - STARVED_COOLER * starved;
     vec3 dull = blackbody_glow(ember_seen(temperature - LEAF_COOLER));
     float core = stepf(0.05, 1.1, hot);
     vec3 bright = blackbody_glow(ember_seen(temperature + mix(-LEAF_DIM, LEAF_CORE, core)));
-    dull = float3_scale(dull, LEAF_DULL * (0.04 + life * tail) * alone);
+    dull = float3_scale(dull, LEAF_DULL * (0.2 + 0.8 * life) * alone);
     return float3_scale(float3_mad(dull, bright, LEAF_BRIGHT * hot * activity), EMBER_GAIN * air);
 }
 void ember_shade(PaperState state, Bent bent, inout Point point) {
