@@ -193,6 +193,7 @@ TEST(burnt_corners_do_not_swing) {
 
     print_message("sides up to %.2f of their length\n", (double)longest);
     assert_true(longest < 1.1f);
+    singe_sim_destroy(sim);
 }
 
 TEST(yellow_and_green_go_with_the_cell) {

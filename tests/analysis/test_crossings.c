@@ -221,7 +221,7 @@ static void check_soup(Soup *soup) {
     assert_true(hinges_find(position, triangles, soup->count, touching, &touches));
     for (size_t i = 0; i < touches; i++) crossing[touching[i][0] * soup->count + touching[i][1]] = true, count++;
 
-    RELEASED(crossings_free) CrossingList list;
+    CrossingList list;
     assert_true(crossings_find(position, triangles, soup->count, &list));
     assert_int_equal(list.count, count);
 
@@ -232,6 +232,7 @@ static void check_soup(Soup *soup) {
     }
 
     assert_true(soup->count < 10 || count > 0);
+    crossings_free(&list);
     free(touching);
     free(crossing);
     free(soup);
@@ -300,7 +301,7 @@ TEST(hinges_are_no_crossings) {
             const Meeting *m = &meetings[i];
             float position[18][3];
             uint32_t triangles[16][3];
-            RELEASED(crossings_free) CrossingList list;
+            CrossingList list;
             const uint32_t first = apart & 1 ? 9 : 0;
             add_lines((const float *const[3]){left, middle, right}, first, position, triangles + (first ? 8 : 0));
             const uint32_t second = 9 - first;
@@ -310,6 +311,7 @@ TEST(hinges_are_no_crossings) {
                 position[v][1] = 0.75f * position[v][1] + 0.125f;
             assert_true(crossings_find((const float(*)[3])position, (const uint32_t(*)[3])triangles, 16, &list));
             if ((list.count > 0) != m->cross) fail_msg("%s, %d: %zu", m->what, apart, list.count);
+            crossings_free(&list);
         }
 }
 
@@ -321,11 +323,12 @@ TEST(cost_grows_with_the_triangles) {
     double each[2];
     for (int size = 0; size < 2; size++) {
         const uint32_t cells = size ? LARGE : LARGE / 4, count = 2 * SHEETS * cells * cells;
-        RELEASED(crossings_free) CrossingList list;
+        CrossingList list;
         for (int sheet = 0; sheet < SHEETS; sheet++) add_sheet(cells, sheet, 0.1f, position, triangles);
         assert_true(crossings_find((const float(*)[3])position, (const uint32_t(*)[3])triangles, count, &list));
         assert_int_equal(list.count, 0);
         each[size] = (double)list.tested / count;
+        crossings_free(&list);
     }
 
     assert_true(each[1] < 1.5 * each[0]);

@@ -64,8 +64,9 @@ static SingeSurface draw(int cells, Height *height, double number) {
 }
 
 static void look_too(int cells, Height *height, double number, Wrinkles *wrinkles) {
-    RELEASED(singe_surface_free) SingeSurface s = draw(cells, height, number);
+    SingeSurface s = draw(cells, height, number);
     assert_true(wrinkles_add(&s, wrinkles));
+    singe_surface_free(&s);
 }
 
 static Wrinkles look(int cells, Height *height, double number) {

@@ -18,7 +18,7 @@ typedef struct Flat {
 
 static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float cells_thick, float wave, const float velocity[3]) {
     uint32_t n = (uint32_t)flat->n, row = n + 1;
-    RELEASED(test_mesh_free) TestMesh mesh = test_grid(n, n, 1, 1);
+    TestMesh mesh = test_grid(n, n, 1, 1);
     for (uint32_t j = 0; j <= n; j++)
         for (uint32_t i = 0; i <= n; i++) {
             float s = (float)i / (float)n, t = (float)j / (float)n, bend = wave * sinf(9 * t) + wave / 2 * sinf(7 * s);
@@ -31,6 +31,7 @@ static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float cells_thick,
         cells_thick * sqrtf(flat->u[0] * flat->u[0] + flat->u[1] * flat->u[1] + flat->u[2] * flat->u[2]) / (float)n);
     for (int k = 0; k < 3; k++) def.velocity[k] = velocity ? velocity[k] : 0;
     const SingeSheetId id = test_add_sheet(sim, &def);
+    test_mesh_free(&mesh);
     return id;
 }
 
@@ -82,7 +83,7 @@ TEST(a_heap_does_not_cross) {
     assert_true(timers.contact_repulsions > 1000);
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.speed_rms_unburnt < 0.3f); // it lies there
-    test_destroy(sim), test_destroy(without);
+    singe_sim_destroy(sim), singe_sim_destroy(without);
 }
 
 TEST(thrown_sheets_do_not_cross) {
@@ -98,6 +99,7 @@ TEST(thrown_sheets_do_not_cross) {
         assert_int_equal(crossings(sim), 0);
     }
     assert_true(singe_sim_timers(sim).contact_stops > 0);
+    singe_sim_destroy(sim);
 }
 
 TEST(layers_keep_their_thickness) {
@@ -119,6 +121,7 @@ TEST(layers_keep_their_thickness) {
         assert_true(apart > 0.8 * 0.5e-3 && apart < 2 * 0.5e-3); // 0.5 mm is the default
     }
     assert_int_equal(crossings(sim), 0);
+    singe_sim_destroy(sim);
 }
 
 /// How far the upper of two sheets has slid in 0.2 s; the lower one lies on the ground.
@@ -135,7 +138,7 @@ static double slide(float friction) {
     for (uint32_t v = 441; v < view.vertex_count; v++) before += (double)view.position[v][0] / 81;
     test_steps(sim, 96);
     for (uint32_t v = 441; v < view.vertex_count; v++) after += (double)view.position[v][0] / 81;
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     return after - before;
 }
 
@@ -158,6 +161,7 @@ TEST(crossing_input_is_left_alone) {
     test_steps(sim, 120);
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.strain_max < 0.2 && stats.speed_rms_unburnt < 4);
+    singe_sim_destroy(sim);
 }
 
 /// Two cells that approach: each crossed by another cell, or both by a third. They still keep each other apart.
@@ -188,7 +192,7 @@ static void crossed_cells_stay_apart(bool one_between, int intersecting) {
     for (uint32_t v = 0; v < 4; v++) lower += view.position[v][2] / 4, upper += view.position[second + v][2] / 4;
     print_message("the upper cell is %.1f mm above the lower one\n", 1e3 * (double)(upper - lower));
     assert_true(upper > lower);
-    test_destroy(sim);
+    singe_sim_destroy(sim);
 }
 
 TEST(cells_crossed_by_others_are_kept_apart) { crossed_cells_stay_apart(false, 4); }
@@ -208,6 +212,7 @@ TEST(coincident_sheets_are_left_alone) {
     test_steps(sim, 20);
     assert_int_equal(singe_sim_stats(sim).intersecting_cells, 300);
     assert_int_equal(singe_sim_timers(sim).contact_stops, 0);
+    singe_sim_destroy(sim);
 }
 
 TEST(any_number_of_threads_gives_the_same_bytes) {
@@ -219,7 +224,7 @@ TEST(any_number_of_threads_gives_the_same_bytes) {
     test_steps(one, 61), test_steps(three, 61), test_steps(again, 61);
     test_assert_same(one, three);
     test_assert_same(one, again);
-    test_destroy(one), test_destroy(three), test_destroy(again);
+    singe_sim_destroy(one), singe_sim_destroy(three), singe_sim_destroy(again);
 }
 
 // ---- the search against brute force
@@ -236,7 +241,7 @@ typedef struct Searched {
 static Searched *searched(uint32_t n) {
     Searched *s = calloc(1, sizeof *s);
     uint32_t row = n + 1, next = 1;
-    RELEASED(test_mesh_free) TestMesh mesh = test_grid(n, n, 1, 1);
+    TestMesh mesh = test_grid(n, n, 1, 1);
     float *x = mesh.positions, cell = 2e-3f;
     for (uint32_t v = 0; v < row * row; v++) {
         float i = (float)(v % row), j = (float)(v / row);
@@ -257,6 +262,7 @@ static Searched *searched(uint32_t n) {
     assert_int_equal(collision_open(&s->memory, s->plan, &s->shell, STATE_INPUT(&s->state), NULL, s->plan->time_step,
                                     true, &s->state.dynamics),
                      SINGE_OK);
+    test_mesh_free(&mesh);
     return s;
 }
 

@@ -103,7 +103,7 @@ typedef struct Crowd {
 static const Crowd stack = {8, 6, 0.5e-3f, false}, soup = {1, 12, 0, true};
 
 static void add_soup(SingeSim *sim, uint32_t count) {
-    RELEASED(test_mesh_free) TestMesh mesh = {.vertex_count = 4 * count, .cell_count = count};
+    TestMesh mesh = {.vertex_count = 4 * count, .cell_count = count};
     mesh.positions = malloc(12 * count * sizeof *mesh.positions);
     mesh.cells = malloc(4 * count * sizeof *mesh.cells);
 
@@ -120,6 +120,7 @@ static void add_soup(SingeSim *sim, uint32_t count) {
 
     SingeSheetDef def = test_sheet(&mesh);
     test_add_sheet(sim, &def);
+    test_mesh_free(&mesh);
 }
 
 static SingeSim *crowd(const Crowd *crowd, int threads, const SingeAllocator *allocator) {
@@ -130,11 +131,11 @@ static SingeSim *crowd(const Crowd *crowd, int threads, const SingeAllocator *al
 
     SingeSim *sim = test_create(&def);
     for (int s = 0; s < crowd->sheets && !crowd->soup; s++) {
-        RELEASED(test_mesh_free)
         TestMesh mesh = test_grid((uint32_t)crowd->cells, (uint32_t)crowd->cells, 5e-3f, 5e-3f);
         test_mesh_move(&mesh, 1e-3f * sinf((float)s), 1e-3f * cosf((float)(3 * s)), 1e-3f + crowd->apart * (float)s);
         SingeSheetDef sheet = test_sheet(&mesh);
         test_add_sheet(sim, &sheet);
+        test_mesh_free(&mesh);
     }
 
     if (crowd->soup) add_soup(sim, (uint32_t)(crowd->cells * crowd->cells));
@@ -187,7 +188,7 @@ static void check_growth(const Crowd *scene, bool pairs) {
     assert_int_equal(singe_sim_timers(one).contact_dropped, 0);
     test_assert_same(one, three);
     test_assert_same(one, resumed);
-    test_destroy(one), test_destroy(three), test_destroy(resumed);
+    singe_sim_destroy(one), singe_sim_destroy(three), singe_sim_destroy(resumed);
 }
 
 TEST(crowds_grow_the_lists) {
@@ -224,7 +225,7 @@ TEST(stripes_share_no_vertex) {
             }
         }
     free(lowest);
-    for (int k = 0; k < 3; k++) test_destroy(sims[k]);
+    for (int k = 0; k < 3; k++) singe_sim_destroy(sims[k]);
 }
 
 TEST(list_sizes_do_not_affect_results) {
@@ -241,7 +242,7 @@ TEST(list_sizes_do_not_affect_results) {
         assert_int_equal(singe_sim_timers(small).contact_dropped, 0);
         test_assert_same(usual, small);
         test_assert_same(usual, threads);
-        test_destroy(usual), test_destroy(small), test_destroy(threads);
+        singe_sim_destroy(usual), singe_sim_destroy(small), singe_sim_destroy(threads);
     }
 }
 
@@ -272,7 +273,7 @@ TEST(dropped_pairs_are_counted) {
             assert_int_equal(singe_sim_timers(sims[k]).contact_dropped, timers.contact_dropped);
             test_assert_same(sims[0], sims[k]);
         }
-        for (int k = 0; k < 3; k++) test_destroy(sims[k]);
+        for (int k = 0; k < 3; k++) singe_sim_destroy(sims[k]);
     }
 }
 
@@ -312,7 +313,7 @@ TEST(steps_that_would_take_minutes_halt) {
     }
 
     test_assert_same(sims[0], sims[1]);
-    test_destroy(sims[0]), test_destroy(sims[1]);
+    singe_sim_destroy(sims[0]), singe_sim_destroy(sims[1]);
 }
 
 /// A flag in 15 m/s turns its cells by about their width in 1/240 s: such steps have parts, and neither halt nor stretch
@@ -337,7 +338,7 @@ TEST(flags_in_the_wind_keep_their_shape) {
     assert_int_equal(singe_sim_timers(sims[0]).contact_halts, 0);
     assert_true(stats.strain_p99 < 0.15);
     assert_int_equal(crossings(sims[0]), 0);
-    for (int k = 0; k < 3; k++) test_destroy(sims[k]);
+    for (int k = 0; k < 3; k++) singe_sim_destroy(sims[k]);
 }
 
 /// Two vertices that tremble at 2 m/s, as at burnt edges, do not split the step of a whole sheet; if all do, it is split.
@@ -357,6 +358,7 @@ TEST(a_few_cells_do_not_split_the_step) {
     print_message("%d part, %d if all cells tremble\n", parts[0], parts[1]);
     assert_int_equal(parts[0], 1);
     assert_true(parts[1] > 8);
+    singe_sim_destroy(sim);
 }
 
 /// Pairs of boxes that the search compares, per cell, of a flat sheet in one of three positions.
@@ -382,7 +384,7 @@ static double compared(uint32_t nx, uint32_t ny, float dx, float dy, int positio
     }
 
     sum /= plan->cell_count;
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     return sum;
 }
 
@@ -424,7 +426,7 @@ TEST(a_step_without_memory_to_grow_is_repeated) {
         assert_int_equal(crossings(sim), 0);
         assert_int_equal(singe_sim_timers(sim).contact_dropped, 0);
         bool over = hook.calls < hook.fail_at;
-        test_destroy(sim);
+        singe_sim_destroy(sim);
         test_allocator_check(&hook);
         if (over) break;
     }
@@ -445,6 +447,6 @@ TEST(a_rebuilt_crowd_counts_its_memory) {
     assert_true(collision(sim)->repulsion_capacity > collision(sim)->sizes.repulsions);
     assert_int_equal(hook.bytes - singe_sim_counts(sim).memory, uncounted);
 
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     test_allocator_check(&hook);
 }

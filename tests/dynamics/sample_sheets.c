@@ -85,7 +85,6 @@ void bench_close(Bench *bench) {
     shell_free(&bench->memory, &bench->shell);
     sheet_source_free(&bench->memory, &bench->source);
     assert_int_equal(bench->memory.held, 0);
-    *bench = (Bench){0};
 }
 
 void bench_step(Bench *bench, float h) {

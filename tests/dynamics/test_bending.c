@@ -43,7 +43,7 @@ static double sag(float cell, double stiffness, double give, int substeps) {
     clamp(sim, cell);
     test_steps(sim, 960);
     double z = (double)singe_sim_view(sim).position[ny / 2 * (nx + 1) + nx][2];
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     return -z;
 }
 
@@ -126,7 +126,7 @@ static double strip_stiffness(bool diagonal, bool isotropic) {
             fabsf(view.rest_position[i][1] - (diagonal ? 0 : middle)) < 0.008f)
             sag -= (double)view.position[i][2], count++;
     const double l = longest - 0.0125 + 0.5 * (double)reach, load = 0.08 * 0.2;
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     return load * pow(l, 4) / 8 / (sag / count - load * l * l / 2);
 }
 

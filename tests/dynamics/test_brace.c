@@ -21,6 +21,8 @@ TEST(bytes_do_not_depend_on_threads_or_saving) {
     test_steps(scene.sim, 60), test_steps(other, 60);
     assert_true(singe_sim_stats(scene.sim).mass_burnt > 0);
     test_assert_same(scene.sim, other);
+    singe_sim_destroy(other);
+    singe_sim_destroy(scene.sim);
 }
 
 /// A flat sheet, a tube and a torus are at rest with their braces.
@@ -37,7 +39,7 @@ TEST(rest_shapes_have_no_braces_to_move_them) {
         const SingeView view = singe_sim_view(sim);
         for (uint32_t i = 0; i < view.particle_count; i++)
             for (int k = 0; k < 3; k++) assert_float_equal(view.position[i][k], view.rest_position[i][k], 1e-6f);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 }
 
@@ -48,6 +50,6 @@ TEST(meshes_without_inner_vertices_have_none) {
         def.solver.isotropic = true;
         SingeSim *sim = test_sim(&def, test_grid(cells, 1, 0.01f, 0.01f), NULL);
         test_steps(sim, 3);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 }

@@ -11,8 +11,6 @@
 
 // what a case works on
 static Bench bench;
-static void release_bench(void) { bench_close(&bench); }
-TEST_AFTER_EACH(release_bench)
 
 enum { NX = 24, NY = 6 };
 static const float cell = 2e-3f, curvature = 350; // about 40 degrees a cell
@@ -92,6 +90,7 @@ TEST(sharp_folds_are_rounded) {
     assert_true(sharpest(&bench) > 2);
     for (int i = 0; i < 400; i++) curvature_project(bench.plan, bench.pool, &bench.state.dynamics);
     assert_true(sharpest(&bench) < 1.02);
+    bench_close(&bench);
 }
 
 TEST(momenta_are_kept) {
@@ -110,6 +109,7 @@ TEST(momenta_are_kept) {
     for (int k = 0; k < 3; k++) assert_true(fabs(sums[k]) < 1e-4 * moved);
     for (int k = 3; k < 6; k++) assert_true(fabs(sums[k]) < 1e-4 * moved * NX * (double)cell + 1e-12);
     free(start);
+    bench_close(&bench);
 }
 
 TEST(gentle_bends_are_not_touched) {
@@ -118,6 +118,7 @@ TEST(gentle_bends_are_not_touched) {
     assert_false(is_touched(&bench));
     fold(&bench, 1.2f * curvature * cell * 8, 8);
     assert_true(is_touched(&bench));
+    bench_close(&bench);
 }
 
 /// A vertex of a grid around the origin that is bent to a cylinder whose axis is at an angle to its columns.
@@ -175,12 +176,14 @@ TEST(coarse_cells_set_the_curvature_limit) {
     assert_false(is_touched(&bench));
     fold(&bench, 1.2f * beta * 8, 8);
     assert_true(is_touched(&bench));
+    bench_close(&bench);
 }
 
 TEST(without_a_limit_nothing_is_touched) {
     open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), 0);
     fold(&bench, 2.5f, 1);
     assert_false(is_touched(&bench));
+    bench_close(&bench);
 }
 
 TEST(char_folds_as_it_likes) {
@@ -188,6 +191,7 @@ TEST(char_folds_as_it_likes) {
     fold(&bench, 2, 1);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.burn.mass[i] = 0.9f;
     assert_false(is_touched(&bench));
+    bench_close(&bench);
 }
 
 TEST(removed_springs_do_not_bend) {
@@ -196,6 +200,7 @@ TEST(removed_springs_do_not_bend) {
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         memset(bench.state.ablate.spring_flags[colour], 0, bench.shell.springs[colour].count);
     assert_false(is_touched(&bench));
+    bench_close(&bench);
 }
 
 /// A tube that is rounder at rest than the limit, and a flat sheet whose vertices lie off their rows.
@@ -211,6 +216,7 @@ TEST(rest_shapes_are_kept) {
     }
     open_sheet(&bench, quads, 10);
     assert_false(is_touched(&bench));
+    bench_close(&bench);
 }
 
 /// Around a tube that is pressed flat there are folds at every ring's first vertex or elsewhere: all are rounded.
@@ -232,4 +238,6 @@ TEST(rings_are_limited_all_around) {
             assert_true(float3_length(r) < 1.15f * 2 * cell * sinf(0.5f * curvature * cell) + 0.2f * cell);
         }
     }
+
+    bench_close(&bench);
 }

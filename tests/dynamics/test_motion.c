@@ -12,8 +12,6 @@
 
 // what a case works on
 static Bench bench;
-static void release_bench(void) { bench_close(&bench); }
-TEST_AFTER_EACH(release_bench)
 
 static Float3 centre_of_mass(const Bench *b) {
     double sum[3] = {0, 0, 0}, mass = 0;
@@ -47,6 +45,7 @@ TEST(a_sheet_falls_freely) {
     double n = 240.0 * bench.settings.solver.substeps, expected = 0.5 * 9.81 * 0.25 * (1 + 1 / n);
     assert_true(fabs((double)(start - centre_of_mass(&bench).z) - expected) < 2e-4);
     assert_true(blue_strain(&bench) < 1e-4);
+    bench_close(&bench);
 }
 
 TEST(drag_gives_a_terminal_speed) {
@@ -58,6 +57,7 @@ TEST(drag_gives_a_terminal_speed) {
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) speed -= (double)bench.state.dynamics.velocity[i][2];
     speed /= bench.shell.particle_count;
     assert_true(fabs(speed / expected - 1) < 0.02);
+    bench_close(&bench);
 }
 
 /// A leaf of char, tilted by 20 degrees, falls for a second. Drag of its normal velocity alone lets it slide away as it is
@@ -115,6 +115,7 @@ TEST(free_flight_keeps_lengths_and_momentum) {
     }
     assert_true(worst < 0.01);
     assert_true(fabsf(centre_of_mass(&bench).x - start.x - 0.25f) < 0.002f);
+    bench_close(&bench);
 }
 
 /// Damping takes exp(-d t) of a free motion, by (1 + h d)^-1 in every substep.
@@ -142,6 +143,7 @@ TEST(damping_decays_exponentially) {
                   mean / (0.3 * exp(-2)) - 1);
     assert_true(fabs(mean / (0.3 * left) - 1) < 2e-3);
     assert_true(fabs(mean / (0.3 * exp(-2)) - 1) < 4e-3);
+    bench_close(&bench);
 }
 
 /// Angular momentum about the centre of mass.
@@ -278,6 +280,7 @@ TEST(a_moving_plane_carries_the_sheet) {
     for (int step = 0; step < 480; step++) bench_step(&bench, 1.0f / 480);
     assert_true(fabsf(centre_of_mass(&bench).x - start - 0.2f) <
                 0.006f); // slips while it gathers speed: v^2/(2 mu g) = 2.5 mm
+    bench_close(&bench);
 }
 
 TEST(no_vertex_is_inside_a_collider) {
@@ -295,6 +298,8 @@ TEST(no_vertex_is_inside_a_collider) {
             Float3 local = pose_unapply(&pose, float3_load(bench.state.dynamics.position[i]));
             assert_true(collider_distance(bench.colliders.items, local, INFINITY, &normal) > def.offset - 1e-5f);
         }
+
+        bench_close(&bench);
     }
 }
 
@@ -340,4 +345,5 @@ TEST(a_hung_sheet_comes_to_rest) {
     assert_true(sqrt(square / bench.shell.particle_count) < 1e-3);
     assert_true(blue_strain(&bench) < 2e-3);
     for (uint32_t c = 0; c < bench.shell.cell_count; c++) assert_true(bench_height(&bench, c) > 0);
+    bench_close(&bench);
 }

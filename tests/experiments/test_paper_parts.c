@@ -78,6 +78,7 @@ TEST(the_sum_rises_in_some_states) {
     print_message("of %d states it rises in %d, and is lower after %d steps in %d\n", STATES, rises, STEPS, lower);
     assert_true(rises >= 5);
     assert_true(lower >= 108 && lower > STATES - rises);
+    singe_sim_destroy(sim);
 }
 
 static size_t rank(SingeNetwork *network, uint32_t set, size_t columns) {
@@ -105,6 +106,7 @@ TEST(every_colour_has_full_rank) {
         assert_int_equal(rank(colours, set, columns), singe_network_set_size(colours, set));
     singe_network_destroy(all);
     singe_network_destroy(colours);
+    singe_sim_destroy(sim);
 }
 
 /// Error after 7 projection steps over that before; infinite where the solver broke down.
@@ -142,4 +144,5 @@ TEST(all_at_once_diverges_without_a_floor) {
     assert_true(left[0][0] < 0.95);
     assert_true(left[1][0] < 0.95);
     assert_true(left[1][1] < 0.5);
+    singe_sim_destroy(sim);
 }

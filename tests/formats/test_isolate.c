@@ -15,8 +15,6 @@ static const IsolateLimits few = {64 << 20, 1};
 
 // the answer and the error of a case
 static Bytes got;
-static void release_got(void) { bytes_free(&got); }
-TEST_AFTER_EACH(release_got)
 static SingeError why;
 
 static SingeResult run(IsolateWork *work, void *context, Bytes *answer, SingeError *error) {
@@ -66,6 +64,7 @@ TEST(answers_arrive_complete) {
     bytes_free(&got);
     if (run(put_nothing, NULL, &got, &why)) fail_msg("%s", why.message);
     assert_int_equal(got.size, 0);
+    bytes_free(&got);
     free(bytes);
 }
 
@@ -203,6 +202,7 @@ TEST(memory_is_limited) {
 #endif
     size_t little = 1 << 20;
     assert_int_equal(run(take_at_once, &little, &got, &why), SINGE_OK);
+    bytes_free(&got);
 }
 
 // ---- what is the parent's
@@ -257,6 +257,7 @@ TEST(signals_do_not_cut_the_wait) {
     assert_int_equal(noted, SIGALRM);
     noted = 0;
     assert_memory_equal(got.data, bytes, MANY);
+    bytes_free(&got);
     free(bytes);
 }
 
@@ -268,6 +269,7 @@ TEST(a_parent_that_ignores_its_children_gets_answers) {
     signal(SIGCHLD, SIG_DFL);
     if (result) fail_msg("%s", why.message);
     assert_int_equal(got.size, MANY);
+    bytes_free(&got);
     free(bytes);
 }
 

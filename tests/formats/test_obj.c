@@ -4,8 +4,6 @@
 
 // what a case works on
 static Polygons mesh;
-static void release_mesh(void) { polygons_free(&mesh); }
-TEST_AFTER_EACH(release_mesh)
 static SingeError error;
 
 static SingeResult parse(const char *text, Polygons *made, SingeError *why) {
@@ -47,6 +45,7 @@ TEST(keeps_order_and_positions) {
     assert_memory_equal(mesh.positions, positions, sizeof positions);
     assert_memory_equal(mesh.uv, uv, sizeof uv);
     assert_memory_equal(mesh.corners, cells, sizeof cells);
+    polygons_free(&mesh);
 }
 
 TEST(reads_every_form) {
@@ -120,6 +119,7 @@ TEST(faces_have_any_number_of_corners) {
     assert_memory_equal(mesh.corners, corners, sizeof corners);
     assert_memory_equal(mesh.lines, lines, sizeof lines);
     assert_null(mesh.uv);
+    polygons_free(&mesh);
 }
 
 // A vertex may have another uv in each face: a seam.
@@ -127,6 +127,7 @@ TEST(corners_keep_their_uv) {
     assert_int_equal(parse(SQUARE "vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\nf 1/2 3/1 4/3\n", &mesh, NULL), SINGE_OK);
     static const float uv[] = {0, 0, 1, 0, 1, 1, 1, 0, 0, 0, 1, 1};
     assert_memory_equal(mesh.uv, uv, sizeof uv);
+    polygons_free(&mesh);
 }
 
 TEST(readers_are_chosen_by_extension) {
@@ -184,7 +185,7 @@ TEST(allocation_failure_is_clean) {
 // The example's sheet: A4, in low waves over the table, borders straight from above, at most 30,000 springs
 // (4 + 2 + 2 + 2 a cell, fewer at the border).
 TEST(the_letter_is_a4) {
-    RELEASED(bytes_free) Bytes bytes;
+    Bytes bytes;
     SingeAllocator libc = {0};
 
     if (file_read("examples/letter/letter.obj", libc, &bytes, &error)) fail_msg("%s", error.message);
@@ -217,4 +218,6 @@ TEST(the_letter_is_a4) {
     }
 
     assert_int_equal(on_border, 2 * (46 + 65));
+    polygons_free(&mesh);
+    bytes_free(&bytes);
 }

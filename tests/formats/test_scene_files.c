@@ -80,14 +80,15 @@ static void expect_in(const char *text, const char *prim, const char *line) {
 }
 
 TEST(velocities_say_over_which_time_they_are) {
-    RELEASED(sink_free) Sink sink;
+    Sink sink;
     const OutputScene scene = scene_of(&plain);
     expect_in(root_text(&sink, &scene), "def Mesh \"leaf\"",
               "vector3f[] velocities (\n                doc = \"m/s, displacement since the frame before");
+    sink_free(&sink);
 }
 
 TEST(shapes_stand_where_they_are) {
-    RELEASED(sink_free) Sink sink;
+    Sink sink;
     const OutputScene scene = scene_of(&plain);
     const char *text = root_text(&sink, &scene);
     expect_in(text, "def Sphere \"shape0\"", "double radius = 0.25\n");
@@ -116,10 +117,11 @@ TEST(shapes_stand_where_they_are) {
     expect_in(text, "def Mesh \"ground\"", "-0.5)");
     assert_non_null(strstr(text, "def Material \"shape0\""));
     assert_non_null(strstr(text, "def Material \"ground\""));
+    sink_free(&sink);
 }
 
 TEST(without_a_ground_there_is_none) {
-    RELEASED(sink_free) Sink sink;
+    Sink sink;
     OutputScene scene = scene_of(&plain);
     scene.ground_height = -INFINITY, scene.shape_count = 0;
     memcpy(scene.eye, (float[]){0, 0, 3}, sizeof scene.eye); // looks along `up`
@@ -128,6 +130,7 @@ TEST(without_a_ground_there_is_none) {
     assert_null(strstr(text, "ground"));
     assert_null(strstr(text, "shape0"));
     assert_null(strstr(text, "nan"));
+    sink_free(&sink);
 }
 
 /// A triangle that loses a corner's worth of area in frame 2, and is gone in frame 3.

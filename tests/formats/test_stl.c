@@ -3,8 +3,6 @@
 
 // what a case works on
 static Polygons mesh;
-static void release_mesh(void) { polygons_free(&mesh); }
-TEST_AFTER_EACH(release_mesh)
 static SingeError error;
 
 static void expect_mesh(const char *name, const char *text, const float *positions, uint32_t vertices,

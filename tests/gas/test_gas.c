@@ -36,11 +36,7 @@ static void air_open(Air *a, const GasSettings *settings) {
 static void air_close(Air *a) {
     gas_plan_free(&a->rig.memory, a->plan);
     rig_close(&a->rig);
-    a->plan = NULL;
 }
-
-static void release_air(void) { air_close(&air); }
-TEST_AFTER_EACH(release_air)
 
 static void air_step(Air *a) {
     Rig *rig = &a->rig;
@@ -99,6 +95,7 @@ TEST(heat_is_kept) {
     print_message("%.3f J brought, %.3f J there\n", brought, air_heat(&air));
     CHECK_NEAR(air_heat(&air), brought, 0.02 * brought);
     print_message("fuel %.0f J/m3, L %.3f at most\n", air_max(&air, GAS_FUEL), air_max(&air, GAS_LIGHTNESS));
+    air_close(&air);
 }
 
 /// The part that is radiated is not in the gas, and a fire shown `pace` times as fast has the power of the real one.
@@ -319,6 +316,7 @@ TEST(flow_goes_around) {
     int level = (int)(0.01f - plan->origin[2] / plan->cell);
     size_t middle = gas_at(&plan->grid, plan->grid.n[0] / 2, plan->grid.n[1] / 2, level);
     assert_true(plan->open[2][middle] < 0.2f);
+    air_close(&air);
 }
 
 /// A sheet that stands over the fire is heated from where the gas comes, by no more than the gas is hot, and takes that
@@ -374,6 +372,7 @@ TEST(the_gas_comes_to_rest) {
     air_burn(&air, 0.5, false);
     air_step(&air);
     assert_true(air.rig.state.gas.awake && air_heat(&air) > 0.4);
+    air_close(&air);
 }
 
 /// Positions far away, at the border and not finite, and powers that no fire has.
@@ -396,6 +395,8 @@ TEST(copes_with_anything) {
             for (int d = 0; d < 3; d++) assert_true(isfinite(gas.velocity[c][d]));
         }
     }
+
+    air_close(&air);
 }
 
 /// The grid holds the sheets with room above, and keeps to its budget.

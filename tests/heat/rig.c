@@ -50,7 +50,6 @@ void rig_close(Rig *rig) {
     state_free(&rig->memory, &rig->state);
     shell_free(&rig->memory, &rig->shell);
     assert_int_equal(rig->memory.held, 0);
-    *rig = (Rig){0};
 }
 
 SingeResult rig_try_step(Rig *rig) {

@@ -8,8 +8,6 @@
 
 // what a case works on
 static Rig rig;
-static void release_rig(void) { rig_close(&rig); }
-TEST_AFTER_EACH(release_rig)
 
 static const double SIGMA = 5.670374e-8;
 
@@ -86,6 +84,7 @@ TEST(one_step_of_losses_matches_the_formula) {
     CHECK_NEAR((900 - after) / 0.002, -cooling(900, 1, 1), 0.005 * -cooling(900, 1, 1));
     double lost = share * (after - 293) * rig_content(&rig, 1) / ((double)rig.state.heat.temperature[0] - 293);
     CHECK_NEAR(rig.state.heat.heat_lost, lost, 1e-4 * lost);
+    rig_close(&rig);
 }
 
 TEST(combustion_is_eta_times_burnt_mass) {
@@ -100,6 +99,7 @@ TEST(combustion_is_eta_times_burnt_mass) {
     rig_step(&rig);
     CHECK_NEAR(rig.state.heat.temperature[1], 600 + 2400 * 2 * 0.002, 1e-3);
     CHECK_NEAR(rig.state.heat.heat_of_combustion, 2 * 6 * 4e-6 * 0.04 * 1400 * 9.6, 1e-6);
+    rig_close(&rig);
 }
 
 TEST(pace_is_fire_time) {
@@ -146,6 +146,7 @@ TEST(the_peak_is_the_hottest_so_far) {
     assert_true(hottest[0] > 900 && rig.state.heat.temperature[0] < hottest[0] - 20);
     assert_true(hottest[1] == 1500);
     free(hottest);
+    rig_close(&rig);
 }
 
 // --- parameters that vary over the sheet ----------------------------------------------------------------
@@ -315,4 +316,5 @@ TEST(running_out_of_memory_is_clean) {
                               (memory = memory_make(allocator),
                                source_create(&memory, &rig.shell, k ? &ball : &picture, &source, &rig.error)),
                               source_free(&memory, &rig.shell, &source));
+    rig_close(&rig);
 }

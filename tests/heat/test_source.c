@@ -6,8 +6,6 @@
 
 // what a case works on
 static Rig rig;
-static void release_rig(void) { rig_close(&rig); }
-TEST_AFTER_EACH(release_rig)
 
 static const double PER_AREA = 0.04 * 1400; // J/(m2 K), of a layer
 
@@ -40,6 +38,7 @@ TEST(relaxes_to_the_source_by_the_formula) {
     double expected = 1200 - 900 * pow(1 + 0.002 * 150 / PER_AREA, -40);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) CHECK_NEAR(rig.state.heat.temperature[i], expected, 2e-3);
     CHECK_NEAR(rig.state.heat.heat_in, 2 * 4e-4 * PER_AREA * (expected - 300), 1e-4 * rig.state.heat.heat_in);
+    rig_close(&rig);
 }
 
 TEST(never_overshoots) {
@@ -53,6 +52,8 @@ TEST(never_overshoots) {
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
             CHECK_NEAR(rig.state.heat.temperature[i], 1200 - (k ? 0 : 0.03), 0.02);
     }
+
+    rig_close(&rig);
 }
 
 TEST(falls_off_smoothly_and_moves) {
@@ -80,6 +81,7 @@ TEST(falls_off_smoothly_and_moves) {
     rig.state.time = 0.502; // over
     rig_step(&rig);
     assert_true(rig.state.heat.temperature[rig_vertex(&rig, 5, 5)] == before && before > 300);
+    rig_close(&rig);
 }
 
 TEST(contact_heats_the_near_layer) {
@@ -103,6 +105,7 @@ TEST(contact_heats_the_near_layer) {
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         CHECK_NEAR(rig.state.heat.temperature[i], shell_is_corner(&rig.shell, i) ? (300 + a * 700) / (1 + a) : 300,
                    1e-4);
+    rig_close(&rig);
 }
 
 static const float CUBE[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1};
@@ -186,6 +189,7 @@ TEST(contact_heat_goes_through_the_sheet) {
     CHECK_NEAR(rig.state.heat.temperature[behind], 700, 12); // in 3 s
     CHECK_NEAR(rig.state.heat.temperature[aside], 300, 0.5); // 8 mm from its edge
     collider_free(&rig.memory, &rig.collider[0]);
+    rig_close(&rig);
 }
 
 TEST(a_texture_heats_by_its_key_frames) {
@@ -214,6 +218,8 @@ TEST(a_texture_heats_by_its_key_frames) {
         CHECK_NEAR(rig.state.heat.temperature[rig_vertex(&rig, 4, 4)], 300 + total * per_unit * 0.4375, 1e-3);
         CHECK_NEAR(rig.state.heat.temperature[rig_centre(&rig, 0, 0)], 300 + total * per_unit * 0.5, 1e-3);
     }
+
+    rig_close(&rig);
 }
 
 static void my_flux(void *context, const struct SingeView *view, float *flux, float *conductance,
@@ -247,6 +253,7 @@ TEST(callback_adds_to_the_rest) {
     rig.source[0].def.callback = NULL; // as after a load
     rig_step(&rig);
     assert_int_equal(calls, 1);
+    rig_close(&rig);
 }
 
 /// A flux below 0 cools, as fast as it says, and to 1 K; the ledger has what it took.
@@ -313,4 +320,5 @@ TEST(sheets_without_uv_take_no_picture) {
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.shell.uv[i][0] = rig.shell.uv[i][1] = 0;
     assert_int_equal(source_create(&rig.memory, &rig.shell, &picture, &rig.source[0], &rig.error),
                      SINGE_ERROR_ARGUMENT);
+    rig_close(&rig);
 }

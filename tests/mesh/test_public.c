@@ -44,7 +44,7 @@ static void burn(const SingeMesh *mesh, uint32_t held) {
     test_steps(sim, 10);
     assert_true(singe_sim_view(sim).particle_flags[held] & SINGE_PINNED);
     assert_true(singe_sim_stats(sim).particles > 8);
-    test_destroy(sim);
+    singe_sim_destroy(sim);
 }
 
 TEST(polygons_become_a_sheet) {

@@ -130,7 +130,7 @@ TEST(the_ember_line_is_thin_and_broken) {
 TEST(layers_change_no_picture) {
     static Kept one, two;
     static uint8_t alone[BYTES], beside[BYTES];
-    RELEASED(synthetic_free) SingeSurface surface;
+    SingeSurface surface;
 
     assert_true(synthetic_make(SYNTHETIC_FLAT, 30, 0.05f, &surface));
     PreviewDef def = small();
@@ -140,4 +140,5 @@ TEST(layers_change_no_picture) {
     def.thread_count = 3;
     draw_kept(&def, &surface, NULL, &two);
     assert_memory_equal(&one, &two, sizeof one);
+    synthetic_free(&surface);
 }

@@ -13,7 +13,7 @@ static uint8_t rgb[BYTES];
 static Float4 q;
 
 TEST(pictures_do_not_depend_on_threads) {
-    RELEASED(synthetic_free) SingeSurface surface;
+    SingeSurface surface;
     assert_true(synthetic_make(SYNTHETIC_FLAT, 30, 0.05f, &surface));
 
     // enough tiles that every thread gets some
@@ -37,6 +37,7 @@ TEST(pictures_do_not_depend_on_threads) {
         assert_memory_equal(pictures[0], pictures[1], BIG);
         assert_memory_equal(pictures[0], pictures[2], BIG);
     }
+    synthetic_free(&surface);
 }
 
 /// Drawing another frame between must leave no trace.
@@ -406,7 +407,7 @@ TEST(bad_defs_are_refused) {
 
 /// Sizes that are no multiple of anything, one sample, straight down with `up` along the view.
 TEST(odd_sizes_are_drawn) {
-    RELEASED(synthetic_free) SingeSurface surface;
+    SingeSurface surface;
     assert_true(synthetic_make(SYNTHETIC_HANGING, 12, 0.05f, &surface));
     const int sizes[][3] = {{1, 1, 1}, {3, 5, 2}, {17, 33, 5}, {70, 2, 7}, {33, 9, 12}};
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
@@ -419,6 +420,8 @@ TEST(odd_sizes_are_drawn) {
         draw(&def, &surface, 1, picture);
         free(picture);
     }
+
+    synthetic_free(&surface);
 }
 
 /// Every allocation fails once: the right result, nothing left behind, and a failed frame can be drawn again.

@@ -250,10 +250,10 @@ TEST(bytes_do_not_depend_on_threads) {
             SingeView a = singe_sim_view(one), b = singe_sim_view(sim);
             assert_memory_equal(a.position, b.position, a.particle_count * sizeof *a.position);
             assert_memory_equal(a.velocity, b.velocity, a.particle_count * sizeof *a.velocity);
-            test_destroy(sim);
+            singe_sim_destroy(sim);
         }
 
-        test_destroy(one);
+        singe_sim_destroy(one);
     }
 }
 
@@ -272,7 +272,7 @@ TEST(projections_end_early) {
         for (uint32_t i = 0; i < view.particle_count; i++) height[early] += (double)view.position[i][2];
         iterations[early] = timers.projection_iterations;
         assert_true(timers.projection_flops > 0 && timers.projection_bytes > 0);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 
     assert_true(iterations[1] < iterations[0]);
@@ -286,6 +286,7 @@ TEST(projections_end_early) {
     SingeTimers timers = singe_sim_timers(sim);
     assert_int_equal(timers.projection_iterations, 0);
     assert_int_equal(timers.springs_projected, 2 * 1000);
+    singe_sim_destroy(sim);
 }
 
 /// To the letter it blows up, since eq 9 lacks its h; that is an error like any other, and takes the step back.
@@ -303,6 +304,7 @@ TEST(the_literal_method_diverges) {
     SingeView view = singe_sim_view(sim);
     assert_int_equal(view.step, steps - 1);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_true(isfinite(view.position[i][2]));
+    singe_sim_destroy(sim);
 }
 
 TEST(all_methods_run_or_give_a_reason) {
@@ -314,7 +316,7 @@ TEST(all_methods_run_or_give_a_reason) {
         for (int step = 0; step < 5 && !result; step++) result = singe_sim_step(sim);
         assert_true(result == SINGE_OK || result == SINGE_ERROR_DIVERGED);
         if (method == SINGE_SOLVER_PAPER || method == SINGE_SOLVER_MASS_SPRING) assert_int_equal(result, SINGE_OK);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 }
 
@@ -349,7 +351,7 @@ static double strain_by_order(SingeSolverMethod method, const SingeColour order[
 
     SingeView view = singe_sim_view(sim);
     const double strain = strain_of(&view, SINGE_BLUE);
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     return strain;
 }
 
@@ -382,6 +384,7 @@ TEST(contact_is_inside_projections) {
 
     SingeTimers timers = singe_sim_timers(sim);
     assert_true(timers.contacts > 0);
+    singe_sim_destroy(sim);
 }
 
 /// Both end where the sheet hangs at rest.
@@ -403,7 +406,7 @@ TEST(paper_and_strand_end_alike) {
         count = view.particle_count;
         assert_true(count <= 200);
         for (uint32_t i = 0; i < count; i++) memcpy(last[method][i], view.position[i], sizeof last[method][i]);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 
     double worst = 0;
@@ -468,4 +471,5 @@ TEST(too_long_a_step_is_an_error) {
     for (int step = 0; step < 200 && !result; step++) result = singe_sim_step(sim);
     assert_int_equal(result, SINGE_ERROR_DIVERGED);
     assert_string_equal(singe_sim_error(sim)->stage, "dynamics");
+    singe_sim_destroy(sim);
 }

@@ -147,10 +147,10 @@ TEST(a_simulation_has_what_the_scene_says) {
 
 // A refusal of the library is reported at the object it concerns.
 TEST(refused_objects_are_named) {
-    RELEASED(scene_messages_free)
     SceneMessages messages = refused(SHEET "pins:\n  - {vertices: [0]}\n  - {vertices: [99999]}\n", NULL);
     assert_int_equal(messages.count, 1);
     assert_string_equal(messages.items[0].origin, "t.yaml:5:5");
+    scene_messages_free(&messages);
 }
 
 // Files of the wrong kind are all reported, each at the line of its name.
@@ -196,7 +196,7 @@ TEST(bad_meshes_are_reported) {
                  "sheets:\n  - mesh: line.obj\n  - mesh: flat.ply\n  - mesh: far.obj\n"
                  "  - grid: {size: [1, 1], cells: [2, 2]}\n%s",
                  reader ? "  - mesh: words.obj\n" : "");
-        RELEASED(scene_messages_free) SceneMessages messages = refused(text, folder);
+        SceneMessages messages = refused(text, folder);
         assert_int_equal(messages.count, 3 + reader);
         for (int i = 0; i < 3; i++) {
             assert_string_equal(messages.items[i].origin, meshes[i].origin);
@@ -204,6 +204,7 @@ TEST(bad_meshes_are_reported) {
         }
 
         if (reader) assert_string_equal(messages.items[3].origin, "t.yaml:6:11");
+        scene_messages_free(&messages);
     }
 
     SceneMessages messages =

@@ -44,7 +44,7 @@ static void see(const PreviewDef *light, float *white, float *colour) {
 TEST(the_default_light_leaves_room_for_fire) {
     Scene *scene = good_scene("sheets: [{grid: {size: [1.2, 1.2], cells: [2, 2]}}]", NULL, 0);
     SceneAssets assets = {0};
-    RELEASED(scene_messages_free) SceneMessages messages = {0};
+    SceneMessages messages = {0};
     assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
 
     for (int day = 0; day < 2; day++) {
@@ -60,6 +60,7 @@ TEST(the_default_light_leaves_room_for_fire) {
         assert_true((white < 0.05f) == !day && (colour > 0.44f) == !day); // .36 by day
     }
 
+    scene_messages_free(&messages);
     scene_assets_free(&assets);
     scene_free(scene);
 }

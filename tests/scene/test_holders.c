@@ -18,8 +18,9 @@ static Hung hang(const char *more) {
     snprintf(text, sizeof text,
              "sheets: [{grid: {size: [0.2, 0.3], cells: [40, 60], jitter: 0}, rotate: [90, 0, 0]}]\n%s\n", more);
     Hung hung = {.scene = good_scene(text, NULL, 0)};
-    RELEASED(scene_messages_free) SceneMessages messages = {0};
+    SceneMessages messages = {0};
     assert_int_equal(scene_load(hung.scene, &hung.assets, &messages), SINGE_OK);
+    scene_messages_free(&messages);
     return hung;
 }
 

@@ -37,7 +37,7 @@ static void expect_location(const Sweep *sweep, const SceneMessage *message, con
 
 static void parse(Sweep *sweep, const char *bytes, size_t size) {
     Scene *scene = NULL;
-    RELEASED(scene_messages_free) SceneMessages messages = {0};
+    SceneMessages messages = {0};
     char *text = malloc(size + 1); // its end is the end of a block, for the sanitizer
 
     memcpy(text, bytes, size);
@@ -52,6 +52,7 @@ static void parse(Sweep *sweep, const char *bytes, size_t size) {
 
     sweep->parsed++;
     sweep->refused += result != SINGE_OK;
+    scene_messages_free(&messages);
     scene_free(scene);
     free(text);
 }
@@ -110,7 +111,7 @@ TEST(every_prefix_of_the_examples_has_its_line) {
 
     int words = 0;
     for (size_t i = 0; i < files.gl_pathc; i++) {
-        RELEASED(bytes_free) Bytes bytes;
+        Bytes bytes;
         Sweep sweep = {.name = files.gl_pathv[i]};
         snprintf(sweep.folder, sizeof sweep.folder, "%.*s", (int)(strrchr(sweep.name, '/') - sweep.name), sweep.name);
         assert_int_equal(file_read(sweep.name, (SingeAllocator){0}, &bytes, NULL), SINGE_OK);
@@ -119,6 +120,8 @@ TEST(every_prefix_of_the_examples_has_its_line) {
             if (words++ < 1 || all) sweep_words(&sweep, (char *)bytes.data);
             assert_true(sweep.refused > sweep.parsed / 4);
         }
+
+        bytes_free(&bytes);
     }
 
     assert_true(words >= 10);

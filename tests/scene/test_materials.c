@@ -38,10 +38,11 @@ static SingeResult folder_parse(const Folder *folder, const char *text, const ch
 
 static Scene *folder_scene(const Folder *folder, const char *text, const char *const *sets, int count) {
     Scene *scene = NULL;
-    RELEASED(scene_messages_free) SceneMessages messages = {0};
+    SceneMessages messages = {0};
     SingeResult result = folder_parse(folder, text, sets, count, &scene, &messages);
     scene_messages_print(&messages, stderr);
     assert_int_equal(result, SINGE_OK);
+    scene_messages_free(&messages);
     return scene;
 }
 
@@ -211,7 +212,7 @@ TEST(messages_quote_no_other_file) {
     Folder folder = folder_make();
     for (size_t i = 0; i < sizeof secrets / sizeof *secrets; i++) {
         Scene *scene = NULL;
-        RELEASED(scene_messages_free) SceneMessages messages = {0};
+        SceneMessages messages = {0};
         folder_file(&folder, "other.yaml", secrets[i]);
         SingeResult result = folder_parse(&folder, SHEET "    material: other.yaml\n", NULL, 0, &scene, &messages);
         assert_int_equal(result, SINGE_ERROR_FORMAT);
@@ -225,6 +226,8 @@ TEST(messages_quote_no_other_file) {
                 fail_msg("%s: %s: %s\n", secrets[i], message->origin, message->text);
             assert_non_null(strstr(message->origin, "other.yaml:"));
         }
+
+        scene_messages_free(&messages);
     }
 
     folder_remove(&folder);
@@ -234,7 +237,7 @@ TEST(messages_quote_no_other_file) {
 static void expect_mistake(const Folder *folder, const char *line, const char *origin, const char *says, int count) {
     char text[400];
     Scene *scene = NULL;
-    RELEASED(scene_messages_free) SceneMessages messages = {0};
+    SceneMessages messages = {0};
 
     snprintf(text, sizeof text, SHEET "%s", line);
     SingeResult result = folder_parse(folder, text, NULL, 0, &scene, &messages);
@@ -246,6 +249,7 @@ static void expect_mistake(const Folder *folder, const char *line, const char *o
     const char *found = messages.items[0].origin, *slash = strrchr(found, '/'); // the folder's name is any
     if (strcmp(slash ? slash + 1 : found, origin) != 0 || !strstr(messages.items[0].text, says))
         fail_msg("%s: %s", found, messages.items[0].text);
+    scene_messages_free(&messages);
     scene_free(scene);
 }
 

@@ -165,7 +165,7 @@ TEST(degenerate_cells_are_refused) {
 
 // A tube as thick as its radius: the centre layer would be a line.
 TEST(a_tube_as_thick_as_its_radius_is_refused) {
-    RELEASED(mesh_release) QuadMesh mesh = mesh_cylinder(4, 3, 1, 1);
+    QuadMesh mesh = mesh_cylinder(4, 3, 1, 1);
     for (uint32_t c = 0; c < mesh.cell_count; c++) {
         uint32_t swap = mesh.cells[c][1];
         mesh.cells[c][1] = mesh.cells[c][3], mesh.cells[c][3] = swap;
@@ -179,6 +179,7 @@ TEST(a_tube_as_thick_as_its_radius_is_refused) {
     SingeSheetDef def = mesh_sheet(&mesh);
     def.material.thickness = singe_param(1);
     refuse_def(&def, SINGE_ERROR_MESH, 0, "too thick");
+    mesh_release(&mesh);
 }
 
 TEST(bad_defs_are_refused) {
@@ -251,9 +252,10 @@ static SingeResult build_all(Memory *memory, const SingeSheetDef *def, SingeErro
 
 // The n-th allocation fails, for every n: the right code, nothing leaked.
 TEST(every_allocation_fails_once) {
-    RELEASED(mesh_release) QuadMesh mesh = mesh_sphere(3);
+    QuadMesh mesh = mesh_sphere(3);
     SingeSheetDef def = mesh_sheet(&mesh);
     Memory memory;
     SingeError error;
     test_allocations_fail(100, (memory = memory_make(allocator), build_all(&memory, &def, &error)), (void)0);
+    mesh_release(&mesh);
 }

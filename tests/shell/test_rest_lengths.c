@@ -33,7 +33,7 @@ static void check_layers(const Shell *shell, double area, double tolerance) {
 TEST(rectangles_match_lengths_by_hand) {
     Memory memory = memory_make((SingeAllocator){0});
     const float dx = 0.02f, dy = 0.01f, t = 0.003f;
-    RELEASED(mesh_release) QuadMesh mesh = mesh_grid(4, 3, dx, dy);
+    QuadMesh mesh = mesh_grid(4, 3, dx, dy);
     SingeSheetDef def = mesh_sheet(&mesh);
     def.material.thickness = singe_param(t);
 
@@ -73,6 +73,7 @@ TEST(rectangles_match_lengths_by_hand) {
     assert_near((double)shell.sheets[0].cell_size, 0.02, 1e-6);
     shell_free(&memory, &shell);
     sheet_source_free(&memory, &source);
+    mesh_release(&mesh);
 }
 
 static int compare(const void *a, const void *b) {
@@ -84,7 +85,7 @@ static int compare(const void *a, const void *b) {
 TEST(the_median_cell_size_is_exact) {
     for (uint32_t seed = 1; seed < 6; seed++) {
         Memory memory = memory_make((SingeAllocator){0});
-        RELEASED(mesh_release) QuadMesh mesh = mesh_random(2 + seed, seed);
+        QuadMesh mesh = mesh_random(2 + seed, seed);
         for (uint32_t v = 0; v < mesh.vertex_count; v++) mesh.position[v][2] = 0.1f * sinf((float)(v * v));
 
         Shell shell = mesh_shell(&memory, &mesh);
@@ -97,6 +98,7 @@ TEST(the_median_cell_size_is_exact) {
         assert_true(shell.sheets[0].cell_size == sorted[blue->count / 2]);
         free(sorted);
         shell_free(&memory, &shell);
+        mesh_release(&mesh);
     }
 }
 
@@ -120,7 +122,7 @@ TEST(parts_of_a_planar_mesh_sum_to_the_whole) {
 // A dart: the triangle (0,0) (2,0) (1,2) without (0,0) (2,0) (1,1), its corners equal for want of better.
 TEST(a_concave_cell_has_equal_corners) {
     Memory memory = memory_make((SingeAllocator){0});
-    RELEASED(mesh_release) QuadMesh mesh = {0};
+    QuadMesh mesh = {0};
     static const float position[4][2] = {{0, 0}, {1, 1}, {2, 0}, {1, 2}};
 
     for (int v = 0; v < 4; v++) mesh_add_vertex(&mesh, position[v][0], position[v][1], 0);
@@ -129,6 +131,7 @@ TEST(a_concave_cell_has_equal_corners) {
     check_layers(&shell, 1, 1e-6);
     for (uint32_t v = 0; v < 4; v++) assert_near((double)shell.matter.area[v], 0.25, 1e-6);
     shell_free(&memory, &shell);
+    mesh_release(&mesh);
 }
 
 // A curved shell: the centre layer of a cylinder is longer outside, at the radius of its own prism.
@@ -136,7 +139,7 @@ TEST(the_centre_layer_of_a_cylinder_is_longer_outside) {
     Memory memory = memory_make((SingeAllocator){0});
     const uint32_t n = 16;
     const double pi = 3.14159265358979, r = 0.1, t = 0.01, h = 0.3;
-    RELEASED(mesh_release) QuadMesh mesh = mesh_cylinder(n, 6, (float)r, (float)h);
+    QuadMesh mesh = mesh_cylinder(n, 6, (float)r, (float)h);
     SingeSheetDef def = mesh_sheet(&mesh);
     def.material.thickness = singe_param((float)t);
 
@@ -158,4 +161,5 @@ TEST(the_centre_layer_of_a_cylinder_is_longer_outside) {
     assert_int_equal(rings, 6);
     shell_free(&memory, &shell);
     sheet_source_free(&memory, &source);
+    mesh_release(&mesh);
 }

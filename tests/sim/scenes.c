@@ -43,7 +43,6 @@ void scene_flux(void *context, const struct SingeView *view, float *flux, float 
 
 static SingeResult scene_sheets(TestScene *scene, uint32_t cells) {
     const float side = 0.2f;
-    RELEASED(test_mesh_free)
     TestMesh grid = test_grid(cells, cells, side / (float)cells, side / (float)cells),
              tube = test_cylinder(8, 5, 0.03f, 0.1f);
 
@@ -63,6 +62,7 @@ static SingeResult scene_sheets(TestScene *scene, uint32_t cells) {
     sheet.material.heat_operator = SINGE_HEAT_UMBRELLA;
     sheet.velocity[2] = -0.1f;
     if (!result) result = singe_sim_add_sheet(scene->sim, &sheet, &scene->sheets[1]);
+    test_mesh_free(&grid);
     test_mesh_free(&tube);
     return result;
 }
@@ -176,10 +176,8 @@ SingeResult scene_build_early(const SingeSimDef *def, uint32_t cells, TestScene 
 TestScene scene_make(const SingeSimDef *def, uint32_t cells) {
     TestScene scene;
     SingeSimDef standard = scene_def();
-    if (!def) def = &standard;
-    SingeResult result = scene_build(def, cells, &scene);
+    SingeResult result = scene_build(def ? def : &standard, cells, &scene);
     test_ok(scene.sim, result);
-    test_destroy_later(def, scene.sim);
     return scene;
 }
 

@@ -84,7 +84,7 @@ TEST(the_front_arrives_when_the_map_says) {
         // without the map the fire is on its own; what it did not reach cannot be missed
         test_ok(sim, singe_sim_remove_source(sim, id));
         assert_true(singe_sim_stats(sim).arrival_error == 0 && singe_sim_stats(sim).arrival_missed == 0);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 }
 
@@ -105,6 +105,7 @@ TEST(particles_that_miss_the_map_are_counted) {
     for (int k = 0; k < HIGH * WIDE; k++) values[k] = 1;
     test_ok(sim, singe_sim_add_source(sim, &source, &id));
     assert_true(singe_sim_stats(sim).arrival_missed > 20); // burnt where nothing may
+    singe_sim_destroy(sim);
 }
 
 TEST(a_map_is_saved) {
@@ -122,7 +123,7 @@ TEST(a_map_is_saved) {
     test_assert_same(sim, loaded);
     test_assert_same(sim, copy);
     assert_true(singe_sim_stats(loaded).arrival_error < 0.003);
-    test_destroy(sim), test_destroy(loaded), test_destroy(copy);
+    singe_sim_destroy(sim), singe_sim_destroy(loaded), singe_sim_destroy(copy);
 
     // a value that is no time
     const float bad = -0.5f, good = 2;
@@ -164,4 +165,5 @@ TEST(bad_maps_are_refused) {
 
     values[7] = 0.5f;
     test_ok(sim, singe_sim_add_source(sim, &good, &id));
+    singe_sim_destroy(sim);
 }

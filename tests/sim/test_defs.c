@@ -94,6 +94,7 @@ TEST(bad_sources_are_refused) {
     SOURCE_BAD((SingeSourceKind)17, (void)0);
     SOURCE_BAD((SingeSourceKind)-1, (void)0);
     test_steps(sim, 2);
+    singe_sim_destroy(sim);
 }
 
 #define PIN_BAD(result, change)                                         \
@@ -130,6 +131,7 @@ TEST(bad_pins_are_refused) {
 
     SingeView view = singe_sim_view(sim);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_int_equal(view.particle_flags[i], SINGE_ALIVE);
+    singe_sim_destroy(sim);
 }
 
 TEST(bad_colliders_and_wind_are_refused) {
@@ -159,6 +161,7 @@ TEST(bad_colliders_and_wind_are_refused) {
     wind.struct_size = 0;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_wind(sim, &wind));
     test_steps(sim, 1);
+    singe_sim_destroy(sim);
 }
 
 /// The size of an older header's struct whose fields end there, or before the padding that it would need.
@@ -170,7 +173,7 @@ TEST(rubbish_beyond_an_older_def_is_not_read) {
     def.struct_size = OLDER(SingeSimDef, heat_tolerance);
     def.heat_tolerance = NAN, def.wind.struct_size = 0, def.solver.substeps = -1;
     SingeSim *sim = test_create(&def);
-    RELEASED(test_mesh_free) TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
+    TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     sheet.struct_size = OLDER(SingeSheetDef, drop_pieces_below);
     sheet.drop_pieces_below = NAN;
@@ -201,6 +204,8 @@ TEST(rubbish_beyond_an_older_def_is_not_read) {
     wind.gust = 1, wind.gust_time = NAN;
     test_ok(sim, singe_sim_set_wind(sim, &wind));
     test_steps(sim, 3);
+    singe_sim_destroy(sim);
+    test_mesh_free(&mesh);
 }
 
 /// An older header's wind inside the simulation's Def is smaller, and what comes after it lies earlier.
@@ -226,7 +231,7 @@ TEST(a_def_inside_may_be_older) {
     def.wind.struct_size = sizeof def.wind;
     assert_int_equal(singe_sim_create(&def, &new, NULL), SINGE_OK);
 
-    RELEASED(test_mesh_free) TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
+    TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     SingeSim *both[2] = {old, new};
     for (int i = 0; i < 2; i++) {
@@ -236,8 +241,9 @@ TEST(a_def_inside_may_be_older) {
     }
 
     test_assert_same(old, new);
-    test_destroy(old);
-    test_destroy(new);
+    singe_sim_destroy(old);
+    singe_sim_destroy(new);
+    test_mesh_free(&mesh);
 }
 
 TEST(fields_of_newer_defs_are_ignored) {
@@ -250,6 +256,7 @@ TEST(fields_of_newer_defs_are_ignored) {
     SingeSim *sim = small_sim();
     test_ok(sim, singe_sim_set_wind(sim, &wind.wind));
     test_steps(sim, 1);
+    singe_sim_destroy(sim);
 }
 
 /// The simulation copies what it is given.
@@ -272,4 +279,6 @@ TEST(defs_are_copied) {
     }
 
     test_steps_alike(a, b, 10);
+    singe_sim_destroy(a);
+    singe_sim_destroy(b);
 }

@@ -30,7 +30,7 @@ TEST(the_order_does_not_matter) {
 TEST(invalid_objects_fail_at_the_commit) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim = test_create(&def);
-    RELEASED(test_mesh_free) TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
+    TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     sheet.uv = NULL;
 
@@ -60,6 +60,8 @@ TEST(invalid_objects_fail_at_the_commit) {
     assert_false(singe_sim_view(sim).particle_flags[4] & SINGE_PINNED);
     test_ok(sim, singe_sim_remove_pin(sim, pin_id));
     assert_false(singe_sim_view(sim).particle_flags[3] & SINGE_PINNED);
+    test_mesh_free(&mesh);
+    singe_sim_destroy(sim);
 }
 
 /// Removed before the commit, an object leaves nothing behind.
@@ -87,7 +89,7 @@ TEST(objects_removed_before_the_commit_leave_nothing) {
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_pin(sim, first));
     test_steps(sim, 2);
     test_mesh_free(&mesh);
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     test_allocator_check(&hook);
 }
 
@@ -118,8 +120,8 @@ TEST(without_a_path_it_stands_still) {
     test_assert_same(sims[0], sims[1]);
     assert_true(singe_sim_stats(sims[1]).heat_in > 0.1);
     assert_true(singe_sim_timers(sims[1]).contacts > 0);
-    test_destroy(sims[0]);
-    test_destroy(sims[1]);
+    singe_sim_destroy(sims[0]);
+    singe_sim_destroy(sims[1]);
 }
 
 /// Callers may omit handles that they do not need; the objects exist nevertheless.
@@ -129,7 +131,7 @@ TEST(handles_may_be_left_out) {
         SingeSimDef def = singe_default_sim();
         test_ok(NULL, singe_sim_create(&def, &sims[k], NULL));
 
-        RELEASED(test_mesh_free) TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
+        TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
         SingeSheetDef sheet = test_sheet(&mesh);
         SingePinDef pin = singe_default_pin();
         SingeSourceDef spot = singe_default_source();
@@ -152,12 +154,13 @@ TEST(handles_may_be_left_out) {
         test_refused(sims[k], SINGE_ERROR_ARGUMENT, singe_sim_add_pin(sims[k], &pin, k ? NULL : &pin_id));
         test_ok(sims[k], singe_sim_commit(sims[k]));
         test_steps(sims[k], 10);
+        test_mesh_free(&mesh);
     }
 
     test_assert_same(sims[0], sims[1]);
     assert_true(singe_sim_stats(sims[1]).heat_in > 0);
-    test_destroy(sims[0]);
-    test_destroy(sims[1]);
+    singe_sim_destroy(sims[0]);
+    singe_sim_destroy(sims[1]);
 }
 
 TEST(user_data_is_the_callers) {
@@ -166,7 +169,7 @@ TEST(user_data_is_the_callers) {
     SingeSimDef def = singe_default_sim();
 
     test_ok(NULL, singe_sim_create(&def, &sim, NULL));
-    RELEASED(test_mesh_free) TestMesh mesh = test_grid(2, 2, 0.01f, 0.01f);
+    TestMesh mesh = test_grid(2, 2, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     SingeSourceDef source = singe_default_source();
     SingeColliderDef collider = singe_default_collider();
@@ -206,8 +209,9 @@ TEST(user_data_is_the_callers) {
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_collider_user_data(sim, collider_id, ours));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_pin_user_data(sim, (SingePinId){5, 5}, ours));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_sheet_user_data(sim, (SingeSheetId){5, 1}, ours));
-    test_destroy(sim);
-    test_destroy(copy);
+    test_mesh_free(&mesh);
+    singe_sim_destroy(sim);
+    singe_sim_destroy(copy);
 }
 
 /// Every call for memory up to the commit fails once; the commit works when it is called again.

@@ -44,6 +44,7 @@ TEST(a_particle_ignites_once) {
 
     assert_true(ignited > 50);
     free(seen);
+    singe_sim_destroy(scene.sim);
 }
 
 typedef struct Tally {
@@ -82,6 +83,7 @@ TEST(a_disc_burns_one_hole) {
     assert_true(hypotf(seen.hole.position[0] - 0.06f, seen.hole.position[1] - 0.06f) < 0.012f);
     assert_true(singe_sim_view(sim).time_burnt[seen.hole.element] >= 0);
     assert_int_equal(singe_sim_stats(sim).pieces, 1);
+    singe_sim_destroy(sim);
 }
 
 /// Heats a line across the strip at rest position x.
@@ -124,6 +126,8 @@ TEST(a_cut_makes_one_piece) {
         int32_t expected = !alive ? -1 : view.rest_position[i][0] > line ? 0 : view.piece[0];
         assert_int_equal(view.piece[i], expected);
     }
+
+    singe_sim_destroy(sim);
 }
 
 /// The switches: nothing goes with ablation off, or with m_loss under m_min.
@@ -148,6 +152,6 @@ TEST(no_cells_vanish_with_ablation_off) {
         assert_int_equal(stats.particles, singe_sim_view(sim).particle_count);
         assert_int_equal(seen.holes + seen.pieces, 0);
         assert_true(seen.ignited > 50);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 }

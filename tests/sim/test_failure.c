@@ -46,6 +46,8 @@ TEST(a_failed_step_changes_nothing) {
     test_ok(twin.sim, singe_sim_add_source(twin.sim, &def, &id)); // keeps the lists and generations alike
     test_ok(twin.sim, singe_sim_remove_source(twin.sim, id));
     test_steps_alike(sim, twin.sim, 30);
+    singe_sim_destroy(sim);
+    singe_sim_destroy(twin.sim);
 }
 
 /// A pin drags a particle out of the world: the dynamics fails after other stages have run, and their changes are
@@ -73,7 +75,8 @@ TEST(a_failure_late_in_the_step_changes_nothing) {
 
     test_assert_same(sim, copy);
     test_steps_alike(sim, copy, 20);
-    test_destroy(copy);
+    singe_sim_destroy(copy);
+    singe_sim_destroy(sim);
 }
 
 typedef struct Asked {
@@ -93,7 +96,7 @@ static SingeSim *crowd_make(Asked *asked, int threads) {
 
     SingeSim *sim = test_create(&def);
     for (int s = 0; s < 4; s++) {
-        RELEASED(test_mesh_free) TestMesh mesh = test_grid(9, 9, 0.007f, 0.007f);
+        TestMesh mesh = test_grid(9, 9, 0.007f, 0.007f);
         test_mesh_move(&mesh, -0.03f, -0.03f, 0.0015f * (float)(s / 2 + 10));
         for (uint32_t v = 0; v < mesh.vertex_count && s == 1; v++)
             mesh.positions[3 * v + 2] += 0.1f * (mesh.positions[3 * v] + 0.01f);
@@ -102,6 +105,7 @@ static SingeSim *crowd_make(Asked *asked, int threads) {
         sheet.velocity[2] = s < 2 ? 3 : -3;
         sheet.material.temperature = singe_param(s == 0 ? 800 : 300);
         test_add_sheet(sim, &sheet);
+        test_mesh_free(&mesh);
     }
 
     SingeColliderDef ball = singe_default_collider();
@@ -121,7 +125,7 @@ static int give_up(SingeSim *sim, Asked *asked) {
     test_ok(copy, singe_sim_step(copy));
 
     const int polls = atomic_load(&asked->count);
-    test_destroy(copy);
+    singe_sim_destroy(copy);
     assert_true(polls > 5);
 
     TestBytes before = test_save(sim);
@@ -159,8 +163,8 @@ TEST(a_step_that_is_given_up_changes_nothing) {
         assert_true(given_up > 150 && timers.contact_stops > 0 && singe_sim_stats(sim).intersecting_cells > 0);
         assert_int_equal(timers.contact_stops, other.contact_stops);
         assert_int_equal(timers.contact_pairs, other.contact_pairs);
-        test_destroy(sim);
-        test_destroy(twin);
+        singe_sim_destroy(sim);
+        singe_sim_destroy(twin);
     }
 }
 
@@ -184,7 +188,7 @@ TEST(steps_allocate_nothing) {
 
     SingeStats stats = singe_sim_stats(scene.sim);
     assert_true(events > 20 && stats.mass_removed > 0 && singe_sim_timers(scene.sim).contacts > 0);
-    test_destroy(scene.sim);
+    singe_sim_destroy(scene.sim);
     assert_int_equal(hook.blocks, 0);
 }
 
@@ -219,7 +223,7 @@ static SingeResult whole_life(const SingeSimDef *def, TestScene *scene, SingeSur
         assert_int_equal(error.code, result);
         return result;
     }
-    test_destroy(loaded);
+    singe_sim_destroy(loaded);
     return singe_sim_step(scene->sim);
 #undef LIFE
 }
@@ -270,7 +274,7 @@ TEST(failed_calls_can_be_repeated) {
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
     SingeSim *sim = test_create(&def);
-    RELEASED(test_mesh_free) TestMesh mesh = test_grid(5, 5, 0.01f, 0.01f);
+    TestMesh mesh = test_grid(5, 5, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     SingeSheetId sheet_id;
     SingePoseKey key = test_key(0, 0, 0, 0);
@@ -310,12 +314,13 @@ TEST(failed_calls_can_be_repeated) {
     singe_sim_free_bytes(sim, bytes, size);
     SingeSim *copy;
     REPEAT(singe_sim_clone(sim, &copy));
-    test_destroy(copy);
+    singe_sim_destroy(copy);
 #undef REPEAT
     assert_int_equal(source_id.index, 0); // failed tries used up no slots
     assert_int_equal(collider_id.index, 0);
     assert_int_equal(pin_id.index, 0);
     test_steps(sim, 3);
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     assert_int_equal(hook.blocks, 0);
+    test_mesh_free(&mesh);
 }

@@ -113,8 +113,8 @@ TEST(moved_as_a_whole_it_is_a_mesh_on_a_path) {
     assert_true(mean_of(sims[1], 0) > 0.045 && fabs(mean_of(sims[1], 2) - 0.15) < 0.004);
     assert_true(worst < 1e-3);
     assert_true(singe_sim_timers(sims[1]).contacts > 1000);
-    test_destroy(sims[0]);
-    test_destroy(sims[1]);
+    singe_sim_destroy(sims[0]);
+    singe_sim_destroy(sims[1]);
 }
 
 /// A thin plate that is swept through a hanging sheet takes it along, however fast it is; put there at once, it does
@@ -150,7 +150,7 @@ static void sweep(double speed, bool at_once, double *behind, double *ahead) {
         *ahead = fmax(*ahead, (double)view.position[v][0]);
     }
 
-    test_destroy(sim);
+    singe_sim_destroy(sim);
 }
 
 TEST(nothing_passes_a_thin_plate) {
@@ -187,6 +187,7 @@ TEST(a_swelling_block_lifts) {
     assert_true(fabs(mean_of(sim, 2) - (double)TOP - 0.04) < 0.003);
     test_steps(sim, 120); // and it stays
     assert_true(fabs(mean_of(sim, 2) - (double)TOP - 0.04) < 0.002);
+    singe_sim_destroy(sim);
 }
 
 /// Two corners go round; frame by frame they are where they were set.
@@ -296,7 +297,9 @@ TEST(pins_follow_and_runs_resume) {
     test_steps(sim, 3);
     assert_true(fabsf(singe_sim_view(sim).position[corner][2] - before) < 1e-6f);
     free(bytes.data);
-    test_destroy(threads);
+    singe_sim_destroy(resumed);
+    singe_sim_destroy(threads);
+    singe_sim_destroy(sim);
 }
 
 TEST(bad_positions_are_refused) {
@@ -334,6 +337,8 @@ TEST(bad_positions_are_refused) {
     open.triangle_count--;
     test_refused(sim, SINGE_ERROR_MESH, singe_sim_add_collider(sim, &open, &box));
     test_steps_alike(sim, twin, 20);
+    singe_sim_destroy(sim);
+    singe_sim_destroy(twin);
 }
 
 /// A mesh that collapses to a plane, to a line and to a point on its way leaves numbers finite; nothing is allocated.
@@ -359,7 +364,7 @@ TEST(a_mesh_may_collapse) {
 
     assert_int_equal(hook.calls, calls);
     assert_true(isfinite(mean_of(sim, 2)));
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     test_allocator_check(&hook);
 
     long last = hook.calls; // every allocation of it fails once
@@ -373,7 +378,7 @@ TEST(a_mesh_may_collapse) {
         SingeColliderDef collider = block_def(&block, SINGE_COLLIDER_DEFORMING);
         SingeResult result = singe_sim_add_collider(made, &collider, &id);
         assert_true(result == SINGE_OK || result == SINGE_ERROR_MEMORY);
-        test_destroy(made);
+        singe_sim_destroy(made);
         test_allocator_check(&failing);
     }
 }

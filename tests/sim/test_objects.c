@@ -60,6 +60,7 @@ TEST(handles_go_stale) {
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_source(sim, (SingeSourceId){1000000, 1}));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_pin(sim, (SingePinId){UINT32_MAX, UINT32_MAX}));
     test_steps(sim, 5);
+    singe_sim_destroy(sim);
 }
 
 TEST(refused_moves_change_nothing) {
@@ -77,6 +78,8 @@ TEST(refused_moves_change_nothing) {
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_source_callback(sim, scene.ball, scene_flux, NULL));
 
     test_steps_alike(sim, other.sim, 10);
+    singe_sim_destroy(sim);
+    singe_sim_destroy(other.sim);
 }
 
 TEST(sources_come_and_go) {
@@ -114,6 +117,8 @@ TEST(sources_come_and_go) {
         test_ok(sim, singe_sim_step(sim));
         assert_int_equal(heat_in(sim) > before, i == 2 || i == 3);
     }
+
+    singe_sim_destroy(sim);
 }
 
 TEST(pins_hold_move_and_let_go) {
@@ -171,6 +176,7 @@ TEST(pins_hold_move_and_let_go) {
     assert_false(view.particle_flags[0] & SINGE_PINNED);
     test_steps(sim, 20);
     assert_true(view.position[0][2] < at[0][2]);
+    singe_sim_destroy(sim);
 }
 
 /// As if the host had removed them at that time; saved and loaded before and after it, too.
@@ -192,7 +198,7 @@ TEST(pins_end) {
 
     for (int step = 0; step < 80; step++) {
         if (step % 20 == 10) { // at 10 and 30 it holds, at 50 and 70 no more
-            test_destroy(loaded);
+            singe_sim_destroy(loaded);
             loaded = test_reload(NULL, by_end);
         }
 
@@ -212,7 +218,9 @@ TEST(pins_end) {
     assert_int_equal(count, 0);
     test_ok(by_end, singe_sim_move_pin(by_end, ended, 1, path)); // its handle is still good
     test_ok(by_end, singe_sim_remove_pin(by_end, ended));
-    test_destroy(loaded);
+    singe_sim_destroy(by_hand);
+    singe_sim_destroy(by_end);
+    singe_sim_destroy(loaded);
 }
 
 TEST(a_turning_pin_turns) {
@@ -231,6 +239,7 @@ TEST(a_turning_pin_turns) {
     SingeView view = singe_sim_view(sim);
     assert_true(fabsf(view.position[4][0]) < 1e-6f && fabsf(view.position[4][1] - 0.04f) < 1e-6f);
     assert_true(fabsf(view.position[0][0]) < 1e-6f && fabsf(view.position[0][1]) < 1e-6f);
+    singe_sim_destroy(sim);
 }
 
 /// The nearest vertex of a point is never one that no cell uses.
@@ -245,6 +254,7 @@ TEST(unused_vertices_are_not_pinned) {
     test_add_pin(sim, &pin);
     assert_true(singe_sim_view(sim).particle_flags[8] & SINGE_PINNED);
     assert_int_equal(singe_sim_view(sim).particle_flags[9], 0);
+    singe_sim_destroy(sim);
 }
 
 TEST(pins_on_one_particle_are_limited) {
@@ -264,6 +274,7 @@ TEST(pins_on_one_particle_are_limited) {
     }
 
     assert_false(singe_sim_view(sim).particle_flags[4] & SINGE_PINNED);
+    singe_sim_destroy(sim);
 }
 
 /// Neighbours pinned anywhere on a ring of springs, and all of it.
@@ -278,7 +289,7 @@ TEST(rings_can_be_pinned) {
         test_add_pin(sim, &pin);
         for (int i = 0; i < 20; i++)
             if (singe_sim_step(sim)) fail_msg("vertices from %u on pinned: %s", first, singe_sim_error(sim)->message);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 }
 
@@ -306,6 +317,7 @@ TEST(colliders_catch_move_and_go) {
     test_steps(sim, 150);
     assert_true(mean_height(sim) < 0.02f);
     assert_int_equal(singe_sim_timers(sim).contacts, contacts);
+    singe_sim_destroy(sim);
 }
 
 TEST(hot_colliders_heat) {
@@ -319,6 +331,7 @@ TEST(hot_colliders_heat) {
     test_steps(sim, 60);
     assert_true(heat_in(sim) > 0);
     assert_true(singe_sim_stats(sim).temperature_max > 294 && singe_sim_stats(sim).temperature_max < 350);
+    singe_sim_destroy(sim);
 }
 
 TEST(wind_blows) {
@@ -334,6 +347,7 @@ TEST(wind_blows) {
     test_ok(sim, singe_sim_set_wind(sim, &wind));
     test_steps(sim, 60);
     assert_true(mean_height(sim) > 0.01f);
+    singe_sim_destroy(sim);
 }
 
 static float callback_seen_time;
@@ -367,4 +381,5 @@ TEST(callbacks_can_be_exchanged) {
     double before = heat_in(sim);
     test_ok(sim, singe_sim_step(sim));
     assert_true(heat_in(sim) == before);
+    singe_sim_destroy(sim);
 }

@@ -19,7 +19,7 @@ static SingeResult try_sim(SingeSim *sim, void *def) {
     SingeSim *made;
     SingeError error;
     SingeResult result = singe_sim_create(def, &made, &error);
-    test_destroy(made);
+    singe_sim_destroy(made);
     if (result) memcpy((SingeError *)(uintptr_t)singe_sim_error(sim), &error, sizeof error);
     return result;
 }
@@ -153,6 +153,7 @@ TEST(ranges_match_the_tables) {
     tried += try_table(sim, &pin_table, &pin, sizeof pin, try_pin);
     print_message("%d ranges\n", tried);
     assert_true(tried >= 100);
+    singe_sim_destroy(sim);
 }
 
 /// An enum's values are 0, 1, 2, ... : tables are indexed by them.

@@ -28,7 +28,7 @@ static SingeReplay replay_all(const Tape *tape) { return replay_some(tape, tape-
 static void live(const SingeSimDef *def) {
     TestScene scene = scene_make(def, 10);
     scene_every_call(&scene);
-    test_destroy(scene.sim);
+    singe_sim_destroy(scene.sim);
 }
 
 static Tape recording(void) {
@@ -70,6 +70,8 @@ TEST(a_recording_changes_nothing) {
     test_steps(b.sim, 5);
     assert_true(tape.size > before);
     test_assert_same(a.sim, b.sim);
+    singe_sim_destroy(a.sim);
+    singe_sim_destroy(b.sim);
     free(tape.bytes);
 }
 
@@ -100,9 +102,9 @@ TEST(recordings_may_begin_with_a_snapshot) {
     Tape tape = {0};
     SingeSimDef hooks = recorded(singe_default_sim(), &tape);
     SingeSim *sim = test_reload(&hooks, scene.sim);
-    test_destroy(scene.sim);
+    singe_sim_destroy(scene.sim);
     test_steps(sim, 3);
-    test_destroy(sim);
+    singe_sim_destroy(sim);
 
     SingeReplay replay = replay_all(&tape);
     assert_true(replay.same && replay.complete);
@@ -127,7 +129,7 @@ TEST(what_was_given_up_is_given_up_again) {
     assert_int_equal(steps, 0);
     gives_up = false;
     test_steps(scene.sim, 3);
-    test_destroy(scene.sim);
+    singe_sim_destroy(scene.sim);
 
     SingeReplay replay = replay_all(&tape);
     assert_string_equal(replay.what, "");
@@ -280,7 +282,7 @@ TEST(a_small_recording_cannot_ask_for_endless_work) {
     SingeSimDef def = recorded(singe_default_sim(), &tape);
     SingeSim *sim = test_sim(&def, test_grid(3, 3, 0.01f, 0.01f), NULL);
     test_ok(sim, singe_sim_advance(sim, 0.0101, 0, NULL));
-    test_destroy(sim);
+    singe_sim_destroy(sim);
 
     const size_t advance = tape_find(&tape, 37, 0);
     const double long_time = 1e6;
@@ -300,7 +302,7 @@ TEST(handles_are_followed_where_a_call_was_taken_out) {
     SingeSourceId first = test_spot(sim, 0, 0, 0, 0.01f, 400, 100), second = test_spot(sim, 0, 0, 0, 0.01f, 500, 100);
     (void)first;
     test_ok(sim, singe_sim_remove_source(sim, second));
-    test_destroy(sim);
+    singe_sim_destroy(sim);
 
     const size_t from = tape_find(&tape, 18, 0), to = tape_find(&tape, 18, 1);
     memmove(tape.bytes + from, tape.bytes + to, tape.size - to);
@@ -325,7 +327,7 @@ TEST(a_failing_writer_ends_only_the_recording) {
 
     TestScene scene = scene_make(&def, 10);
     test_steps(scene.sim, 3);
-    test_destroy(scene.sim);
+    singe_sim_destroy(scene.sim);
     assert_int_equal(warnings, 1);
     assert_true(tape.size <= 20000);
     free(tape.bytes);
@@ -339,7 +341,7 @@ TEST(a_recorder_for_which_there_is_no_memory_is_an_error) {
     Tape tape = {0};
     SingeSim *sim = NULL;
     SingeSimDef def = recorded(singe_default_sim(), &tape);
-    test_allocations_fail(1, (def.allocator = allocator, create_and_destroy(&def, &sim)), test_destroy(sim));
+    test_allocations_fail(1, (def.allocator = allocator, create_and_destroy(&def, &sim)), singe_sim_destroy(sim));
     free(tape.bytes);
 }
 
@@ -348,7 +350,7 @@ TEST(a_replay_without_memory_is_an_error) {
     SingeSimDef def = recorded(singe_default_sim(), &tape), hooks = singe_default_sim();
     SingeSim *sim = test_sim(&def, test_grid(3, 3, 0.01f, 0.01f), NULL);
     test_steps(sim, 1);
-    test_destroy(sim);
+    singe_sim_destroy(sim);
 
     TestAllocator counter = {.fail_at = 4};
     hooks.allocator = test_allocator(&counter);

@@ -17,7 +17,7 @@ static void assert_loads_the_same(SingeSim *sim) {
     SingeSim *loaded = test_reload(NULL, sim);
     test_assert_same(sim, loaded);
     test_steps_alike(sim, loaded, 15);
-    test_destroy(loaded);
+    singe_sim_destroy(loaded);
 }
 
 // ---- gravity, pace, ambient temperature
@@ -58,8 +58,8 @@ TEST(set_later_is_saved) {
         SingeStats a = singe_sim_stats(scene.sim), b = singe_sim_stats(twin.sim);
         assert_true(a.heat_lost != b.heat_lost || a.speed_rms_unburnt != b.speed_rms_unburnt); // it matters
         assert_true(a.ledger_error < 1e-4);
-        test_destroy(scene.sim);
-        test_destroy(twin.sim);
+        singe_sim_destroy(scene.sim);
+        singe_sim_destroy(twin.sim);
     }
 }
 
@@ -75,6 +75,7 @@ TEST(substeps_are_those_of_the_commit) {
     test_steps(sim, 3);
     test_ok(sim, singe_sim_set_gravity(sim, gravity));
     assert_loads_the_same(sim);
+    singe_sim_destroy(sim);
 }
 
 /// A sheet that lies still in warmer air takes heat from it, and its ledger goes on without a jump.
@@ -93,6 +94,7 @@ TEST(warmer_air_warms) {
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.temperature_max > 300 && stats.temperature_max < 400);
     assert_true(stats.heat_lost < 0 && stats.ledgers_close);
+    singe_sim_destroy(sim);
 }
 
 TEST(refused_numbers_change_nothing) {
@@ -121,13 +123,15 @@ TEST(refused_numbers_change_nothing) {
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_material(sim, scene.sheets[0], &material, NULL));
 
     test_steps_alike(sim, twin.sim, 10);
+    singe_sim_destroy(sim);
+    singe_sim_destroy(twin.sim);
 }
 
 // ---- velocities
 
 /// m/s, the largest difference between the velocities of the surface's vertices and their displacement from `from` on.
 static float surface_differs(SingeSim *sim, float (*from)[3], double seconds) {
-    RELEASED(singe_surface_free) SingeSurface surface = {0};
+    SingeSurface surface = {0};
     test_ok(sim, singe_sim_surface(sim, &surface));
 
     float worst = 0;
@@ -137,6 +141,7 @@ static float surface_differs(SingeSim *sim, float (*from)[3], double seconds) {
             worst = fmaxf(worst, fabsf(surface.velocity[v][k] - (seconds > 0 ? moved / (float)seconds : 0)));
         }
 
+    singe_surface_free(&surface);
     return worst;
 }
 
@@ -171,6 +176,8 @@ TEST(surfaces_have_the_displacement_since_the_last_frame_as_velocity) {
     // the last substep is faster by the half of the frame that it is ahead of the mean
     const SingeView view = singe_sim_view(sim);
     assert_true(fabs(-(double)view.velocity[0][2] - 9.81 * 8 * h) < 0.1 * 9.81 * h);
+    singe_sim_destroy(loaded);
+    singe_sim_destroy(sim);
 }
 
 TEST(velocities_throw) {
@@ -196,6 +203,8 @@ TEST(velocities_throw) {
     // a corner alone, and nothing else at first
     test_ok(sim, singe_sim_set_velocity(sim, sheet, 80, 1, up[0]));
     test_ok(sim, singe_sim_set_velocity(sim, sheet, 81, 0, NULL));
+    singe_sim_destroy(sim);
+    singe_sim_destroy(loaded);
 }
 
 // ---- materials
@@ -211,6 +220,8 @@ TEST(the_same_material_changes_nothing) {
     test_ok(scene.sim, singe_sim_set_material(scene.sim, scene.sheets[0], &material, NULL));
     test_assert_same(scene.sim, twin.sim);
     test_steps_alike(scene.sim, twin.sim, 25);
+    singe_sim_destroy(scene.sim);
+    singe_sim_destroy(twin.sim);
 }
 
 /// A strip that cannot burn stops the fire there, and only there.
@@ -238,7 +249,7 @@ TEST(a_wet_strip_stops_the_fire) {
             if (share[v] > 0) assert_true(view.mass[v] == 1);
         assert_true(singe_sim_stats(sim).ledgers_close);
         burnt[wet] = singe_sim_stats(sim).burnt_fraction;
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 
     print_message("burnt: %.2f dry, %.2f with a wet half\n", burnt[0], burnt[1]);
@@ -353,6 +364,9 @@ TEST(frames_may_have_any_length) {
     test_ok(loaded, singe_sim_advance(loaded, 0.31 * h, 0, &done));
     test_ok(advanced.sim, singe_sim_advance(advanced.sim, 0.31 * h, 0, NULL));
     test_assert_same(loaded, advanced.sim);
+    singe_sim_destroy(loaded);
+    singe_sim_destroy(advanced.sim);
+    singe_sim_destroy(stepped.sim);
 }
 
 /// A sum of float steps that is a whole frame in exact numbers is whole here.
@@ -365,6 +379,8 @@ TEST(frames_of_whole_steps_stay_whole) {
         test_ok(sim, singe_sim_advance(sim, 1.0 / 24, 0, &steps));
         assert_int_equal(steps, 20);
     }
+
+    singe_sim_destroy(sim);
 }
 
 TEST(advance_takes_at_most_max_steps) {
@@ -380,6 +396,7 @@ TEST(advance_takes_at_most_max_steps) {
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_advance(sim, INFINITY, 0, NULL));
     assert_int_equal(steps, 0);
     assert_int_equal(singe_sim_view(sim).step, 4);
+    singe_sim_destroy(sim);
 }
 
 // ---- ranges
@@ -423,4 +440,5 @@ TEST(ranges_stay_through_tears) {
     range = singe_sim_sheet_range(sim, (SingeSheetId){3, 1});
     assert_int_equal(range.vertex_count, 0);
     assert_int_equal(range.struct_size, sizeof range);
+    singe_sim_destroy(sim);
 }

@@ -52,7 +52,7 @@ TEST(strips_cost_as_squares) {
 
     for (int k = 0; k < SHAPES; k++) {
         print_message("%s: %.1f ms a step, %.2f times squares\n", shapes[k].name, 1e3 * cost[k], cost[k] / cost[0]);
-        test_destroy(sims[k]);
+        singe_sim_destroy(sims[k]);
     }
 
     assert_true(cost[1] <= 1.3 * cost[0]);

@@ -22,6 +22,6 @@ TEST(a_million_springs_take_few_bytes) {
     assert_true(hook.peak <= 250 * springs); // while the sheet and the shell are built
     test_ok(sim, singe_sim_step(sim));
     assert_int_equal(counts.memory, hook.bytes);
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     assert_int_equal(hook.blocks, 0);
 }

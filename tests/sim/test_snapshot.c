@@ -34,8 +34,8 @@ TEST(resumed_runs_are_the_same) {
 
         test_assert_same(scene.sim, resumed);
         if (saves[k] == 80) assert_true(singe_sim_stats(resumed).burnt_fraction > 0.2);
-        test_destroy(resumed);
-        test_destroy(scene.sim);
+        singe_sim_destroy(resumed);
+        singe_sim_destroy(scene.sim);
     }
 }
 
@@ -58,9 +58,9 @@ TEST(bytes_are_the_same) {
     SingeSim *loaded = test_load(NULL, &first);
     test_assert_saved(loaded, &first);
     free(first.data);
-    test_destroy(loaded);
-    test_destroy(a.sim);
-    test_destroy(b.sim);
+    singe_sim_destroy(loaded);
+    singe_sim_destroy(a.sim);
+    singe_sim_destroy(b.sim);
     assert_int_equal(hook.blocks, 0);
 }
 
@@ -98,8 +98,9 @@ TEST(handles_keep_their_values) {
     const SingePinId id = test_add_pin(sim, &pin); // into a free slot, which held nothing
     assert_int_equal(id.index, scene.points.index);
     free(bytes.data);
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     assert_int_equal(hook.blocks, 0);
+    singe_sim_destroy(scene.sim);
 }
 
 TEST(clones_are_independent) {
@@ -118,9 +119,9 @@ TEST(clones_are_independent) {
 
     test_steps(copy, 10);
     test_steps(scene.sim, 10);
-    test_destroy(scene.sim);
+    singe_sim_destroy(scene.sim);
     test_steps(copy, 2);
-    test_destroy(copy);
+    singe_sim_destroy(copy);
     free(before.data);
 }
 
@@ -147,7 +148,7 @@ static TestBytes small_snapshot(void) {
     TestScene scene = scene_make(NULL, 4);
     test_steps(scene.sim, 6);
     TestBytes bytes = test_save(scene.sim);
-    test_destroy(scene.sim);
+    singe_sim_destroy(scene.sim);
     return bytes;
 }
 
@@ -160,7 +161,7 @@ TEST(the_state_after_any_step_loads) {
         SingeSimDef def = singe_default_sim();
         SingeSim *sim = test_create(&def);
 
-        RELEASED(test_mesh_free) TestMesh mesh = test_grid(3, 3, 0.01f, 0.01f);
+        TestMesh mesh = test_grid(3, 3, 0.01f, 0.01f);
         SingeSheetDef sheet = test_sheet(&mesh);
         sheet.material.temperature = singe_param(temperatures[k % 4]);
         sheet.material.grammage = singe_param(masses[k / 4 % 3]);
@@ -184,11 +185,12 @@ TEST(the_state_after_any_step_loads) {
             (void)(singe_sim_step(sim) == SINGE_OK);
             SingeSim *copy = test_reload(NULL, sim);
             assert_true(isfinite(singe_sim_stats(copy).heat_lost) && isfinite(singe_sim_stats(copy).ledger_error));
-            test_destroy(copy);
+            singe_sim_destroy(copy);
             loaded++;
         }
 
-        test_destroy(sim);
+        test_mesh_free(&mesh);
+        singe_sim_destroy(sim);
     }
     assert_true(refused >= 81 && loaded > 100); // 1e15 K is no start
 }
@@ -222,7 +224,8 @@ TEST(flipped_bits_are_noticed) {
         bytes.data[bit / 8] ^= (uint8_t)(1 << bit % 8);
     }
 
-    test_load(NULL, &bytes); // the bits are as they were
+    SingeSim *sim = test_load(NULL, &bytes);
+    singe_sim_destroy(sim);
     free(bytes.data);
 }
 
@@ -274,7 +277,7 @@ TEST(forged_snapshots_are_refused) {
 
         for (int step = 0; !result && step < 2; step++)
             if (singe_sim_step(sim)) break;
-        if (!result) test_destroy(sim);
+        if (!result) singe_sim_destroy(sim);
         else assert_true(error.code == result && error.message[0]);
         assert_int_equal(hook.blocks, 0);
         free(bytes.data);
@@ -414,9 +417,10 @@ TEST(impossible_numbers_are_refused) {
         TestBytes bytes = test_save(sim);
         refuse(bytes.data, bytes.size, rows[k].what);
         free(bytes.data);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
     free(good.data);
+    singe_sim_destroy(scene.sim);
 }
 
 TEST(other_versions_are_refused) {
@@ -448,4 +452,6 @@ TEST(hooks_are_only_hooks) {
     SingeSim *sim = test_reload(&hooks, scene.sim);
     test_ok(sim, singe_sim_set_source_callback(sim, scene.callback, scene_flux, &flux_strength));
     test_steps_alike(sim, scene.sim, 5);
+    singe_sim_destroy(sim);
+    singe_sim_destroy(scene.sim);
 }

@@ -26,6 +26,7 @@ TEST(ledgers_close) {
     SingeStats stats = singe_sim_stats(scene.sim);
     assert_true(stats.heat_of_combustion > 0 && stats.heat_lost > 0 && stats.mass_removed > 0 &&
                 stats.burnt_fraction > 0.3);
+    singe_sim_destroy(scene.sim);
 }
 
 /// What damping takes from a sheet that falls is what the energies lack, and free fall lacks nothing; a strip that swings
@@ -52,7 +53,7 @@ TEST(energies_are_accounted_for) {
                       stats.energy_kinetic, stats.energy_gravity, stats.energy_lost, taken);
         assert_true(fabs(stats.energy_lost - taken) < 4e-3 * fabs(stats.energy_gravity));
         assert_true(stats.energy_elastic < 1e-4 * stats.energy_kinetic);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 
     // a strip held along one side falls and swings
@@ -79,6 +80,7 @@ TEST(energies_are_accounted_for) {
 
     print_message("a strip: weight gave %.3g J, springs held %.3g J, lost %.3g J\n", passed, elastic, lost);
     assert_true(elastic > 0.98 * passed && lost < 0.01 * passed);
+    singe_sim_destroy(sim);
 }
 
 /// A light sheet's heat spreads beside a heavy one of 10,000 K as it does alone.
@@ -100,11 +102,12 @@ TEST(a_hot_sheet_does_not_blur_another) {
 
         SingeSim *sim = test_create(&def);
         for (int sheet = 0; sheet < (run < PACES ? 1 : 2); sheet++) {
-            RELEASED(test_mesh_free) TestMesh mesh = test_grid(CELLS, CELLS, 0.0025f, 0.0025f);
+            TestMesh mesh = test_grid(CELLS, CELLS, 0.0025f, 0.0025f);
             test_mesh_move(&mesh, 0, 0, (float)sheet);
             SingeSheetDef added = test_sheet(&mesh);
             added.material = sheet ? heavy : light;
             test_add_sheet(sim, &added);
+            test_mesh_free(&mesh);
         }
 
         test_ok(sim, singe_sim_commit(sim));
@@ -123,7 +126,7 @@ TEST(a_hot_sheet_does_not_blur_another) {
             assert_true(worst < 5e-3);
             free(alone[run % PACES]);
         }
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 }
 
@@ -152,7 +155,7 @@ TEST(bad_cells_burn_and_stay_above_the_air) {
 
         SingeStats stats = singe_sim_stats(sim);
         assert_true(stats.particles < 800 && stats.ledgers_close); // of 841
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 }
 
@@ -169,6 +172,7 @@ TEST(ledgers_that_do_not_close_are_reported) {
     print_message("pace 1e-6: ledger error %.2g\n", stats.ledger_error);
     assert_true(stats.ledger_error > SINGE_LEDGER_BOUND && !stats.ledgers_close);
     assert_true(fabs(stats.heat_stored) < 1e-3); // next to nothing has happened
+    singe_sim_destroy(sim);
 }
 
 /// Heat of combustion: eta C dm of every particle, summed by hand over a run.
@@ -185,6 +189,7 @@ TEST(combustion_is_eta_times_mass) {
 
     // the mass of a step becomes heat in the next one
     assert_true(stats.heat_of_combustion > 0.9 * expected && stats.heat_of_combustion < 1.0001 * expected);
+    singe_sim_destroy(sim);
 }
 
 static int ascending(const void *a, const void *b) {
@@ -231,6 +236,8 @@ TEST(statistics_match_the_view) {
         assert_int_equal(stats.particles, particles);
         assert_true(stats.temperature_max == hottest);
     }
+
+    singe_sim_destroy(scene.sim);
 }
 
 TEST(a_sheet_at_rest_has_no_strain) {
@@ -252,6 +259,7 @@ TEST(a_sheet_at_rest_has_no_strain) {
 
     double speed = singe_sim_stats(sim).speed_rms_unburnt; // falls freely, less a little air
     assert_true(speed > 0.1 && speed < 9.81 * 12 / 480 + 1e-6);
+    singe_sim_destroy(sim);
 }
 
 /// Heating without fire: what went in is stored or lost, and all of it is gone after long cooling.
@@ -272,6 +280,7 @@ TEST(heat_without_fire_is_stored_or_lost) {
     assert_true(cold.heat_in == hot.heat_in);
     assert_true(fabs(cold.heat_stored) < 2e-3 * cold.heat_in);
     assert_true(cold.ledger_error < 1e-5);
+    singe_sim_destroy(sim);
 }
 
 /// Office paper through all four stages: the front's speed, from the pattern of times and from two gates.
@@ -306,4 +315,5 @@ TEST(a_front_runs_along_a_strip) {
     print_message("front: %.2f mm/s between gates, %.2f mm/s by its times\n", 1e3 * speed, 1e3 * measured);
     assert_true(fabs(measured / speed - 1) < 0.05);
     assert_true(speed > 4.4e-3 && speed < 7.0e-3);
+    singe_sim_destroy(sim);
 }

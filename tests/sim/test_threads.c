@@ -16,7 +16,7 @@ static TestBytes run(SingeSimDef def) {
     SingeStats stats = singe_sim_stats(scene.sim);
     assert_true(stats.mass_burnt > 0 && stats.mass_removed > 0);
     TestBytes bytes = test_save(scene.sim);
-    test_destroy(scene.sim);
+    singe_sim_destroy(scene.sim);
     return bytes;
 }
 

@@ -38,7 +38,7 @@ static double heat_of_ignition(float moisture) {
     while (singe_sim_view(sim).time_ignited[12] < 0 && singe_sim_view(sim).step < 4000) test_steps(sim, 1);
     double time = (double)singe_sim_view(sim).time_ignited[12];
     assert_true(time > 0 && singe_sim_stats(sim).ledgers_close);
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     return FLUX * time / GRAMMAGE;
 }
 
@@ -71,6 +71,7 @@ TEST(nothing_wet_is_hotter_than_boiling) {
     }
 
     assert_true(singe_sim_stats(sim).water == 0 && singe_sim_stats(sim).temperature_max > 500);
+    singe_sim_destroy(sim);
 }
 
 /// A burning sheet on which it rains from the 300th step on.
@@ -116,7 +117,7 @@ TEST(rain_puts_a_fire_out) {
     SingeSim *loaded = test_reload(&hooks, wet);
     test_steps(wet, 20), test_steps(loaded, 20);
     test_assert_same(wet, loaded);
-    test_destroy(dry), test_destroy(wet), test_destroy(loaded);
+    singe_sim_destroy(dry), singe_sim_destroy(wet), singe_sim_destroy(loaded);
 }
 
 /// A burning sheet at which a jet blows, or onto which a plate comes down, from the 170th step on.
@@ -166,7 +167,7 @@ TEST(a_jet_blows_a_fire_out) {
     SingeSim *loaded = test_reload(NULL, blown);
     test_steps(blown, 20), test_steps(loaded, 20);
     test_assert_same(blown, loaded);
-    test_destroy(calm), test_destroy(fanned), test_destroy(blown), test_destroy(loaded);
+    singe_sim_destroy(calm), singe_sim_destroy(fanned), singe_sim_destroy(blown), singe_sim_destroy(loaded);
 }
 
 TEST(a_plate_smothers_a_fire) {
@@ -175,7 +176,7 @@ TEST(a_plate_smothers_a_fire) {
                   (double)singe_sim_stats(smothered).temperature_max);
     assert_true(singe_sim_stats(smothered).mass > singe_sim_stats(plain).mass);
     assert_true(singe_sim_stats(smothered).temperature_max < 513);
-    test_destroy(plain), test_destroy(smothered);
+    singe_sim_destroy(plain), singe_sim_destroy(smothered);
 }
 
 /// A sheet that burns, and another above it, which burns at another rate. From the 200th step on one of them keeps air
@@ -251,7 +252,7 @@ TEST(a_sheet_smothers_a_fire) {
     test_assert_same(near, loaded);
 
     SingeSim *all[] = {plain, near, again, far, own, loaded};
-    for (int k = 0; k < 6; k++) test_destroy(all[k]);
+    for (int k = 0; k < 6; k++) singe_sim_destroy(all[k]);
 }
 
 /// A blanket may burn itself. It smothers what is below as long as it is there.
@@ -264,7 +265,7 @@ TEST(a_burning_sheet_smothers_until_it_has_gone) {
         for (uint32_t v = 0; v < 81; v++) left[k] += (double)singe_sim_view(sim).mass[v] / 81;
         print_message("hottest %g K, %.3f of the sheet is left\n", (double)hottest(sim), left[k]);
         assert_true(k == 0 ? hottest(sim) < 513 : hottest(sim) > 600);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
     assert_true(left[0] > left[1] + 0.1 && left[1] > left[2] + 0.1);
 }
@@ -311,7 +312,7 @@ static double flames_above(float distance) {
     print_message("mass %g of %g kg\n", stats.mass, before);
     assert_true(stats.ledgers_close && stats.mass < 0.98 * before);
     test_mesh_free(&low), test_mesh_free(&high);
-    test_destroy(sim);
+    singe_sim_destroy(sim);
     return most;
 }
 
@@ -332,7 +333,7 @@ TEST(bad_water_is_refused) {
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &rain, &id)); // no picture
     rain.texture = (SingeTexture){1, 1, &WHITE};
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &rain, &id)); // a dry sheet has no room
-    test_destroy(sim);
+    singe_sim_destroy(sim);
 
     sim = lit(0.01f, true);
     rain.wetting = -1;
@@ -345,4 +346,5 @@ TEST(bad_water_is_refused) {
     SingeSheetId sheet;
     singe_sim_sheets(sim, &sheet, 1);
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_material(sim, sheet, &material, NULL));
+    singe_sim_destroy(sim);
 }

@@ -3,28 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SIMS = 256 };
-static SingeSim *sims[MOST_SIMS]; ///< to be destroyed after the case
-static int sim_count;
-
-SingeSim *test_destroy_later(const SingeSimDef *def, SingeSim *sim) {
-    if (def->allocator.resize) return sim; // its context may end with the case
-    if (sim_count == MOST_SIMS) fail_msg("a case has at most %d simulations at once", MOST_SIMS);
-    return sims[sim_count++] = sim;
-}
-
-void test_destroy(SingeSim *sim) {
-    int k = 0;
-    while (k < sim_count && sims[k] != sim) k++;
-    if (k < sim_count) sims[k] = sims[--sim_count];
-    singe_sim_destroy(sim);
-}
-
-static void destroy_all(void) {
-    while (sim_count) singe_sim_destroy(sims[--sim_count]);
-}
-TEST_AFTER_EACH(destroy_all)
-
 void test_ok_at(const SingeSim *sim, SingeResult result, const char *call, const char *file, int line) {
     if (result == SINGE_OK) return;
     const SingeError *error = sim ? singe_sim_error(sim) : NULL;
@@ -57,7 +35,7 @@ SingeSim *test_create(const SingeSimDef *def) {
     SingeSim *sim;
     SingeError error = {0};
     if (singe_sim_create(def, &sim, &error)) fail_msg("create: %s", error.message);
-    return test_destroy_later(def, sim);
+    return sim;
 }
 
 #define ADD(Kind, kind)                                                           \
@@ -88,7 +66,7 @@ void test_steps(SingeSim *sim, int count) {
 }
 
 SingeResult test_life(SingeSimDef def, SingeAllocator allocator) {
-    RELEASED(test_mesh_free) TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
+    TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     const SingeSheetDef sheet = test_sheet(&mesh);
     const TestAllocator *counter = allocator.context;
     SingeSheetId id;
@@ -103,6 +81,7 @@ SingeResult test_life(SingeSimDef def, SingeAllocator allocator) {
     if (!result) result = singe_sim_step(sim);
     assert_int_equal(counter->calls, calls);
     singe_sim_destroy(sim);
+    test_mesh_free(&mesh);
     return result;
 }
 
@@ -177,9 +156,9 @@ SingeSim *test_load(const SingeSimDef *hooks, const TestBytes *bytes) {
     SingeSimDef standard = singe_default_sim();
     SingeSim *sim;
     SingeError error = {0};
-    if (!hooks) hooks = &standard;
-    if (singe_sim_load(hooks, bytes->data, bytes->size, &sim, &error)) fail_msg("load: %s", error.message);
-    return test_destroy_later(hooks, sim);
+    if (singe_sim_load(hooks ? hooks : &standard, bytes->data, bytes->size, &sim, &error))
+        fail_msg("load: %s", error.message);
+    return sim;
 }
 
 SingeSim *test_reload(const SingeSimDef *hooks, SingeSim *sim) {

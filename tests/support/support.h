@@ -45,15 +45,11 @@ void test_refused_at(const SingeSim *sim, SingeResult expected, SingeResult resu
 /// The default sheet on a mesh.
 SingeSheetDef test_sheet(const TestMesh *mesh);
 
-// What these return is destroyed after the case, unless it has an allocator of its own; test_destroy does so earlier.
-
 /// A committed simulation of one sheet; NULL stands for the default Def or material. Frees the mesh.
 SingeSim *test_sim(const SingeSimDef *def, TestMesh mesh, const SingeMaterialDef *material);
 
 /// Calls that must succeed.
 SingeSim *test_create(const SingeSimDef *def);
-void test_destroy(SingeSim *sim);
-SingeSim *test_destroy_later(const SingeSimDef *def, SingeSim *sim);
 SingeSheetId test_add_sheet(SingeSim *sim, const SingeSheetDef *def);
 SingeSourceId test_add_source(SingeSim *sim, const SingeSourceDef *def);
 SingeColliderId test_add_collider(SingeSim *sim, const SingeColliderDef *def);

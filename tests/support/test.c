@@ -1,5 +1,5 @@
-// Collects the cases of a test program, and runs them in the order in which they stand in it: those whose names fit the
-// pattern in SINGE_TEST_FILTER, with * and ?, or all without it.
+// Runs the cases of a test program in the order in which they stand in it: those whose names fit the pattern in
+// SINGE_TEST_FILTER, with * and ?, or all without it.
 #include "support/test.h"
 
 #include <math.h>
@@ -7,32 +7,19 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { MOST_CASES = 64, MOST_RELEASES = 4 };
+enum { MOST_CASES = 64 };
 
 static struct CMUnitTest cases[MOST_CASES];
 static size_t case_count;
-static void (*releases[MOST_RELEASES])(void);
-static int release_count;
 static void (*run_before)(int argc, char **argv);
 static int (*run_after)(void);
-
-static int release_all(void **unused) {
-    (void)unused;
-    for (int k = 0; k < release_count; k++) releases[k]();
-    return 0;
-}
 
 void test_add(const char *name, CMUnitTestFunction run) {
     if (case_count == MOST_CASES) {
         fprintf(stderr, "a test program has at most %d cases\n", MOST_CASES);
         abort();
     }
-    cases[case_count++] = (struct CMUnitTest){.name = name, .test_func = run, .teardown_func = release_all};
-}
-
-void test_after_each(void (*release)(void)) {
-    if (release_count == MOST_RELEASES) abort();
-    releases[release_count++] = release;
+    cases[case_count++] = (struct CMUnitTest){.name = name, .test_func = run};
 }
 
 void test_around(void (*before)(int argc, char **argv), int (*after)(void)) {
@@ -54,7 +41,7 @@ void test_float_equal(float value, float expected, float tolerance, const char *
     _assert_float_equal(value, expected, tolerance, file, line);
 }
 
-int test_run(int argc, char **argv) {
+int main(int argc, char **argv) {
     const char *pattern = getenv("SINGE_TEST_FILTER");
     if (pattern) cmocka_set_test_filter(pattern);
 

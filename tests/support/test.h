@@ -20,19 +20,10 @@
 #define TEST_AROUND(before, after) \
     __attribute__((constructor)) static void add_around(void) { test_around(before, after); }
 
-/// Runs `release` after every case, whether it failed or not.
-#define TEST_AFTER_EACH(release) \
-    __attribute__((constructor)) static void add_after_each(void) { test_after_each(release); }
-
-/// A variable that `release(&variable)` ends with its block: RELEASED(mesh_free) Mesh mesh = ...;
-#define RELEASED(release) __attribute__((cleanup(release)))
-
 /// s of processors' time of all threads of the program.
 double test_seconds(void);
 
 void test_add(const char *name, CMUnitTestFunction run);
-int test_run(int argc, char **argv);
-void test_after_each(void (*release)(void));
 void test_around(void (*before)(int argc, char **argv), int (*after)(void));
 
 // cmocka's own takes what is no number, and inf, for equal to any number

@@ -266,7 +266,7 @@ TEST(meshes_burn_with_their_sheet) {
     burn_rings(g->d, 0.015f);
     ablate(g->d);
     draw_fine(g->d);
-    RELEASED(singe_surface_free) SingeSurface sheet = g->d->surface;
+    SingeSurface sheet = g->d->surface;
     g->d->surface = (SingeSurface){0};
     add_layer(g->draft, 53, side, 0);
     const SingeSurface *s = draw(g);
@@ -296,6 +296,7 @@ TEST(meshes_burn_with_their_sheet) {
     print_message("%u edges at the fire, at most %.2f of a cell from the sheet's\n", rims, (double)(worst / cell));
     assert_true(rims > 100 && worst < 0.2f * cell);
     free(edges);
+    singe_surface_free(&sheet);
     garment_free(g);
 }
 
@@ -468,7 +469,7 @@ TEST(binding_and_drawing_survive_lack_of_memory) {
 
 /// Any number of threads binds and draws the same.
 TEST(threads_bind_and_draw_the_same) {
-    RELEASED(singe_surface_free) SingeSurface first = {0};
+    SingeSurface first = {0};
     for (int threads = 1; threads <= 3; threads += 2) {
         Garment *g = garment(25, 4e-4f, 2e-3f);
         if (threads > 1)
@@ -487,6 +488,7 @@ TEST(threads_bind_and_draw_the_same) {
         }
         garment_free(g);
     }
+    singe_surface_free(&first);
 }
 
 /// Triangles without an area, and those that come again with any winding, are left out; edges that are not a surface's are
@@ -523,7 +525,7 @@ TEST(flaws_of_meshes_are_counted) {
 /// Through the public call: after the commit, to a sheet that there is.
 TEST(simulations_draw_meshes) {
     SingeSimDef def = singe_default_sim();
-    RELEASED(test_mesh_free) TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
+    TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     def.surface_detail = 0;
     SingeSim *sim = test_create(&def);
@@ -548,7 +550,7 @@ TEST(simulations_draw_meshes) {
     for (int k = 0; k < 9; k++) moved[k] = positions[k] + at[k % 3];
     render.positions = moved;
     test_ok(sim, singe_sim_add_render_mesh(sim, id, &render));
-    RELEASED(singe_surface_free) SingeSurface surface = {0};
+    SingeSurface surface = {0};
     test_ok(sim, singe_sim_surface(sim, &surface));
     assert_true(surface.triangle_count >= 64 && surface.triangle_count < 300);
     uint32_t given = 0;
@@ -558,4 +560,7 @@ TEST(simulations_draw_meshes) {
         assert_float_equal(surface.position[v][2], (double)at[2] + 1e-3, 1e-7);
     }
     assert_int_equal(given, 3);
+    singe_surface_free(&surface);
+    singe_sim_destroy(sim);
+    test_mesh_free(&mesh);
 }

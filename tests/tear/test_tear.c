@@ -75,8 +75,8 @@ static int by_ends(const void *a, const void *b) {
 
 /// No edge has more than two triangles, none is a spike, and vertices are where their uv and their input say.
 static void check_surface(SingeSim *sim) {
-    RELEASED(singe_surface_free) SingeSurface surface = {0};
-    RELEASED(test_mesh_free) TestMesh mesh = test_grid(ALONG, ACROSS, side, side);
+    SingeSurface surface = {0};
+    TestMesh mesh = test_grid(ALONG, ACROSS, side, side);
     test_ok(sim, singe_sim_surface(sim, &surface));
     size_t count = 3 * (size_t)surface.triangle_count;
     Edge *edges = malloc(count * sizeof *edges);
@@ -103,6 +103,8 @@ static void check_surface(SingeSim *sim) {
     }
 
     free(edges);
+    test_mesh_free(&mesh);
+    singe_surface_free(&surface);
 }
 
 /// Every particle's springs are counted as its degree says, and what hangs together has one piece.
@@ -150,6 +152,7 @@ TEST(pulled_apart_it_tears_at_its_weakest_line) {
     for (uint32_t v = (ALONG + 1) * (ACROSS + 1); v < view.vertex_count; v++)
         if (view.particle_flags[v] & SINGE_ALIVE)
             assert_true(fabsf(view.rest_position[v][0] - WEAK * side) < 0.5f * side);
+    singe_sim_destroy(sim);
 }
 
 /// Where it is soaked it has a tenth of its strength, and tears there.
@@ -164,6 +167,7 @@ TEST(it_tears_where_it_is_wet) {
     for (uint32_t v = (ALONG + 1) * (ACROSS + 1); v < view.vertex_count; v++)
         if (view.particle_flags[v] & SINGE_ALIVE)
             assert_true(fabsf(view.rest_position[v][0] - WEAK * side) < 0.5f * side);
+    singe_sim_destroy(sim);
 }
 
 /// Where a sheet that can tear is pulled apart slowly, its attachments leave it to its springs without a jerk.
@@ -184,6 +188,7 @@ TEST(springs_take_over_smoothly) {
     print_message("the end moves at %.4f m/s, the fastest vertex at %.4f\n", 0.3e-3 / 0.25, (double)fastest);
     assert_int_equal(singe_sim_stats(sim).tears, 0);
     assert_true(fastest < 0.03f); // .52 if they let go at once
+    singe_sim_destroy(sim);
 }
 
 /// In a strip that hangs at rest the line force is the weight of what hangs below, over the width.
@@ -210,6 +215,7 @@ TEST(line_force_of_a_hanging_strip_equals_its_weight) {
         print_message("row %2u: %.5f N/m, weight %.5f N/m\n", row, force, weight);
         assert_true(fabs(force / weight - 1) < 0.1);
     }
+    singe_sim_destroy(sim);
 }
 
 TEST(uniform_sheets_tear_too) {
@@ -221,6 +227,7 @@ TEST(uniform_sheets_tear_too) {
     assert_true(stats.mass_ledger_error < 1e-6);
     check_surface(sim);
     check_view(sim);
+    singe_sim_destroy(sim);
 }
 
 /// A tube, whose strands are rings, tears around.
@@ -244,6 +251,7 @@ TEST(tubes_tear_around) {
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.tears >= AROUND && stats.pieces >= 2 && stats.strain_mean < 0.003);
     check_view(sim);
+    singe_sim_destroy(sim);
 }
 
 /// The tear edges of a strip that has torn across, as they are drawn: mean distance at rest in sides of cells, and how
@@ -260,7 +268,7 @@ static TearEdges drawn_tear_edges(float raggedness) {
     test_steps(sim, STEPS);
     assert_int_equal(singe_sim_stats(sim).pieces, 2);
     check_surface(sim);
-    RELEASED(singe_surface_free) SingeSurface surface = {0};
+    SingeSurface surface = {0};
     test_ok(sim, singe_sim_surface(sim, &surface));
     float left[ROWS], right[ROWS];
     for (int r = 0; r < ROWS; r++) left[r] = -INFINITY, right[r] = INFINITY;
@@ -286,7 +294,8 @@ static TearEdges drawn_tear_edges(float raggedness) {
     }
 
     tear_edges.wanders = sqrt(tear_edges.wanders);
-    test_destroy(sim);
+    singe_surface_free(&surface);
+    singe_sim_destroy(sim);
     return tear_edges;
 }
 
@@ -309,6 +318,7 @@ TEST(without_tearing_it_stays_whole) {
     test_steps(sim, 30);
     assert_int_equal(singe_sim_stats(sim).tears, 0);
     assert_int_equal(singe_sim_view(sim).vertex_count, (ALONG + 1) * (ACROSS + 1));
+    singe_sim_destroy(sim);
 }
 
 /// Runs a strip that burns at one end while it tears.
@@ -344,7 +354,9 @@ TEST(tears_are_the_same_from_a_snapshot) {
     assert_true(stats.burnt_fraction > 0 && stats.mass_ledger_error < 1e-6 && stats.ledger_error < 1e-3);
     check_surface(one);
     check_view(one);
-    test_destroy(resumed);
+    singe_sim_destroy(one);
+    singe_sim_destroy(three);
+    singe_sim_destroy(resumed);
 }
 
 /// A square metre that falls from the horizontal, held at two corners, does not tear, however coarse its substeps.
@@ -363,7 +375,7 @@ TEST(cold_sheets_swing_whole) {
         test_add_pin(sim, &pin);
         test_steps(sim, 480);
         assert_int_equal(singe_sim_stats(sim).tears, 0);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 }
 
@@ -374,10 +386,11 @@ TEST(several_sheets_keep_their_numbers) {
 
     SingeSim *sim = test_create(&def);
     for (int k = 0; k < 2; k++) {
-        RELEASED(test_mesh_free) TestMesh mesh = test_grid(6, 4, side, side);
+        TestMesh mesh = test_grid(6, 4, side, side);
         test_mesh_move(&mesh, 0, 0, (float)k);
         SingeSheetDef sheet = test_sheet(&mesh);
         test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id[k]));
+        test_mesh_free(&mesh);
     }
 
     test_ok(sim, singe_sim_commit(sim));
@@ -399,11 +412,13 @@ TEST(several_sheets_keep_their_numbers) {
     }
 
     assert_int_equal(own, 2 * 7 * 5);
-    RELEASED(singe_surface_free) SingeSurface surface = {0};
+    SingeSurface surface = {0};
     test_ok(sim, singe_sim_surface(sim, &surface));
     for (uint32_t v = 0; v < surface.vertex_count; v++)
         if (surface.source_vertex[v] >= 0)
             assert_true(surface.rest_position[v][2] == (float)(surface.source_vertex[v] >= 7 * 5));
+    singe_surface_free(&surface);
+    singe_sim_destroy(sim);
 }
 
 /// When the vertices in reserve are used up nothing more tears, and the log says so once.
@@ -433,6 +448,7 @@ TEST(without_reserve_it_tears_no_further) {
     assert_true(singe_sim_stats(sim).tears <= 13 * 9 / 2 + 16);
     assert_int_equal(lines, 1);
     check_view(sim);
+    singe_sim_destroy(sim);
 }
 
 /// Every allocation of the making fails once, and nothing is lost.
@@ -447,6 +463,7 @@ TEST(strong_sheets_tear_when_held_too_far_apart) {
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.tears > 0 && stats.pieces == 2);
     assert_true(stats.strain_mean < 0.002);
+    singe_sim_destroy(sim);
 }
 
 /// In a sheet that must tear, what is charred gives way, not fresh paper at its grips.
@@ -470,6 +487,7 @@ TEST(char_tears_before_paper_that_must_tear) {
     print_message("%u vertices torn in char, %u in paper\n", charred, fresh);
     assert_true(charred > 0);
     assert_int_equal(fresh, 0);
+    singe_sim_destroy(sim);
 }
 
 /// No vertex is ever weaker than what a step skips unseen: burnt to any mass, soaked, and in a sheet that must tear.
@@ -503,7 +521,7 @@ TEST(nothing_is_weaker_than_what_is_skipped) {
                           plan->safe_ash);
             assert_true(least >= plan->safe_ash * (1 - 1e-5f));
             assert_true(least < plan->safe_ash * 1.01f); // and no lower: what is looked at costs time
-            test_destroy(sim);
+            singe_sim_destroy(sim);
         }
 }
 
@@ -529,7 +547,7 @@ TEST(ash_parts_under_what_char_carries) {
         print_message("%s: %u tears\n", ash ? "ash" : "char", (unsigned)stats.tears);
         if (ash) assert_true(stats.tears > ACROSS / 2 && stats.pieces == 2);
         else assert_int_equal(stats.tears, 0);
-        test_destroy(sim);
+        singe_sim_destroy(sim);
     }
 }
 
@@ -571,7 +589,7 @@ static uint32_t twins(const SingeView *view, uint32_t input_count, uint32_t of) 
 /// A tear that runs into a vertex of more cells than can be split ends there.
 TEST(tears_end_at_vertices_of_many_cells) {
     SingeSimDef def = pull_def();
-    RELEASED(test_mesh_free) TestMesh mesh = make_disc();
+    TestMesh mesh = make_disc();
     float weak[1 + SPOKES * RINGS];
 
     for (uint32_t v = 0; v < mesh.vertex_count; v++) weak[v] = v > 0 && (v - 1) % (SPOKES / 2) == SPOKES / 4;
@@ -598,6 +616,8 @@ TEST(tears_end_at_vertices_of_many_cells) {
     assert_true(twins(&view, mesh.vertex_count, 1 + SPOKES / 4) > 0); // beside the hub
     assert_int_equal(twins(&view, mesh.vertex_count, 0), 0);
     check_view(sim);
+    test_mesh_free(&mesh);
+    singe_sim_destroy(sim);
 }
 
 static void flux_fails(void *context, const SingeView *view, float *flux, float *conductance, float *temperature) {
@@ -622,6 +642,7 @@ TEST(failed_steps_change_nothing) {
     test_assert_saved(sim, &before);
     fails = false;
     test_steps_alike(sim, other, 20);
-    test_destroy(other);
+    singe_sim_destroy(other);
     free(before.data);
+    singe_sim_destroy(sim);
 }
