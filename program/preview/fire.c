@@ -174,7 +174,8 @@ static void mix_cells(Fire *fire) {
         FireCell *cell = &fire->cells[here];
         if (cell->flame <= 0) continue;
         const float fed = 1 + MIX_FEEDS * maxf(MIX_BURNT - cell->flame, 0) * mixed_share(fire, cell);
-        cell->flame *= fed, cell->rise *= fed;
+        cell->flame *= fed;
+        cell->rise *= fed;
     }
 }
 

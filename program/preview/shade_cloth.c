@@ -153,7 +153,8 @@ static Creases cloth_creases(const Weave *weave, const PaperState *state, float 
         if (k & 1) size *= 0.42f, weight *= 0.9f;
     }
     const float steep = hypotf(creases.slope[0], creases.slope[1]) / CREASE_MOST, less = 1 / sqrtf(1 + steep * steep);
-    creases.slope[0] *= less, creases.slope[1] *= less;
+    creases.slope[0] *= less;
+    creases.slope[1] *= less;
     return creases;
 }
 
@@ -168,7 +169,7 @@ static float cloth_damage(const float at[2], float wide) {
 /// Burnt threads lie in waves, as they have shrunk unevenly; `loose` ones curl.
 static void cloth_bend(float x, float y, float burnt, float loose, float wide, float at[2]) {
     const float from[2] = {x, y};
-    at[0] = x, at[1] = y;
+    memcpy(at, from, sizeof from);
     for (uint32_t k = 0; k < 2 && burnt > 0; k++) {
         at[k] += burnt * 20 * oblique(from, 70, wide, 63 + k);
         at[k] += burnt * 9 * oblique(from, 22, wide, 65 + k);
@@ -203,7 +204,7 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
 
     float at[2];
     cloth_bend(x, y, burnt, 0, wide, at);
-    cloth->at[0] = at[0], cloth->at[1] = at[1];
+    memcpy(cloth->at, at, sizeof at);
     if (cloth->shown + burnt <= 0) return;
 
     // how many threads it is from there to where cloth ends: the border of the piece, from which much has crumbled, and holes
@@ -215,7 +216,7 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
     const float loose = burnt * (1 - stepf(-REACH, 4, left));
     const bool firm = burnt <= 0 || left > 0.85f * REACH;
     if (loose > 0) cloth_bend(x, y, burnt, loose, wide, at);
-    cloth->at[0] = at[0], cloth->at[1] = at[1];
+    memcpy(cloth->at, at, sizeof at);
 
     const float lean = firm ? 0 : stepf(-0.2f, 0.2f, oblique(at, 70, wide, 70)); // one family's strands are left
     const float single = resolved(1, wide), tuft = firm ? 0 : oblique(at, 8, wide, 69);

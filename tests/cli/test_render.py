@@ -77,7 +77,7 @@ class Render(Case):
 
     @unittest.skipUnless(HAS_EXR, "built without EXR")
     def test_exr(self):
-        self.singe("render", self.path("o"), "--frames", "2-3", "--exr", "--set", "preview.camera.aperture=1 cm",
+        self.singe("render", self.path("o"), "--frames", "2-3", "--exr", "--set", "preview.camera.aperture=10 cm",
                    "--set", "preview.shutter=0.5", "--set", "preview.ground.kind=stone")
         self.assertEqual(sorted(os.listdir(self.path("o", "exr"))), ["tiny.0002.exr", "tiny.0003.exr"])
         with open(self.path("o", "exr", "tiny.0002.exr"), "rb") as file:

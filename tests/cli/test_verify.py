@@ -395,7 +395,7 @@ class Verify(Case):
         rewrite("time", "soon")
         self.assertIn("stats.csv:4", self.singe("verify", self.path("o"), expect=2)[1])
         Path(path).write_text("\n".join(lines[:-1]) + "\n")
-        self.assertIn("no line of frame 6", self.verify(expect=1)[1])
+        self.assertIn("no line for frame 6", self.verify(expect=1)[1])
         os.remove(path)
         out, err, _ = self.verify()
         self.assertIn("inverted cells cannot be counted", err)

@@ -198,7 +198,8 @@ TEST(wrong_objects_are_reported) {
     one("pins: [{points: [[0, 0]]}]", "bad.yaml:3:18", "a list of 3");
     one("pins: [{vertices: [-1]}]", "bad.yaml:3:20", "whole number");
     one("pins: [{points: [[0, 0, 0]], holder: pegs}]", "bad.yaml:3:38", "did you mean 'peg'?");
-    one("pins: [{points: [[0, 0, 0]], holder: clip, motion: {mesh: a.###.ply}}]", "bad.yaml:3:44", "has no 'holder'");
+    one("pins: [{points: [[0, 0, 0]], holder: clip, motion: {mesh: a.###.ply}}]", "bad.yaml:3:44",
+        "cannot have a 'holder'");
     one("pins: [{sheet: shet1, vertices: [1]}]", "bad.yaml:3:16", "there is no sheet 'shet1'; did you mean 'sheet1'?");
     one("pins: [{sheet: 1, vertices: [1]}]", "bad.yaml:3:16", "there is no sheet '1'");
     one("probes: [{}]", "bad.yaml:3:10", "needs 'kind'");
