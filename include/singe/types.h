@@ -306,7 +306,7 @@ typedef struct SingeSolverDef {
     /// and curvature_max of 130 1/m for cells of 2 mm, folds off the mesh; no: softest along the diagonals
     bool isotropic;
     /// 0 to 0.5; strand: a substep starts with this share of what the springs moved each node in the last one; 0.4 cuts
-    /// the strain of sheets that hang, swing or drape by a third or more, or saves as many of their substeps
+    /// the strain of sheets that hang, swing or drape by a third, or saves a fifth of their substeps
     float start;
 } SingeSolverDef;
 

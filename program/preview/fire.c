@@ -154,7 +154,7 @@ static void mix_cells(Fire *fire) {
         for (size_t here = row; here < count - row; here++) {
             const FireCell *cell = &fire->cells[here];
             const FireCell *beside[4] = {cell - 1, cell + 1, cell - row, cell + row};
-            float *mixed = fire->sway[here];
+            float *mixed = fire->sway[here]; // free until the cells sway
             mixed[0] = cell->flame;
             mixed[1] = cell->rise;
             for (int k = 0; k < 4; k++) {

@@ -10,7 +10,8 @@
 //
 //     s(x) = min (a - LEAN h),   with LEAN_BELOW (h + BELOW_FREE) for LEAN h below
 //
-// A hot shape counts, too. The flame f loses LEAN_FALLS (s - LEAN_FOOT) there. s is as smooth as a distance, and so exact between the cells.
+// A hot shape feeds flames, too. There a flame f loses LEAN_FALLS (s - LEAN_FOOT). s changes as smoothly as a distance, so
+// interpolation between the cells is exact enough.
 //
 // Fuel that enters hot gas burns further up, so a flame may hang above the rim. It comes down to what burns there: up to
 // two cells from above, and to RIM_FLAME at most, times a share that falls from the vertex to RIM_REACH.

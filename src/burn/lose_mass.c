@@ -15,9 +15,11 @@
 //
 //   df/dt = -(A/F) f^p exp(-E/(R T_e)),   T_e = min(T, T_ign + theta),   E activation energy, J/mol
 //
-// Over one step T is that of its middle: half of what the fuel itself gives at the T of its beginning is added
-// (midpoint rule), for fuel that heats itself burns faster. So k is constant, k = mu dt min((T - T_ign)+, theta)/(F (1 - nu)), or
-// A dt exp(-E/(R T_e))/F.
+// Fuel heats itself. So T is taken in the middle of the step: half of the heat is added that the fuel gives at the T of
+// the beginning (midpoint rule), as if air were not short and nothing smothered it. Then k is constant over the step,
+//
+//   k = mu dt min((T - T_ign)+, theta)/(F (1 - nu)), or A dt exp(-E/(R T_e))/F
+//
 // df/dt = -(k/dt) f^p is then solved exactly, so that no step overshoots 0, however long, and f falls by
 //
 //   p = 0     k, at most f

@@ -1,6 +1,6 @@
 // Bounds of conduction: T stays in the range of T*, whatever the solver's residual.
 //
-// (D + dt L) T = D T* has an M-matrix, so its T lies between the min and the max of T*. conduct.c adds the solver's
+// With the theta of conduct.c the exact T lies between the min and the max of T*. conduct.c adds the solver's
 // residual r as r/D, to conserve heat. This is negligible unless a step is very long for a particle, dt sum c_ij >> D:
 // then the last digit of a float is already too much. In that case the step ends as follows.
 //

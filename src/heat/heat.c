@@ -14,7 +14,8 @@
 // Sources are implicit, T* = (T1 + dt (q + g Ts)/C'')/(1 + dt g/C''), so T* never passes Ts; with the flux at the end
 // of the step, f = (q + g Ts - g T1)/(1 + dt g/C''), it is T* = T1 + dt f/C''. A negative flux does not cool T* below
 // 1 K. Losses are implicit, too, with T^4 - Ta^4 = (T + Ta)(T^2 + Ta^2)(T - Ta) and the first two factors at T*:
-//   T** = (T* + dt K Ta)/(1 + dt K),  K = [h_c/C'' + eps sigma/C'' (T* + Ta)(T*^2 + Ta^2)]/max(m, floor)/(F F_c).
+//   T** = (T* + y Ta)/(1 + y),  y = dt K (1 + dt K/2): 1/(1 + y) is exp(-dt K) to second order,
+//   K = [h_c/C'' + eps sigma/C'' (T* + Ta)(T*^2 + Ta^2)]/max(m, floor)/(F F_c).
 //
 // Water boils at T_b = 373 K, where T** is above it: by at most C (T** - T_b)/L kg, and T falls by L/C of them, with
 //
@@ -22,7 +23,7 @@
 //
 // so that nothing wet gets hotter, but for what is conducted in the step. Water has no other effect on heat.
 //
-// Ledger: heat in = A dt f, heat lost = C dt K (T** - Ta), heat of combustion = C r h, with the particle's unburnt
+// Ledger: heat in = A dt f, heat lost = C y (T** - Ta), heat of combustion = C r h, with the particle's unburnt
 // capacity C, as in the stored enthalpy C (T - Ta).
 #include <math.h>
 
@@ -86,7 +87,7 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
         float radiation = field_at(matter->emissivity, i) * STEFAN_BOLTZMANN;
         float exchange = field_at(matter->convection, i) + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
         float rate = warmth * exchange / burnt * slower / shell_glow_slowing(matter, i, fuel[i]); // dt K
-        rate *= 1 + 0.5f * rate;
+        rate *= 1 + 0.5f * rate;                                                                  // y
         float loss = rate * (T2 - ambient) / (1 + rate);
         plan->star[i] = T2 - loss;
         plan->delta[i] = combustion + warmth * flux - loss;

@@ -29,8 +29,8 @@ static void compare(const SingeMaterialDef *material, double slowest, double fas
     }
 }
 
-/// A step that is ten times as long burns as fast: heat and burning are of second order in it. With the heat of burning
-/// a step late and backward Euler's conduction it lost 7 %.
+/// A step that is ten times as long burns as fast: heat and burning are of second order in it. With backward
+/// Euler's conduction it lost 3 to 4 %, and with burning at the temperature of the step's beginning as well 7 %.
 TEST(front_speed_does_not_depend_on_steps) {
     const SingeMaterialDef material = singe_default_material();
     const double fine = burn_strip(0.002f, 0.003f, &material).speed,
