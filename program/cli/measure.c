@@ -64,6 +64,7 @@ typedef enum Number {
     CURL_MAX,
     JITTER,
     JITTER_COLD,
+    STILL,
     EMBER,
     PALE,
     LEMON,
@@ -72,6 +73,8 @@ typedef enum Number {
     ASTRAY,
     NUMBERS
 } Number;
+
+static const float STILL_SPEED = 1e-4f; // m/s
 
 static const struct {
     const char *key, *title, *format;
@@ -87,6 +90,7 @@ static const struct {
     [CURL_MAX] = {"curl_max_deg", "curl of the rim over 10 mm, max", "%.1f", false},
     [JITTER] = {"jitter_mm_per_s", "jitter of the unburnt, mm/s rms", "%.3f", true},
     [JITTER_COLD] = {"jitter_cold_mm_per_s", "jitter 90 mm and more from the fire, mm/s", "%.3f", true},
+    [STILL] = {"still_percent", "vertices slower than 0.1 mm/s, %", "%.1f", false},
     [EMBER] = {"ember_width_mm", "width of the ember line in some frames, mm", "%.2f", true},
     [PALE] = {"flame_pale_percent", "flames nearly white in some frames, %", "%.1f", true},
     [LEMON] = {"flame_lemon_percent", "flames of one clipped yellow in some, %", "%.1f", true},
@@ -277,6 +281,12 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
         }
 
         fill_row(&wrinkles, &folds, rim, area, row);
+
+        // of all vertices: what a solver in which what rests sleeps could leave out
+        uint32_t still = 0;
+        for (uint32_t v = 0; v < surface->vertex_count; v++)
+            still += float3_length(float3_load(surface->velocity[v])) < STILL_SPEED;
+        row[STILL] = surface->vertex_count ? 100.0 * still / surface->vertex_count : (double)NAN;
 
         const Moment *m = measure->moments;
         for (int cold = 0; cold < 2 && index >= 2; cold++)

@@ -62,6 +62,21 @@ class Measure(Case):
             expected = 1e3 * math.sqrt(sum(squares) / len(squares))
             self.assertAlmostEqual(float(rows[i]["jitter_mm_per_s"]), expected, delta=1e-3 * expected + 1e-6)
 
+    def test_what_rests_by_another_way(self):
+        """A page that falls has nothing at rest; one that lies on the ground without a fire rests wholly."""
+        for name, sets, low, high in (("falls", (), 0, 0), ("lies", ("sheets.0.translate=[0, 0, 0.0005]",), 95, 100)):
+            with open(self.path(name + ".yaml"), "w", encoding="utf-8") as scene:
+                scene.write("frames: 30\nsheets: [{grid: {size: [0.1, 0.1], cells: [10, 10]}, translate: [0, 0, 5]}]\n"
+                            "colliders: [{kind: plane, offset: 0.0005}]\n")
+            self.singe("run", self.path(name + ".yaml"), "-o", self.path(name), "--no-preview", "--quiet",
+                       *[word for text in sets for word in ("--set", text)])
+            self.singe("measure", self.path(name), "--csv", self.path("rest.csv"), "--no-preview")
+            row = self.table("rest.csv")[-1]
+            (_, vertices) = read_ply(self.path(name, "ply", name + ".0030.ply"))
+            slow = [sum(v * v for v in vertex[1]) < 1e-8 for vertex in vertices.values()]
+            self.assertAlmostEqual(float(row["still_percent"]), 100 * sum(slow) / len(slow), delta=0.01)
+            self.assertTrue(low <= float(row["still_percent"]) <= high, row["still_percent"])
+
     def test_frames(self):
         _, rows = self.rows("--frames", "3-5")
         self.assertEqual([int(row["frame"]) for row in rows], [3, 4, 5])
