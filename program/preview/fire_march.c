@@ -15,15 +15,15 @@
 #define FIRE_SOFT 6.0f     ///< pixels, over which the edges of flames begin: rays are two apart, depths rough
 #define FIRE_EVEN 0.020f   ///< difference of light, as l / (1 + l), that may be interpolated
 
-/// Smoke is looked up at multiples of a length, and linear between them.
+/// Smoke is looked up at multiples of a length, and is even between two of them, whatever the steps of the ray are: these
+/// differ from ray to ray, and so would what they add up.
 typedef struct SmokeLine {
     FireTile *tile; ///< where smoke is shared with other rays; NULL: nowhere
     int ray;
     float length, first; ///< m; number of the place of the nearer of `ends`
     Smoke ends[2];
+    Matter mean; ///< between them
     float pixel; ///< its size, per m from the eye
-    float at;    ///< m, where `here` is
-    Smoke here;
 } SmokeLine;
 
 static Smoke smoke_mix(const Smoke *a, const Smoke *b, float part) {
@@ -60,25 +60,24 @@ static Smoke smoke_place(const Fire *fire, Float3 eye, Float3 d, float number, c
     return smoke_mix(&upper, &lower, v);
 }
 
-/// The smoke at t, on a ray along which t grows.
-static Smoke smoke_at(const Fire *fire, Float3 eye, Float3 d, float t, SmokeLine *line) {
-    const float first = floorf(t / line->length);
-    if (first != line->first) {
-        line->ends[0] = first == line->first + 1 ? line->ends[1] : smoke_place(fire, eye, d, first, line);
-        line->ends[1] = smoke_place(fire, eye, d, first + 1, line);
-        line->first = first;
-    }
-
-    return smoke_mix(&line->ends[0], &line->ends[1], t / line->length - first);
+/// The mean between a place and the next, on a ray along which they grow.
+static Matter smoke_after(const Fire *fire, Float3 eye, Float3 d, float first, SmokeLine *line) {
+    if (first == line->first) return line->mean;
+    line->ends[0] = first == line->first + 1 ? line->ends[1] : smoke_place(fire, eye, d, first, line);
+    line->ends[1] = smoke_place(fire, eye, d, first + 1, line);
+    line->mean = fire_smoke_between(fire, &line->ends[0], &line->ends[1], line->pixel * (first + 1) * line->length);
+    line->first = first;
+    return line->mean;
 }
 
-/// Its mean over a step.
+/// The mean over a step, which is no longer than places are apart.
 static Matter smoke_along(const Fire *fire, Float3 eye, Float3 d, float from, float to, SmokeLine *line) {
-    if (line->at != from) line->here = smoke_at(fire, eye, d, from, line);
-    const Smoke there = smoke_at(fire, eye, d, to, line);
-    const Matter m = fire_smoke_between(fire, &line->here, &there, line->pixel * to);
-    line->here = there, line->at = to;
-    return m;
+    const float first = floorf(from / line->length + 1e-3f), beyond = to - (first + 1) * line->length;
+    const Matter near = smoke_after(fire, eye, d, first, line);
+    if (beyond <= 1e-3f * line->length) return near;
+    const Matter far = smoke_after(fire, eye, d, first + 1, line);
+    const float share = beyond / (to - from);
+    return (Matter){float3_mix(near.light, far.light, share), mixf(near.dense, far.dense, share)};
 }
 
 // ---- where flames are
@@ -144,11 +143,8 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile
     bool known = false; // whether `here` is the point at t
     FirePoint here;
     const float blur = FIRE_SOFT * preview->camera.pixel;
-    SmokeLine line = {.length = maxf(minf(fire->cell, SMOKE_STEP), min),
-                      .first = -2,
-                      .ray = number,
-                      .pixel = preview->camera.pixel,
-                      .at = -1};
+    SmokeLine line = {
+        .length = maxf(minf(fire->cell, SMOKE_STEP), min), .first = -2, .ray = number, .pixel = preview->camera.pixel};
     if (tile && tile->apart && line.length == tile->length) line.tile = tile;
     float leave = -1;
     int in_brick = 0, near = 0;
