@@ -6,16 +6,18 @@
 //     p(a) = p0 + z h(a) + (N1(s), N2(s), N3(s)) g(a),   g = 0 up to the age LAMINAR, then growing:
 //
 // a thread sways little for some centimetres, then buckles, and rolls where what left later overtakes what left before. A
-// wisp is a ribbon of THREADS of these, which is as narrow as its ember below and whose swings differ a little: where the
-// ribbon turns its edge or folds it is denser. It is bent across, so that it has a width from every side. Each thread is a
-// row of soft dots, which grow: a wisp that stayed as wide and as bright would be a wire.
+// wisp is a ribbon of THREADS of these, as narrow as its ember below, dense in its middle and thin at its sides. Their
+// swings differ more and more, so it breaks into veils: where one turns its edge or folds there is a bright thin line beside
+// a soft fill. It is bent across, so that it has a width from every side. Each thread is a row of soft dots. As much smoke
+// passes each height, but for what condenses near the ember and is lost at last: where a wisp is wider it is fainter.
 //
 // Of smoke that comes to a flame soon only the straight part would be seen, a rod: such an ember has no wisp.
 
 #include "preview/airborne.h"
 
 enum {
-    THREADS = 56,
+    THREADS = 60,
+    FEWER = 4,   ///< of which one is drawn where all are within a few pixels
     KNOTS = 150, ///< of a thread, between which it is straight
     SIGHTS = 3,  ///< times SIGHT_POINTS places of a thread where it is known whether it is seen; most are low
     LIGHTS = 12, ///< places of a wisp where its light is known
@@ -24,15 +26,18 @@ enum {
 #define WISP_LIFE 1.5f    ///< s
 #define RISE 0.12f        ///< m/s
 #define SPEEDING 0.13f    ///< m/s2
-#define RIBBON 0.0045f    ///< m, half of its width at half a second
-#define LAMINAR 0.16f     ///< s, in the mean
-#define SWAY 0.010f       ///< m, by which it does before it buckles
+#define RIBBON 0.0006f    ///< m, half of its width at the ember
+#define LAMINAR 0.24f     ///< s, in the mean
+#define SWAY 0.009f       ///< m, by which it does before it buckles
+#define CURL 0.036f       ///< m, by which curls move it at most
+#define CURLING 0.19f     ///< s after it has buckled, by which half of that
 #define BURNT_SOON 0.25f  ///< s, of smoke that is not seen
 #define BURNT_LATE 0.8f   ///< that is seen wholly
 #define THREAD 0.0005f    ///< m, radius at the ember
-#define WISP_DEPTH 26e-3f ///< m, optical depth across a wisp times its width
+#define WISP_DEPTH 17e-3f ///< m, optical depth across a wisp times its width
+#define FRESH 0.18f       ///< of that at the ember: most vapours have not condensed
 #define STRONG 1.2f       ///< by which strong wisps are weakened, or they would be white cords
-#define AMID 0.6f         ///< light of a wisp that is amid flames, which burn most of it; of a third it is whole
+#define AMID 0.45f        ///< light of a wisp that is amid flames, which burn most of it; of a third it is whole
 #define FLAME_FAINT 0.08f ///< of a cell whose flame burns smoke
 #define AHEAD 0.5f        ///< of what it takes from the light behind it, that goes on nearly straight is not missed
 #define SMOKING 10.0f     ///< sites of which half smoke
@@ -91,25 +96,33 @@ static void wisp_follow(const Fire *fire, Wisp *wisp) {
     }
 }
 
+/// Half of its width at an age.
+static float wisp_half(const Wisp *wisp, float age) {
+    const float loose = maxf(age - wisp->laminar, 0);
+    return wisp->wide * (RIBBON + 0.0038f * age + 0.026f * loose + 0.024f * loose * loose);
+}
+
 /// Where a thread's smoke of an age is. `place`: of the thread across the ribbon, -1 to 1.
 static Float3 wisp_at(const Wisp *wisp, float age, float place) {
     const float moment = wisp->now - age, loose = maxf(age - wisp->laminar, 0);
-    const float bend = SWAY * minf(age / 0.15f, 1) + 0.20f * loose * loose / (0.08f + loose),
-                roll = 0.50f * loose * loose * loose / (0.1f + loose);
-    const float neck = 0.10f + 0.9f * age + 3.2f * loose + 4.0f * loose * loose; // a point of the ember feeds it
+    const float curled = loose * loose / (CURLING * CURLING), roll = CURL * curled / (1 + curled);
+    const float bend = SWAY * stepf(0, 0.3f, age) + 0.11f * loose * loose / (0.08f + loose);
     const float turn = 3 * age + 1.8f * noise2(moment * 1.3f, 3, wisp->seed), c = cosf(turn), s = sinf(turn);
-    const float half = wisp->wide * RIBBON * neck, drift = 0.045f * age;
+    const float half = wisp_half(wisp, age), drift = 0.045f * age;
     const float side = half * place, deep = 0.7f * half * noise2(1.3f * place + 5, 2.1f * moment, wisp->seed + 31);
     const float u = c * side - s * deep, v = s * side + c * deep;
     const float x = age * (KNOTS / WISP_LIFE);
     const int knot = (int)minf(x, KNOTS - 1);
     Float3 p = float3_mix(wisp->path[knot], wisp->path[knot + 1], x - (float)knot);
-    p.x += u * wisp->across.x - v * wisp->across.y + drift * noise2(1.7f * moment, 0.2f * place, wisp->seed + 21);
-    p.y += u * wisp->across.y + v * wisp->across.x + drift * noise2(1.7f * moment, 0.2f * place, wisp->seed + 22);
-    p.x += bend * swing(wisp, moment, 3.4f, 0.6f * place, 11) + roll * swing(wisp, moment, 8, 1.5f * place, 13);
-    p.y += bend * swing(wisp, moment, 3.4f, 0.6f * place, 12) + roll * swing(wisp, moment, 8, 1.5f * place, 14);
-    p.z += 0.6f * bend * swing(wisp, moment + 0.07f, 3.4f, 0.6f * place, 11);
-    p.z += roll * swing(wisp, moment + 0.03f, 8, 1.5f * place, 13);
+    p.x += u * wisp->across.x - v * wisp->across.y + drift * noise2(1.7f * moment, 0, wisp->seed + 21);
+    p.y += u * wisp->across.y + v * wisp->across.x + drift * noise2(1.7f * moment, 0, wisp->seed + 22);
+
+    // threads part as it curls: what is beside in the ribbon is then elsewhere in the eddy
+    const float parts = place * (0.25f + 0.9f * minf(loose / 0.5f, 1));
+    p.x += bend * swing(wisp, moment, 3.4f, 0.5f * parts, 11) + roll * swing(wisp, moment, 10, parts, 13);
+    p.y += bend * swing(wisp, moment, 3.4f, 0.5f * parts, 12) + roll * swing(wisp, moment, 10, parts, 14);
+    p.z += 0.6f * bend * swing(wisp, moment + 0.07f, 3.4f, 0.5f * parts, 11);
+    p.z += roll * swing(wisp, moment + 0.025f, 10, parts, 13);
     return p;
 }
 
@@ -127,7 +140,8 @@ static int place_of(float age, int count, float *part) {
     return i;
 }
 
-static void thread_draw(Preview *preview, const Wisp *wisp, float place) {
+/// `first`: of FEWER.
+static void thread_draw(Preview *preview, const Wisp *wisp, float place, bool first) {
     Float3 knots[KNOTS + 1], points[SIGHT_POINTS];
     float seen[SIGHTS * SIGHT_POINTS], at[2], depth;
     for (int k = 0; k <= KNOTS; k++) knots[k] = wisp_at(wisp, WISP_LIFE * (float)k / KNOTS, place);
@@ -137,7 +151,7 @@ static void thread_draw(Preview *preview, const Wisp *wisp, float place) {
         airborne_sight(preview, points, SIGHT_POINTS, seen + k * SIGHT_POINTS);
     }
 
-    const float edge = 1 - 0.6f * place * place;
+    const float edge = 1.75f * expf(-2.2f * place * place); // the mean is 1
     for (float age = 0.002f; age < WISP_LIFE;) {
         const float x = age * (KNOTS / WISP_LIFE);
         const int knot = (int)minf(x, KNOTS - 1);
@@ -151,14 +165,23 @@ static void thread_draw(Preview *preview, const Wisp *wisp, float place) {
 
         // steps of half of a dot; what rises faster is thinner
         const float pixel = preview->camera.pixel * depth, fast = RISE + 2 * SPEEDING * age;
-        const float loose = maxf(age - wisp->laminar, 0), wide = THREAD + 0.0022f * age + 0.0080f * loose * loose;
+        const float loose = maxf(age - wisp->laminar, 0), wide = THREAD + 0.0016f * age + 0.0030f * loose * loose;
         const float radius = maxf(wide / pixel + camera_blur(&preview->camera, depth), 1.1f);
-        const float step = minf(0.45f * radius * pixel / (1.4f * fast), 0.02f), left = 1 - age / WISP_LIFE;
-        const float patchy = clampf(0.85f + 0.8f * swing(wisp, wisp->now - age, 4, 1.1f * place, 17), 0.1f, 2);
-        float dense = WISP_DEPTH * wisp->strength * edge * left * left * patchy * open;
+        const float way = float3_length(float3_sub(knots[knot + 1], knots[knot])) * (KNOTS / WISP_LIFE);
+        const float step = minf(0.45f * radius * pixel / maxf(way, RISE), 0.02f), left = 1 - age / WISP_LIFE;
+
+        // where it is narrow one thread stands for several
+        const float apart = stepf(2, 6, wisp_half(wisp, age) / (pixel * radius));
+        const float stands = mixf(first ? FEWER : 0, 1, apart);
+        const float moment = wisp->now - age;
+        const float puff = exp2f(1.3f * swing(wisp, moment, 5, 0.3f * place, 17)),
+                    strand = noise2(2.2f * moment, 3.5f * place, wisp->seed + 18);
+        float dense =
+            WISP_DEPTH * wisp->strength * edge * left * sqrtf(left) * puff * (1 + 0.6f * strand) * open * stands;
         dense *= 1 - stepf(wisp->burnt - 0.15f, wisp->burnt, age);
-        dense *= stepf(0, 0.06f, age) * mixf(0.3f, 1, stepf(0, 0.4f, age)) * RISE * step / (pixel * pixel * THREADS);
-        airborne_dot(preview, at, radius, float3_scale(light, dense), AHEAD * dense);
+        dense *= stepf(0, 0.05f, age) * mixf(FRESH, 1, stepf(0, 0.7f, age)) * RISE / fast;
+        dense *= fast * step / (pixel * pixel * THREADS);
+        if (dense > 0) airborne_dot(preview, at, radius, float3_scale(light, dense), AHEAD * dense);
         age += step;
     }
 }
@@ -191,14 +214,17 @@ void wisps_draw(Preview *preview) {
                      .across = float3(cosf(turn), sinf(turn), 0),
                      .strength = preview->def.wisps * strength[i] * stepf(still, still + 0.3f, live),
                      .now = now,
-                     .laminar = LAMINAR * (0.5f + hash_unit(key + 1) + 0.3f * noise2(0.9f * now, 9, key)),
-                     .wide = exp2f(2.4f * hash_unit(key + 2) - 0.9f),
+                     .laminar = LAMINAR * (0.8f + 0.7f * hash_unit(key + 1) + 0.25f * noise2(0.9f * now, 9, key)),
+                     .wide = exp2f(1.6f * hash_unit(key + 2) - 0.7f),
                      .seed = key & 0xffff};
         wisp.strength /= 1 + STRONG * wisp.strength;
         if (wisp.strength <= 0.01f) continue;
         wisp_follow(&preview->fire, &wisp);
         for (int k = 0; k < LIGHTS; k++) wisp.light[k] = smoke_light(preview, wisp_at(&wisp, age_of(k, LIGHTS), 0));
-        wisp.strength *= 1 - 0.75f * stepf(AMID / 3, AMID, float3_luminance(wisp.light[LIGHTS / 4]));
-        for (int k = 0; k < THREADS; k++) thread_draw(preview, &wisp, 2 * ((float)k + 0.5f) / THREADS - 1);
+        const float amid = stepf(AMID / 3, AMID, float3_luminance(wisp.light[LIGHTS / 4]));
+        wisp.strength *= 1 - 0.85f * amid;
+        wisp.laminar *= 1 - 0.6f * amid; // fires stir the air around them
+        for (int k = 0; k < THREADS; k++)
+            thread_draw(preview, &wisp, 2 * ((float)k + 0.5f) / THREADS - 1, k % FEWER == FEWER / 2);
     }
 }
