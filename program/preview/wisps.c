@@ -34,8 +34,8 @@ enum {
 #define BURNT_SOON 0.25f  ///< s, of smoke that is not seen
 #define BURNT_LATE 0.8f   ///< that is seen wholly
 #define THREAD 0.0005f    ///< m, radius at the ember
-#define WISP_DEPTH 17e-3f ///< m, optical depth across a wisp times its width
-#define FRESH 0.18f       ///< of that at the ember: most vapours have not condensed
+#define WISP_DEPTH 14e-3f ///< m, optical depth across a wisp times its width
+#define FRESH 0.26f       ///< of that at the ember: most vapours have not condensed
 #define STRONG 1.2f       ///< by which strong wisps are weakened, or they would be white cords
 #define AMID 0.45f        ///< light of a wisp that is amid flames, which burn most of it; of a third it is whole
 #define FLAME_FAINT 0.08f ///< of a cell whose flame burns smoke
@@ -99,7 +99,7 @@ static void wisp_follow(const Fire *fire, Wisp *wisp) {
 /// Half of its width at an age.
 static float wisp_half(const Wisp *wisp, float age) {
     const float loose = maxf(age - wisp->laminar, 0);
-    return wisp->wide * (RIBBON + 0.0038f * age + 0.026f * loose + 0.024f * loose * loose);
+    return wisp->wide * (RIBBON + 0.0046f * age + 0.026f * loose + 0.024f * loose * loose);
 }
 
 /// Where a thread's smoke of an age is. `place`: of the thread across the ribbon, -1 to 1.
@@ -215,15 +215,19 @@ void wisps_draw(Preview *preview) {
                      .strength = preview->def.wisps * strength[i] * stepf(still, still + 0.3f, live),
                      .now = now,
                      .laminar = LAMINAR * (0.8f + 0.7f * hash_unit(key + 1) + 0.25f * noise2(0.9f * now, 9, key)),
-                     .wide = exp2f(1.6f * hash_unit(key + 2) - 0.7f),
+                     .wide = exp2f(1.3f * hash_unit(key + 2) - 0.3f),
                      .seed = key & 0xffff};
         wisp.strength /= 1 + STRONG * wisp.strength;
         if (wisp.strength <= 0.01f) continue;
         wisp_follow(&preview->fire, &wisp);
-        for (int k = 0; k < LIGHTS; k++) wisp.light[k] = smoke_light(preview, wisp_at(&wisp, age_of(k, LIGHTS), 0));
-        const float amid = stepf(AMID / 3, AMID, float3_luminance(wisp.light[LIGHTS / 4]));
+        float lit = 0;
+        for (int k = 0; k < LIGHTS; k++) {
+            wisp.light[k] = smoke_light(preview, wisp_at(&wisp, age_of(k, LIGHTS), 0));
+            if (k <= LIGHTS / 2) lit = maxf(lit, float3_luminance(wisp.light[k]));
+        }
+        const float amid = stepf(AMID / 3, AMID, lit);
         wisp.strength *= 1 - 0.85f * amid;
-        wisp.laminar *= 1 - 0.6f * amid; // fires stir the air around them
+        wisp.laminar *= 1 - 0.7f * amid; // fires stir the air around them
         for (int k = 0; k < THREADS; k++)
             thread_draw(preview, &wisp, 2 * ((float)k + 0.5f) / THREADS - 1, k % FEWER == FEWER / 2);
     }
