@@ -39,6 +39,10 @@
 #define MIX_BURNT 1.5f     ///< nothing more does
 #define SMOKE_COLD 450.0f  ///< K: what is colder is all smoke
 #define SMOKE_HOT 650.0f   ///< K: what is hotter is none yet
+#define SMOKE_FOLLOWS 0.4f ///< m of the air's way from a flame, over which smoke that comes from it falls by e
+#define SMOKE_BESIDE 0.8f  ///< of what comes from a flame, what cells beside that have
+#define SMOKE_ADRIFT 0.25f ///< of smoke that comes from no flame, what is seen as long as there are flames
+#define SMOKE_FLAME 0.3f   ///< flame from which on it is full for smoke
 #define SMOKE_LEAVES 0.25f ///< of the gas's height, from the top down, in which smoke fades: there the gas is cut
 
 static size_t fire_at(const Fire *fire, int x, int y, int z) {
@@ -444,6 +448,32 @@ static bool make_tables(Preview *preview) {
     return true;
 }
 
+/// Smoke is seen where the air carries it up from a flame, layer by layer. Elsewhere it is what earlier flames have left, and
+/// hung in the air as a ghost. Where the last flame goes out all smoke is its.
+static void follow_smoke(Fire *fire) {
+    const int row = fire->size[0];
+    const float keeps = expf(-fire->cell / SMOKE_FOLLOWS);
+    float most = 0;
+    for (size_t i = 0; i < fire->cell_capacity; i++) most = maxf(most, fire->source[i][2]);
+    const float adrift = mixf(1, SMOKE_ADRIFT, stepf(0, 2 * SMOKE_FLAME, most));
+    memset(fire->sway, 0, fire->cell_capacity * sizeof *fire->sway); // free until the cells sway
+    for (int z = 1; z < fire->size[2] - 1; z++)
+        for (int y = 1; y < fire->size[1] - 1; y++)
+            for (int x = 1; x < fire->size[0] - 1; x++) {
+                const size_t here = fire_at(fire, x, y, z);
+                const float *source = fire->source[here];
+                float fx, fy;
+                const int ix = noise_floor((float)x - source[0], &fx), iy = noise_floor((float)y - source[1], &fy);
+                const float(*a)[4] = (const float(*)[4]) & fire->sway[fire_at(fire, ix, iy, z - 1)], (*b)[4] = a + row;
+                const float(*c)[4] = (const float(*)[4]) & fire->sway[fire_at(fire, x, y, z - 1)];
+                const float below = mixf(mixf(a[0][0], a[1][0], fx), mixf(b[0][0], b[1][0], fx), fy);
+                const float beside = SMOKE_BESIDE * maxf(maxf(c[-1][0], c[1][0]), maxf(c[-row][0], c[row][0]));
+                const float from = maxf(stepf(0, SMOKE_FLAME, source[2]), keeps * maxf(below, beside));
+                fire->sway[here][0] = from;
+                fire->cells[here].smoke *= mixf(adrift, 1, from);
+            }
+}
+
 SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *error) {
     Fire *fire = &preview->fire;
     memset(fire->size, 0, sizeof fire->size);
@@ -487,6 +517,7 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
             }
     }
 
+    follow_smoke(fire);
     return SINGE_OK;
 }
 

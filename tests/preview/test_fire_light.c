@@ -410,6 +410,31 @@ TEST(smoke_beside_flames_has_no_mesh) {
     assert_true(mesh[1] < 1.1f * mesh[0]);
 }
 
+/// Smoke comes from flames: above one it hides more than beside it, where the same smoke was a ghost that hung in the air.
+TEST(smoke_rises_from_flames) {
+    enum { FRAMES = 8 };
+    static float fire[W * H][4];
+    PreviewDef def = aside(0);
+    def.camera =
+        (PreviewCamera){.eye = {0, -1, 0.2f}, .target = {0, 0, 0.2f}, .up = {0, 0, 1}, .fov = 2 * atanf(H / 2000.0f)};
+    light_from_below(&def);
+    PreviewLayers layers = {.fire = fire};
+    float above = 0, beside = 0;
+
+    ball_make(&ball, 0, 0, 0.2f, 1, 0, 1e-4f);
+    for (int i = 0; i < GAS_CELLS; i++)
+        if (i / GAS_SIDE / GAS_SIDE < 3 && i % GAS_SIDE > 8) ball.flame[i] = 5e6f;
+    for (int k = 0; k < FRAMES; k++) {
+        draw_layers(&def, &nothing, &ball.gas, 0.7 * k, &layers);
+        for (int y = 4; y < H / 2; y++)
+            for (int x = 4; x < 24; x++) beside += fire[y * W + x][3], above += fire[y * W + W - 1 - x][3];
+    }
+    const float count = FRAMES * 20 * (H / 2 - 4);
+    print_message("smoke hides %.2f above a flame, %.2f beside it\n", (double)(above / count),
+                  (double)(beside / count));
+    assert_true(above > 0.25f * count && beside < 0.12f * above); // 0.25
+}
+
 /// Smoke that rises out of the gas fades before, or it would end at a level edge.
 TEST(smoke_fades_where_the_gas_ends) {
     enum {
