@@ -27,15 +27,15 @@ enum {
 #define RISE 0.12f        ///< m/s
 #define SPEEDING 0.13f    ///< m/s2
 #define RIBBON 0.0006f    ///< m, half of its width at the ember
-#define LAMINAR 0.24f     ///< s, in the mean
+#define LAMINAR 0.19f     ///< s, in the mean
 #define SWAY 0.009f       ///< m, by which it does before it buckles
 #define CURL 0.036f       ///< m, by which curls move it at most
 #define CURLING 0.19f     ///< s after it has buckled, by which half of that
 #define BURNT_SOON 0.25f  ///< s, of smoke that is not seen
 #define BURNT_LATE 0.8f   ///< that is seen wholly
 #define THREAD 0.0005f    ///< m, radius at the ember
-#define WISP_DEPTH 14e-3f ///< m, optical depth across a wisp times its width
-#define FRESH 0.26f       ///< of that at the ember: most vapours have not condensed
+#define WISP_DEPTH 13e-3f ///< m, optical depth across a wisp times its width
+#define FRESH 0.40f       ///< of that at the ember: most vapours have not condensed
 #define STRONG 1.2f       ///< by which strong wisps are weakened, or they would be white cords
 #define AMID 0.45f        ///< light of a wisp that is amid flames, which burn most of it; of a third it is whole
 #define FLAME_FAINT 0.08f ///< of a cell whose flame burns smoke
@@ -99,7 +99,7 @@ static void wisp_follow(const Fire *fire, Wisp *wisp) {
 /// Half of its width at an age.
 static float wisp_half(const Wisp *wisp, float age) {
     const float loose = maxf(age - wisp->laminar, 0);
-    return wisp->wide * (RIBBON + 0.0046f * age + 0.026f * loose + 0.024f * loose * loose);
+    return wisp->wide * (RIBBON + 0.0055f * age + 0.036f * loose + 0.040f * loose * loose);
 }
 
 /// Where a thread's smoke of an age is. `place`: of the thread across the ribbon, -1 to 1.
@@ -118,7 +118,7 @@ static Float3 wisp_at(const Wisp *wisp, float age, float place) {
     p.y += u * wisp->across.y + v * wisp->across.x + drift * noise2(1.7f * moment, 0, wisp->seed + 22);
 
     // threads part as it curls: what is beside in the ribbon is then elsewhere in the eddy
-    const float parts = place * (0.25f + 0.9f * minf(loose / 0.5f, 1));
+    const float parts = place * (0.35f + 1.1f * minf(loose / 0.4f, 1));
     p.x += bend * swing(wisp, moment, 3.4f, 0.5f * parts, 11) + roll * swing(wisp, moment, 10, parts, 13);
     p.y += bend * swing(wisp, moment, 3.4f, 0.5f * parts, 12) + roll * swing(wisp, moment, 10, parts, 14);
     p.z += 0.6f * bend * swing(wisp, moment + 0.07f, 3.4f, 0.5f * parts, 11);
