@@ -11,7 +11,7 @@ import textwrap
 import write_types
 
 FILE = pathlib.Path(__file__).resolve().parents[1] / "bindings/web/src/options.ts"
-DEFS = (*write_types.DEFS, "material")
+DEFS = (*write_types.HEADERS["types.h"], "material")
 HEAD = """// Made by scripts/write_options.py from include/singe/*.def: do not edit.
 // Keys are those of scenes (docs/scene.md). Units are SI and kelvin.
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes what follows from the tables of Defs (include/singe/*.def) into include/singe/types.h and material.h: structs,
-enums, defaults.
+"""Writes what follows from the tables of Defs (include/singe/*.def) into the headers beside them: structs, enums,
+defaults.
 
 usage: write_types.py [--check]
 
@@ -14,9 +14,10 @@ import sys
 import textwrap
 
 FOLDER = pathlib.Path(__file__).resolve().parents[1] / "include/singe"
-DEFS = ("sheet", "source", "collider", "pin", "wind", "solver", "gas", "contact", "sim")
-TYPES = {"FLOAT": "float", "VECTOR": "float", "ORDER": "SingeColour", "INT": "int", "UINT32": "uint32_t", "UINT64": "uint64_t", "BOOL": "bool"}
-FIELDS = ("FIELD", "APART", "HIDDEN", "HOOK")
+HEADERS = {"types.h": ("sheet", "source", "collider", "pin", "wind", "solver", "gas", "contact", "sim"),
+           "mesh.h": ("mesh", "grid"), "surface.h": ("render_mesh",)}
+TYPES = {"FLOAT": "float", "VECTOR": "float", "ORDER": "SingeColour", "INT": "int", "UINT32": "uint32_t", "UINTS": "uint32_t", "UINT64": "uint64_t", "BOOL": "bool"}
+FIELDS = ("FIELD", "APART", "NEEDED", "HIDDEN", "HOOK")
 WIDTH = 120
 
 
@@ -42,7 +43,7 @@ def rows(text):
     text = re.sub(r"//[^\n]*", "", text)
     for name, bits in re.findall(r"^#define (SINGE_\w+) \\\n *\((.*)\)", text, re.MULTILINE):
         text = re.sub(rf"\b{name}\b", re.sub(r"1u << (\w+)", r"BIT(\1)", bits), text)  # a set of kinds
-    for match in re.finditer(r"^SINGE_(FIELD|APART|HIDDEN|HOOK|COUNT|OTHER|WORD|DIMENSION|PARAM|PARAM_BACK|PARAM_COLOURS|SCALAR)\(", text, re.MULTILINE):
+    for match in re.finditer(r"^SINGE_(FIELD|APART|NEEDED|HIDDEN|HOOK|COUNT|OTHER|WORD|DIMENSION|PARAM|PARAM_BACK|PARAM_COLOURS|SCALAR)\(", text, re.MULTILINE):
         depth, i, quoted = 1, match.end(), False
         while depth:
             if text[i] == '"' and text[i - 1] != "\\":
@@ -76,7 +77,7 @@ def kinds_in_words(kinds):
 
 def comment(line, text):
     """A declaration with its comment, which stands above it where it is too long."""
-    beside = f"    {line} ///< {text}"
+    beside = f"    {line} ///< {text}" if text else f"    {line}"
     if len(beside) <= WIDTH:
         return [beside]
     above = textwrap.wrap(text, WIDTH - 8, break_long_words=False, break_on_hyphens=False)
@@ -156,19 +157,19 @@ def with_enums(text, table):
     return text
 
 
-def types_header(text, tables, units):
-    for part in DEFS:
-        name = f"Singe{part.capitalize()}Def"
+def defs_header(header, text, tables, units):
+    for part in HEADERS[header]:
+        name = f"Singe{part.title().replace('_', '')}Def"
         new = defaults(tables[part]) + "\n" + struct(name, tables[part], units)
         text, count = re.subn(r"/// Defaults:[^\n]*\n(?:///[^\n]*\n)*typedef struct %s \{.*?\} %s;" % (name, name),
                               lambda _: new, text, flags=re.DOTALL)
         if count != 1:
-            sys.exit(f"write_types.py: types.h has no struct {name} below a line of its defaults")
+            sys.exit(f"write_types.py: {header} has no struct {name} below a line of its defaults")
         text = with_enums(text, tables[part])
     return text
 
 
-def material_header(text, tables, units):
+def material_header(_, text, tables, units):
     text = re.sub(r"typedef struct SingeMaterialDef \{.*?\} SingeMaterialDef;",
                   lambda _: material_struct(tables["material"], units), text, flags=re.DOTALL)
     return with_enums(text, tables["material"])
@@ -177,10 +178,10 @@ def material_header(text, tables, units):
 def main():
     tables = {file.stem: list(rows(file.read_text(encoding="utf-8"))) for file in FOLDER.glob("*.def")}
     units = {"DIM_" + row[0]: row[2] for _, row in tables["dimensions"]}
-    for name, write in (("types.h", types_header), ("material.h", material_header)):
+    for name in (*HEADERS, "material.h"):
         header = FOLDER / name
         before = header.read_text(encoding="utf-8")
-        after = write(before, tables, units)
+        after = (defs_header if name in HEADERS else material_header)(name, before, tables, units)
         if "--check" not in sys.argv[1:]:
             header.write_text(after, encoding="utf-8")
         elif blurred(after) != blurred(before):

@@ -21,21 +21,27 @@ typedef enum SingeMeshQuads {
 
 /// A mesh whose faces have three corners or more, counter-clockwise seen from the front. The caller may free its arrays
 /// after the call.
+///
+/// Defaults: quads SINGE_MESH_PAIR, smallest 0.02; all else 0 or NULL.
 typedef struct SingeMeshDef {
     size_t struct_size;
-    const char *name; ///< for messages; NULL, the default, is "mesh"
+    const char *name; ///< for messages; NULL is "mesh"
     uint32_t vertex_count;
     const float *positions;     ///< [3 * vertex_count] m, finite
     uint32_t face_count;        ///< at least 1
-    const uint32_t *face_sizes; ///< [face_count] corners of each face, 3 to 4096; NULL, the default: all have 3
+    const uint32_t *face_sizes; ///< [face_count] corners of each face, 3 to 4096; NULL: all have 3
     const uint32_t *corners;    ///< [sum of face_sizes] vertices, face after face
     const float *uv;            ///< [2 * vertex_count], or NULL
     const float *corner_uv;     ///< [2 * corners] instead of uv where a mesh has seams, or NULL
     uint32_t attribute_count;
     const SingeAttribute *attributes; ///< [attribute_count] of the vertices; interpolated to the new mesh
-    SingeMeshQuads quads;             ///< SINGE_MESH_PAIR
-    float weld; ///< m, vertices on open edges within this distance are merged, >= 0; 0, the default: 1e-5 of the size
-    float smallest;           ///< sides below this share of the median side are collapsed, 0 (none) to 1; 0.02
+    /// how triangles and polygons become quads: pair joins triangles two by two; split cuts every face of n corners
+    /// into n quads with sides half as long
+    SingeMeshQuads quads;
+    /// m, >= 0; vertices on open edges of the mesh that are this close are merged, whatever their uv; 0: 1/100000 of
+    /// its size
+    float weld;
+    float smallest;           ///< 0 to 1; sides below this share of the median side are collapsed; 0: none
     SingeAllocator allocator; ///< zeroed: libc's
     SingeLog log;             ///< receives a summary of the mesh and each repair; zeroed: none
 } SingeMeshDef;
@@ -50,14 +56,17 @@ static inline SingeMeshDef singe_default_mesh(void) {
 
 /// A flat rectangle of cells about the origin of the x-y plane, front upwards, with uv from (0, 0) at its lowest x and
 /// y.
+///
+/// Defaults: size {0.2, 0.2}, cells {50, 50}, jitter 0.15, seed 1; all else 0 or NULL.
 typedef struct SingeGridDef {
     size_t struct_size;
-    float size[2];      ///< m along x and y, > 0; 0.2
-    uint32_t cells[2];  ///< along x and y, at least 1; 50
-    float jitter;       ///< of a cell, max offset of vertices from the grid, 0 to 0.3, so that folds do not follow its
-                        ///< lines; of slim cells at most twice that share of their width; 0.15
-    float displacement; ///< m, root mean square height of waves in the rest shape, >= 0; 0
-    uint32_t seed;      ///< of jitter and displacement; 1
+    float size[2];     ///< m, 1e-6 to 1e4; along x and y
+    uint32_t cells[2]; ///< 1 to 20000; number of cells along x and y
+    /// 0 to 0.3; displacement of vertices off the grid, in cells, so that folds and fronts follow no grid lines; at
+    /// most twice as much of the width of slim cells; 0 is regular
+    float jitter;
+    float displacement; ///< m, 0 to 1e3; root mean square displacement of the rest shape by smooth waves; 0 is flat
+    uint32_t seed;      ///< seed of jitter and displacement
     SingeAllocator allocator; ///< zeroed: libc's
 } SingeGridDef;
 

@@ -52,18 +52,22 @@ static inline void singe_surface_free(SingeSurface *surface) { singe_surface_rel
 /// bound to the position of the sheet at rest that is nearest to it, and keeps its distance from there, along the sheet
 /// and along its normal. The mesh burns and tears with the sheet and has its temperature, char and all else; nothing of
 /// the mesh acts on the simulation (src/surface/render_mesh.c).
+///
+/// Defaults: 0 or NULL.
 typedef struct SingeRenderMeshDef {
     size_t struct_size;
-    uint32_t vertex_count, triangle_count;
+    uint32_t vertex_count;
+    uint32_t triangle_count;
     const float *positions;    ///< [3 * vertex_count] m, where the sheet is at rest
-    const float *uv;           ///< [2 * vertex_count], or NULL, the default: the sheet's
+    const float *uv;           ///< [2 * vertex_count], or NULL: the sheet's
     const uint32_t *triangles; ///< [3 * triangle_count] counter-clockwise seen from outside
-    float reach;               ///< m, no vertex is farther from the sheet, >= 0; 0, the default: the side of a cell
-    float edge_max; ///< m, longer edges are halved, >= 0; 0, the default, is half a side of a cell, which is the most
-    float rigid;    ///< m, connected parts up to this size keep their shape, as buttons do; 0: none
-    bool beside;    ///< the sheet is drawn, too; false
-    /// vertices are bound where the sheet has their uv, and lie on it there, wherever they are themselves: for meshes that
-    /// were modelled elsewhere or in another pose; false. `reach` and `rigid` do not matter then
+    float reach;               ///< m, 0 to 1e4; largest distance of a vertex from the sheet; 0: the side of a cell
+    /// m, 0 to 1e4; longer edges are halved until none is longer; 0: half the side of a cell, which is also the maximum
+    float edge_max;
+    float rigid; ///< m, 0 to 1e4; connected parts up to this size keep their shape, as buttons do; 0: none
+    bool beside; ///< yes: the sheet is drawn as well
+    /// yes: each vertex lies where the sheet has the same uv, and its position in the file is ignored; for meshes that
+    /// were modelled elsewhere or in another pose. reach and rigid do not matter then
     bool by_uv;
 } SingeRenderMeshDef;
 

@@ -59,7 +59,7 @@ void finish_sheet(Reader *reader, const YamlNode *map, void *object) {
     const YamlNode *mesh = node_find(map, "mesh"), *grid = node_find(map, "grid");
     if (mesh && grid) complain(reader, grid->key_location, "'grid' and 'mesh' exclude each other; give one");
     if (!mesh && !grid) complain(reader, map->location, "a sheet needs 'mesh' (a file) or 'grid' (size and cells)");
-    if (grid && (double)sheet->grid.cells[0] * sheet->grid.cells[1] > 100e6)
+    if (grid && (double)sheet->grid.def.cells[0] * sheet->grid.def.cells[1] > 100e6)
         complain(reader, grid->location, "a grid has at most 100 million cells");
 }
 
@@ -203,7 +203,7 @@ static void check_objects(Reader *reader, const YamlNode *map, Scene *scene) {
     const YamlNode *sheets = node_find(map, "sheets"), *pins = node_find(map, "pins"),
                    *probes = node_find(map, "probes");
 
-    // a step takes as long as there are objects, and their names are compared
+    // the time of a step grows with the objects, and each name is compared with all others
     static const char *const lists[] = {"sheets", "sources", "colliders", "pins", "probes"};
     bool many = false;
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {

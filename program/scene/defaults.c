@@ -90,8 +90,7 @@ void chosen_solver(void *object) {
 
 bool default_grid(SceneArena *arena, void *object) {
     (void)arena;
-    SceneGrid *grid = object;
-    grid->wear = (GridWear){.jitter = 0.15f, .seed = 1};
+    ((SceneGrid *)object)->def = mesh_grid_default();
     return true;
 }
 

@@ -26,7 +26,7 @@ static const double program_bytes = 40e6;
 static uint64_t sheet_cells(const Scene *scene, const SceneAssets *assets, uint32_t index) {
     const SceneSheet *sheet = &scene->sheets[index];
     if (assets) return assets->meshes[index].cell_count;
-    return sheet->grid.given ? (uint64_t)sheet->grid.cells[0] * (uint64_t)sheet->grid.cells[1] : 0;
+    return sheet->grid.given ? (uint64_t)sheet->grid.def.cells[0] * sheet->grid.def.cells[1] : 0;
 }
 
 static double gas_cells(const Scene *scene, const SceneAssets *assets) {
@@ -41,7 +41,7 @@ static double gas_cells(const Scene *scene, const SceneAssets *assets) {
         rotation_matrix(sheet->rotate, turned);
 
         for (int c = 0; c < 3 && sheet->grid.given; c++) {
-            const float *size = sheet->grid.size;
+            const float *size = sheet->grid.def.size;
             double half = fabs(turned[3 * c]) * (double)size[0] + fabs(turned[3 * c + 1]) * (double)size[1];
             half *= 0.5 * (double)sheet->scale;
             low[c] = (double)sheet->translate[c] - half;

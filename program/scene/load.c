@@ -113,16 +113,16 @@ static SingeResult read_polygons(const SceneSheet *sheet, const char *path, Poly
 static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshReport *report) {
     SingeError error = {0};
     if (!sheet->mesh.name) {
-        const uint32_t columns = (uint32_t)sheet->grid.cells[0], rows = (uint32_t)sheet->grid.cells[1];
-        const float *size = sheet->grid.size;
+        const SingeGridDef *grid = &sheet->grid.def;
         const SceneFile at = {.location = sheet->location};
-        SingeResult result = mesh_grid(size[0], size[1], columns, rows, (SingeAllocator){0}, mesh, &error);
+        SingeResult result =
+            mesh_grid(grid->size[0], grid->size[1], grid->cells[0], grid->cells[1], (SingeAllocator){0}, mesh, &error);
         if (result) {
             loader_fail(loader, &at, result, error.message);
             return;
         }
 
-        mesh_grid_wear(mesh, columns, rows, &sheet->grid.wear);
+        mesh_grid_wear(mesh, grid->cells[0], grid->cells[1], &(GridWear){grid->jitter, grid->displacement, grid->seed});
         if (!transform(sheet, false, mesh->positions, mesh->vertex_count))
             message_add(loader->messages, loader->scene->text, at.location, "%s", too_far);
         return;
@@ -131,7 +131,7 @@ static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshR
     Polygons polygons = {0};
     MeshOptions options = mesh_default_options();
     options.weld = sheet->weld;
-    options.quads = (MeshQuads)sheet->quads;
+    options.quads = sheet->quads;
 
     const char *path = sheet->mesh.path;
     SingeResult result = read_polygons(sheet, path, &polygons, &error);
@@ -151,11 +151,11 @@ static void load_render_mesh(Loader *loader, const SceneSheet *sheet, RenderFile
     if (!result) result = render_file_make(given->mesh.path, &polygons, file, &error);
     polygons_free(&polygons);
     if (result) loader_fail(loader, &given->mesh, result, error.message);
-    file->def.reach = given->reach;
-    file->def.edge_max = given->edge_max;
-    file->def.rigid = given->rigid;
-    file->def.beside = given->beside;
-    file->def.by_uv = given->by_uv;
+    file->def.reach = given->def.reach;
+    file->def.edge_max = given->def.edge_max;
+    file->def.rigid = given->def.rigid;
+    file->def.beside = given->def.beside;
+    file->def.by_uv = given->def.by_uv;
 }
 
 static void load_sheet(Loader *loader, uint32_t index) {

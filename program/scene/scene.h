@@ -63,9 +63,7 @@ typedef struct SceneKey {
 /// A sheet that is a grid.
 typedef struct SceneGrid {
     bool given;
-    float size[2]; ///< m
-    int cells[2];
-    GridWear wear;
+    SingeGridDef def;
 } SceneGrid;
 
 /// Slots for the textures of a material's SingeParams. A parameter's slot is its offset in the Def in units of
@@ -108,8 +106,7 @@ typedef enum SceneUp { SCENE_UP_Z, SCENE_UP_Y } SceneUp;
 typedef struct SceneRenderMesh {
     bool given;
     SceneFile mesh;
-    float reach, edge_max, rigid; ///< m
-    bool beside, by_uv;
+    SingeRenderMeshDef def; ///< without the mesh
 } SceneRenderMesh;
 
 typedef struct SceneSheet {
@@ -118,15 +115,15 @@ typedef struct SceneSheet {
     SceneFile mesh; ///< or grid
     SceneGrid grid;
     SceneRenderMesh render_mesh;
-    SceneFile picture;       ///< drawn on the side from which it reads, may be absent
-    SceneFile back;          ///< on the other side, may be absent
-    float colour[3];         ///< linear tint
-    float transmittance;     ///< share of light transmitted, in the preview
-    float scale;             ///< factor, in addition to `units`
-    int units;               ///< SceneUnits of the mesh file
-    int up;                  ///< SceneUp of the mesh file
-    float weld;              ///< m, or 0 for MESH_WELD of the size
-    int quads;               ///< MeshQuads
+    SceneFile picture;   ///< drawn on the side from which it reads, may be absent
+    SceneFile back;      ///< on the other side, may be absent
+    float colour[3];     ///< linear tint
+    float transmittance; ///< share of light transmitted, in the preview
+    float scale;         ///< factor, in addition to `units`
+    int units;           ///< SceneUnits of the mesh file
+    int up;              ///< SceneUp of the mesh file
+    float weld;          ///< m, or 0 for MESH_WELD of the size
+    SingeMeshQuads quads;
     float rotate[3];         ///< radians about x, then y, then z, after the scaling
     float translate[3];      ///< m, after the rotation
     float velocity[3];       ///< m/s at the start

@@ -16,7 +16,6 @@ static const char *const holder_names[] = {PREVIEW_HOLDERS(ROW) NULL};
 static const char *const units_names[] = {[SCENE_UNITS_M] = "m",   [SCENE_UNITS_CM] = "cm", [SCENE_UNITS_MM] = "mm",
                                           [SCENE_UNITS_IN] = "in", [SCENE_UNITS_FT] = "ft", NULL};
 static const char *const up_names[] = {[SCENE_UP_Z] = "z", [SCENE_UP_Y] = "y", NULL};
-static const char *const quads_names[] = {[MESH_QUADS_PAIR] = "pair", [MESH_QUADS_SPLIT] = "split", NULL};
 
 // ---- parts that several objects share
 
@@ -66,38 +65,32 @@ static const Schema schema_motion = {
 
 // ---- sheets
 
+#define OF SceneGrid
+#define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
+    AS_ROW_AT(#name, TYPE, def.name, length, dimension, kinds, text, range)
+#define SINGE_NEEDED(TYPE, name, length, dimension, standard, range, kinds, text) \
+    AS_ROW_AT(#name, TYPE, def.name, length, dimension, kinds, text, range, .flags = ROW_REQUIRED)
 static const SchemaRow grid_rows[] = {
-    {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneGrid, size), .length = 2, WITHIN(1e-6, 1e4), .flags = ROW_REQUIRED,
-     .doc = "along x and y"},
-    {"cells", ROW_INTS, DIM_NONE, AT(SceneGrid, cells), .length = 2, .flags = ROW_REQUIRED, WITHIN(1, 20000),
-     .doc = "number of cells along x and y"},
-    {"jitter", ROW_FLOAT, DIM_FRACTION, AT(SceneGrid, wear.jitter), WITHIN(0, 0.3),
-     .doc = "displacement of vertices off the grid, in cells, so that folds and fronts follow no grid lines; at most "
-            "twice as much of the width of slim cells; 0 is regular"},
-    {"displacement", ROW_FLOAT, DIM_LENGTH, AT(SceneGrid, wear.displacement), WITHIN(0, 1e3),
-     .doc = "root mean square displacement of the rest shape by smooth waves; 0 is flat"},
-    {"seed", ROW_UINT32, DIM_NONE, AT(SceneGrid, wear.seed), .doc = "seed of the waves"},
+#include "singe/grid.def"
 };
+#undef OF
 static const Schema schema_grid = {.title = "a grid",
                                    .size = sizeof(SceneGrid),
                                    ROWS(grid_rows),
                                    .defaults = default_grid,
                                    .doc = "A rectangle around the origin in the x-y plane, facing up (+z)."};
 
+#define OF SceneRenderMesh
+#define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
+    AS_ROW_AT(#name, TYPE, def.name, length, dimension, kinds, text, range)
+#define SINGE_APART(key, TYPE, name, length, dimension, standard, range, kinds, text) \
+    AS_ROW_AT(key, TYPE, def.name, length, dimension, kinds, text, range)
 static const SchemaRow render_mesh_rows[] = {
     {"mesh", ROW_FILE, DIM_NONE, AT(SceneRenderMesh, mesh), .flags = ROW_REQUIRED,
      .doc = "a file of triangles, quads or polygons, with the `units`, `up` and position of the sheet's own mesh"},
-    {"reach", ROW_FLOAT, DIM_LENGTH, AT(SceneRenderMesh, reach), WITHIN(0, 1e4),
-     .doc = "largest distance of a vertex from the sheet; 0: the side of a cell"},
-    {"edge", ROW_FLOAT, DIM_LENGTH, AT(SceneRenderMesh, edge_max), WITHIN(0, 1e4),
-     .doc = "longer edges are halved until none is longer; 0: half the side of a cell, which is also the maximum"},
-    {"rigid", ROW_FLOAT, DIM_LENGTH, AT(SceneRenderMesh, rigid), WITHIN(0, 1e4),
-     .doc = "connected parts up to this size keep their shape, as buttons do; 0: none"},
-    {"beside", ROW_BOOL, DIM_NONE, AT(SceneRenderMesh, beside), .doc = "yes: the sheet is drawn as well"},
-    {"by_uv", ROW_BOOL, DIM_NONE, AT(SceneRenderMesh, by_uv),
-     .doc = "yes: each vertex lies where the sheet has the same uv, and its position in the file is ignored; for "
-            "meshes that were modelled elsewhere or in another pose"},
+#include "singe/render_mesh.def"
 };
+#undef OF
 static const Schema schema_render_mesh = {
     .title = "a render mesh",
     .size = sizeof(SceneRenderMesh),
@@ -134,12 +127,9 @@ static const SchemaRow sheet_rows[] = {
      .doc = "unit of the mesh file's numbers; `ft` is a foot"},
     {"up", ROW_ENUM, DIM_NONE, AT(SceneSheet, up), .names = up_names,
      .doc = "the mesh file's axis that points up; a file whose y is up is turned by 90 degrees about x"},
-    {"weld", ROW_FLOAT, DIM_LENGTH, AT(SceneSheet, weld), FROM(0),
-     .doc = "vertices on open edges of the mesh that are this close are merged, whatever their uv; 0: 1/100000 of its "
-            "size"},
-    {"quads", ROW_ENUM, DIM_NONE, AT(SceneSheet, quads), .names = quads_names,
-     .doc = "how triangles and polygons become quads: `pair` joins triangles two by two; `split` cuts every face of n "
-            "corners into n quads with sides half as long"},
+#define SINGE_ROWS_STAY
+#include "singe/mesh.def"
+#undef SINGE_ROWS_STAY
     {"rotate", ROW_VECTOR, DIM_ANGLE, AT(SceneSheet, rotate), .length = 3, TURN,
      .doc = "about x, then y, then z, after the scaling and `up`"},
     {"translate", ROW_VECTOR, DIM_LENGTH, AT(SceneSheet, translate), .length = 3, WITHIN(-9000, 9000),

@@ -8,5 +8,6 @@ const EnumWords enum_words = {
 #include "singe/collider.def"
 #include "singe/solver.def"
 #include "singe/sim.def"
+#include "singe/mesh.def"
 #include "singe/material.def"
 };

@@ -1,7 +1,7 @@
 // The words by which scenes, options and tables name the values of the library's enums.
 #pragma once
 
-#include "singe/types.h"
+#include "singe/mesh.h"
 
 /// The words of each enum, indexed by value: "" where scenes have no word for it, NULL after the last.
 typedef struct EnumWords {
@@ -12,6 +12,7 @@ typedef struct EnumWords {
     const char *SingeInstructions[8];
     const char *SingeColour[8];
     const char *SingeHeatOperator[8];
+    const char *SingeMeshQuads[8];
 } EnumWords;
 
 extern const EnumWords enum_words;

@@ -126,6 +126,13 @@ static const DefField sim_fields[] = {
 const DefTable sim_table = {"simulation", "", TABLE(sim_fields), 0};
 #undef OF
 
+#define OF SingeRenderMeshDef
+static const DefField render_mesh_fields[] = {
+#include "singe/render_mesh.def"
+};
+const DefTable render_mesh_table = {"render mesh", "", TABLE(render_mesh_fields), 0};
+#undef OF
+
 // ---- what follows from them
 
 /// Whether all elements of a field, at `bytes`, are in its range.

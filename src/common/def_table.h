@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "common/stream.h"
+#include "singe/surface.h"
 #include "singe/types.h"
 
 /// The values that a number may have. NaN is outside every range. An infinity is inside only where the range ends there
@@ -61,7 +62,7 @@ typedef struct DefTable {
 } DefTable;
 
 extern const DefTable sheet_table, source_table, collider_table, pin_table, wind_table, solver_table, gas_table,
-    contact_table, sim_table;
+    contact_table, sim_table, render_mesh_table;
 
 /// Checks each field that the Def's kind has. SINGE_ERROR_ARGUMENT names the first that is out of its range, and says
 /// the range.

@@ -1,6 +1,7 @@
 // The public functions of singe/mesh.h.
 #include "singe/mesh.h"
 
+#include "common/def_table.h"
 #include "common/store.h"
 #include "mesh/to_quads.h"
 
@@ -34,12 +35,12 @@ static bool read_def(void *def, size_t size, const void *given) {
 }
 
 void singe_init_mesh(SingeMeshDef *def, size_t struct_size) {
-    const SingeMeshDef standard = {.quads = SINGE_MESH_PAIR, .smallest = MESH_SMALLEST};
+    const SingeMeshDef standard = mesh_default();
     fill_def(def, struct_size, &standard, sizeof standard);
 }
 
 void singe_init_grid(SingeGridDef *def, size_t struct_size) {
-    const SingeGridDef standard = {.size = {0.2f, 0.2f}, .cells = {50, 50}, .jitter = 0.15f, .seed = 1};
+    const SingeGridDef standard = mesh_grid_default();
     fill_def(def, struct_size, &standard, sizeof standard);
 }
 
@@ -48,6 +49,30 @@ void singe_init_grid(SingeGridDef *def, size_t struct_size) {
 static SingeResult bad(SingeError *error, const char *what) {
     return refuse(error, SINGE_ERROR_ARGUMENT, "mesh", -1, "%s", what);
 }
+
+/// Whether all elements of a field are in its row's range. The error says which range is left.
+static bool in_range(const char *name, const void *field, int length, bool whole, FieldRange range, SingeError *error) {
+    for (int i = 0; i < length && range.words; i++) {
+        const float number = whole ? (float)((const uint32_t *)field)[i] : ((const float *)field)[i];
+        if (range_has(&range, number)) continue;
+        refuse(error, SINGE_ERROR_ARGUMENT, "mesh", -1, "%s must be %s", name, range.words);
+        return false;
+    }
+    return true;
+}
+
+// a row of the tables: checks its field of `def`
+#define FLOAT false
+#define VECTOR false
+#define UINT32 true
+#define UINTS true
+#define ENUM(name) true
+#define SINGE_ROWS_STAY
+#define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
+    if (!in_range(#name, &def.name, length, TYPE, (FieldRange)range, error)) return SINGE_ERROR_ARGUMENT;
+#define SINGE_NEEDED SINGE_FIELD
+#define SINGE_HIDDEN SINGE_FIELD
+#define SINGE_WORD(Enum, NAME, value, word, text) known |= def.quads == NAME;
 
 /// Converts the Def for mesh_make, which does not write to its arrays. False when out of memory.
 static bool take(const SingeMeshDef *def, uint32_t corners, Polygons *polygons) {
@@ -100,9 +125,10 @@ SingeResult singe_mesh_create(const SingeMeshDef *given, SingeMesh **mesh, Singe
     for (uint32_t i = 0; i < def.attribute_count; i++)
         if (!def.attributes[i].name || !def.attributes[i].values)
             return bad(error, "an attribute has no name or no values");
-    if (def.quads != SINGE_MESH_PAIR && def.quads != SINGE_MESH_SPLIT) return bad(error, "quads has an unknown value");
-    if (!(def.weld >= 0 && isfinite(def.weld))) return bad(error, "weld must be 0 or more");
-    if (!(def.smallest >= 0 && def.smallest <= 1)) return bad(error, "smallest must be between 0 and 1");
+
+    bool known = false;
+#include "singe/mesh.def"
+    if (!known) return bad(error, "quads has an unknown value");
 
     for (uint32_t f = 0; f < def.face_count; f++) {
         uint32_t size = def.face_sizes ? def.face_sizes[f] : 3;
@@ -119,7 +145,7 @@ SingeResult singe_mesh_create(const SingeMeshDef *given, SingeMesh **mesh, Singe
 
     Polygons polygons;
     MeshReport report = {0};
-    const MeshOptions options = {(MeshQuads)def.quads, def.weld, def.smallest};
+    const MeshOptions options = {def.quads, def.weld, def.smallest};
     SingeMesh *made = new_mesh(def.allocator);
     SingeResult result = take(&def, corners, &polygons) && made ? SINGE_OK : refuse_memory(error, "mesh", name);
     for (size_t i = 0; !result && polygons.uv && i < 2 * (size_t)corners; i++)
@@ -148,9 +174,7 @@ SingeResult singe_mesh_create_grid(const SingeGridDef *given, SingeMesh **mesh, 
     SingeGridDef def = singe_default_grid();
     *mesh = NULL;
     if (!read_def(&def, sizeof def, given)) return bad(error, STRUCT_SIZE_UNKNOWN(singe_default_grid));
-    if (!(def.jitter >= 0 && def.jitter <= 0.3f)) return bad(error, "grid: jitter must be between 0 and 0.3");
-    if (!(def.displacement >= 0 && isfinite(def.displacement)))
-        return bad(error, "grid: displacement must be 0 or more");
+#include "singe/grid.def"
 
     SingeMesh *made = new_mesh(def.allocator);
     if (!made) return refuse_memory(error, "grid", "grid");

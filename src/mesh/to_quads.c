@@ -8,7 +8,32 @@
 #include <math.h>
 #include <string.h>
 
-MeshOptions mesh_default_options(void) { return (MeshOptions){.quads = MESH_QUADS_PAIR, .smallest = MESH_SMALLEST}; }
+#define BRACED(...) \
+    { __VA_ARGS__ }
+#define SINGE_ROWS_STAY
+#define SINGE_FIELD(type, name, length, dimension, standard, range, kinds, text) .name = standard,
+#define SINGE_OTHER(declaration, name, standard, text) .name = standard,
+#define SINGE_NEEDED SINGE_FIELD
+#define SINGE_HIDDEN SINGE_FIELD
+
+SingeGridDef mesh_grid_default(void) {
+    return (SingeGridDef){
+        .struct_size = sizeof(SingeGridDef),
+#include "singe/grid.def"
+    };
+}
+
+SingeMeshDef mesh_default(void) {
+    return (SingeMeshDef){
+        .struct_size = sizeof(SingeMeshDef),
+#include "singe/mesh.def"
+    };
+}
+
+MeshOptions mesh_default_options(void) {
+    const SingeMeshDef def = mesh_default();
+    return (MeshOptions){def.quads, def.weld, def.smallest};
+}
 
 void polygons_free(Polygons *polygons) {
     size_t vertices = polygons->vertex_count, faces = polygons->face_count, corners = polygons->corner_count;
@@ -287,7 +312,7 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
     if (result || work->no_memory) return result;
 
     // quads
-    bool all_quads = true, pair = options->quads == MESH_QUADS_PAIR;
+    bool all_quads = true, pair = options->quads == SINGE_MESH_PAIR;
     for (uint32_t f = 0; f < work->faces.count; f++)
         all_quads = all_quads && work->faces.first[f + 1] - work->faces.first[f] == 4;
 

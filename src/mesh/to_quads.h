@@ -3,6 +3,7 @@
 #pragma once
 
 #include "mesh/polygons.h"
+#include "singe/mesh.h"
 
 /// A sheet's mesh: quads.
 typedef struct Mesh {
@@ -22,15 +23,17 @@ typedef struct Mesh {
     SingeAllocator allocator;
 } Mesh;
 
+/// The default Defs, from the rows of singe/grid.def and mesh.def.
+SingeGridDef mesh_grid_default(void);
+SingeMeshDef mesh_default(void);
+
 /// A flat grid of cells_x × cells_y cells of the given size (m), centred at the origin in the x-y plane,
 /// uv from (0,0) at (-x,-y) to (1,1).
 SINGE_NODISCARD SingeResult mesh_grid(float size_x, float size_y, uint32_t cells_x, uint32_t cells_y,
                                       SingeAllocator allocator, Mesh *mesh, SingeError *error);
-/// Imperfections of a grid.
+/// Imperfections of a grid, as in SingeGridDef.
 typedef struct GridWear {
-    float jitter;       ///< max offset of a vertex from the grid along each axis, in cells, 0 to 0.3; at most
-                        ///< twice that of the shorter side of a cell
-    float displacement; ///< m, root mean square height of the sheet's waves, >= 0
+    float jitter, displacement;
     uint32_t seed;
 } GridWear;
 
@@ -41,20 +44,14 @@ void mesh_free(Mesh *mesh);
 
 // ---- from polygons to quads
 
-/// How faces that are not quads become quads.
-typedef enum MeshQuads {
-    MESH_QUADS_PAIR = 0, ///< triangles are joined in pairs; cells are as large as the file's
-    MESH_QUADS_SPLIT,    ///< every face of n corners becomes n quads; the file's sides are halved
-} MeshQuads;
-
+/// As in SingeMeshDef.
 typedef struct MeshOptions {
-    MeshQuads quads;
+    SingeMeshQuads quads;
     float weld;     ///< distance (in units of positions) within which vertices on open edges are merged; 0: MESH_WELD
     float smallest; ///< sides below this share of the median side collapse to a point; 0: none
 } MeshOptions;
 
-#define MESH_WELD 1e-5f     ///< share of the diagonal of the box around the mesh
-#define MESH_SMALLEST 0.02f ///< share of the median side
+#define MESH_WELD 1e-5f ///< share of the diagonal of the box around the mesh
 
 /// Changes to a mesh.
 typedef enum MeshRepair {

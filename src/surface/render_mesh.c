@@ -14,6 +14,7 @@
 // Edges are halved until none is longer than `edge_max`, at most half a cell's side: long triangles would neither follow
 // the sheet's folds nor notice its holes. A triangle becomes two, three or four, as one, two or all of its edges are long,
 // so neighbours meet without cracks.
+#include "common/def_table.h"
 #include "common/real.h"
 #include "surface/render_parts.h"
 
@@ -97,11 +98,8 @@ static SingeResult take(Memory *memory, const RenderSheet *sheet, const SingeRen
     if (!def->positions || !def->triangles)
         return error_set(error, SINGE_ERROR_ARGUMENT, "render mesh", -1, "positions or triangles are NULL");
 
-    const float lengths[] = {def->reach, def->edge_max, def->rigid};
-    static const char *const names[] = {"reach", "edge_max", "rigid"};
-    for (int i = 0; i < 3; i++)
-        if (!(lengths[i] >= 0 && lengths[i] < INFINITY))
-            return error_set(error, SINGE_ERROR_ARGUMENT, "render mesh", -1, "%s must be 0 or more", names[i]);
+    SingeResult checked = def_check(&render_mesh_table, def, error);
+    if (checked) return checked;
     if (def->vertex_count > VERTICES_MAX || def->triangle_count > VERTICES_MAX)
         return error_set(error, SINGE_ERROR_LIMIT, "render mesh", -1, "more than %d vertices or triangles",
                          VERTICES_MAX);

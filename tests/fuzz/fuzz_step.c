@@ -73,7 +73,7 @@ static bool sketch_mesh(Input *input, Mesh *mesh) {
     sketch.polygons.first = sketch.first, sketch.polygons.corners = sketch.corners;
 
     MeshOptions options = mesh_default_options();
-    if (input_rarely(input, 4)) options.quads = MESH_QUADS_SPLIT;
+    if (input_rarely(input, 4)) options.quads = SINGE_MESH_SPLIT;
     MeshReport report;
     SingeError error;
     return mesh_make("fuzz", &sketch.polygons, &options, (SingeAllocator){0}, mesh, &report, &error) == SINGE_OK;

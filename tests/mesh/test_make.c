@@ -127,7 +127,7 @@ TEST(split_makes_n_quads_of_n_corners) {
     text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\nf 2 5 3\n");
 
     MeshOptions options = mesh_default_options();
-    options.quads = MESH_QUADS_SPLIT;
+    options.quads = SINGE_MESH_SPLIT;
     Made made = make_with(&text, options);
     assert_int_equal(made.result, SINGE_OK);
     assert_int_equal(made.mesh.cell_count, 7);

@@ -33,7 +33,7 @@ static Shape shape_of(const double (*at)[2], int positions, const int *corner, i
 /// The plane that shapes lie in, inclined so that no axis of the file is its normal.
 static const double plane[2][3] = {{0.8, 0, 0.6}, {0.36, 0.8, -0.48}};
 
-static Made make_shape(const Shape *shape, MeshQuads quads) {
+static Made make_shape(const Shape *shape, SingeMeshQuads quads) {
     MeshOptions options = mesh_default_options();
     options.quads = quads;
     text.size = 0;
@@ -105,7 +105,7 @@ static int covers(const Mesh *mesh, const double *p) {
 /// `area` in the plane; points of a raster are covered once where the shape winds around them, and else never.
 /// Corners that meet are drawn apart, which takes some of it.
 static void assert_covers_but(const Shape *shape, double area, double less, const char *name) {
-    for (MeshQuads quads = MESH_QUADS_PAIR; quads <= MESH_QUADS_SPLIT; quads++) {
+    for (SingeMeshQuads quads = SINGE_MESH_PAIR; quads <= SINGE_MESH_SPLIT; quads++) {
         Made made = make_shape(shape, quads);
         if (made.result) fail_msg("%s: %s", name, made.error.message);
 
@@ -138,7 +138,7 @@ static void assert_covers(const Shape *shape, double area, const char *name) {
 }
 
 static void assert_refused(const Shape *shape, const char *name) {
-    for (MeshQuads quads = MESH_QUADS_PAIR; quads <= MESH_QUADS_SPLIT; quads++) {
+    for (SingeMeshQuads quads = SINGE_MESH_PAIR; quads <= SINGE_MESH_SPLIT; quads++) {
         Made made = make_shape(shape, quads);
         if (made.result != SINGE_ERROR_MESH) fail_msg("%s is not refused", name);
         char line[40];

@@ -86,7 +86,7 @@ TEST(random_meshes_are_refused_or_sound) {
         if (seed & 1) broken_grid(&text);
         else random_polygons(&text);
         MeshOptions options = mesh_default_options();
-        if (seed % 5 == 4) options.quads = MESH_QUADS_SPLIT;
+        if (seed % 5 == 4) options.quads = SINGE_MESH_SPLIT;
 
         Made made = make_with(&text, options);
         if (made.result) {

@@ -70,7 +70,7 @@ static void check_full(const Scene *scene) {
     assert_true(material->compliance[SINGE_YELLOW].value == 1e-4f);
     assert_true(material->drag.field->kind == SINGE_FIELD_TEXTURE && isinf(material->rate_ceiling.value));
     assert_string_equal(sheet->material.followed[SCENE_PARAM_SLOT(drag)].texture.name, "d.png");
-    assert_true(scene->sheets[1].grid.given && scene->sheets[1].grid.cells[1] == 6);
+    assert_true(scene->sheets[1].grid.given && scene->sheets[1].grid.def.cells[1] == 6);
     assert_string_equal(scene->sheets[1].name, "sheet2");
 }
 
@@ -279,7 +279,7 @@ TEST(set_overrides_values) {
     assert_true(scene->sources[0].def.start == 2);
     assert_true(scene->preview.def.camera.eye[1] == -1);
 
-    assert_int_equal(scene->sheets[0].grid.cells[1], 31);
+    assert_int_equal(scene->sheets[0].grid.def.cells[1], 31);
     assert_int_equal(scene->sim.solver.substeps, 9);
     assert_true(scene->sources[0].keys[0].position[2] == 0.007f);
     assert_true(scene->sheets[0].material.def.mass_rate.to == 5);

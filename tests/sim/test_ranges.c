@@ -48,6 +48,10 @@ static SingeResult try_collider(SingeSim *sim, void *def) { return singe_sim_add
 static SingeResult try_pin(SingeSim *sim, void *def) { return singe_sim_add_pin(sim, def, NULL); }
 static SingeResult try_sheet(SingeSim *sim, void *def) { return singe_sim_add_sheet(sim, def, NULL); }
 
+static SingeResult try_render_mesh(SingeSim *sim, void *def) {
+    return singe_sim_add_render_mesh(sim, (SingeSheetId){0, 1}, def);
+}
+
 static void put(void *def, const DefField *field, int index, float value) {
     const int whole = (int)value;
     const void *from = field->type == FIELD_FLOAT ? (const void *)&value : (const void *)&whole;
@@ -151,8 +155,17 @@ TEST(ranges_match_the_tables) {
     pin.vertex_count = 1;
     pin.vertices = &vertex;
     tried += try_table(sim, &pin_table, &pin, sizeof pin, try_pin);
+
+    SingeSim *drawn = test_sim(NULL, test_grid(4, 4, 0.05f, 0.05f), NULL);
+    const float triangle[9] = {0.05f, 0.05f, 0, 0.1f, 0.05f, 0, 0.05f, 0.1f, 0};
+    SingeRenderMeshDef render = singe_default_render_mesh();
+    render.vertex_count = 3, render.triangle_count = 1;
+    render.positions = triangle, render.triangles = (const uint32_t[3]){0, 1, 2};
+    tried += try_table(drawn, &render_mesh_table, &render, sizeof render, try_render_mesh);
+
     print_message("%d ranges\n", tried);
     assert_true(tried >= 100);
+    singe_sim_destroy(drawn);
     singe_sim_destroy(sim);
 }
 
