@@ -117,9 +117,6 @@ typedef struct BenchMaterials {
 ExitCode bench_materials_open(const char *list, BenchMaterials *materials);
 void bench_materials_close(BenchMaterials *materials);
 
-/// The material of a scene, as it is simulated.
-BenchMaterial bench_material(const SceneMaterial *material);
-
 // ---- measurements
 
 // Each fills the given table, whose `text` is set, and returns the error that

@@ -136,16 +136,6 @@ BenchList bench_list(const BenchList *asked, int count, const double *defaults) 
 
 // ---- materials
 
-BenchMaterial bench_material(const SceneMaterial *material) {
-    BenchMaterial bench = {.name = material->name ? material->name : "-",
-                           .def = material->def,
-                           .calibrated = material->measured.given && material->measured.calibrated};
-    memcpy(bench.speed, material->measured.speed, sizeof bench.speed);
-    memcpy(bench.temperature, material->measured.temperature, sizeof bench.temperature);
-    memcpy(bench.residue, material->measured.residue, sizeof bench.residue);
-    return bench;
-}
-
 /// A material is read as the material of a sheet in a scene, so that its errors are reported in the same way.
 static ExitCode read_one(const char *name, size_t length, BenchMaterials *materials) {
     static const char text[] = "sheets: [{grid: {size: [1, 1], cells: [1, 1]}}]";
@@ -158,8 +148,17 @@ static ExitCode read_one(const char *name, size_t length, BenchMaterials *materi
     scene_messages_print(&messages, stderr);
     scene_messages_free(&messages);
     free(set);
-    if (!result) materials->items[materials->count++] = bench_material(&(*scene)->sheets[0].material);
-    return job_exit(result);
+    if (result) return job_exit(result);
+
+    const SceneMaterial *material = &(*scene)->sheets[0].material;
+    BenchMaterial *bench = &materials->items[materials->count++];
+    *bench = (BenchMaterial){.name = material->name ? material->name : "-",
+                             .def = material->def,
+                             .calibrated = material->measured.given && material->measured.calibrated};
+    memcpy(bench->speed, material->measured.speed, sizeof bench->speed);
+    memcpy(bench->temperature, material->measured.temperature, sizeof bench->temperature);
+    memcpy(bench->residue, material->measured.residue, sizeof bench->residue);
+    return EXIT_GOOD;
 }
 
 ExitCode bench_materials_open(const char *list, BenchMaterials *materials) {

@@ -8,7 +8,8 @@
 
 static uint32_t rotate_left(uint32_t x, int by) { return x << by | x >> (32 - by); }
 
-uint32_t cryptomatte_id(const char *name) {
+/// The number of a name: MurmurHash3 of 32 bits, kept from infinities and denormal numbers.
+static uint32_t cryptomatte_id(const char *name) {
     const size_t length = strlen(name);
     uint32_t hash = 0;
     for (size_t at = 0; at < length; at += 4) {

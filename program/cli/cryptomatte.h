@@ -15,9 +15,6 @@ typedef struct Cryptomatte {
     char *manifest; ///< names and their numbers, as JSON
 } Cryptomatte;
 
-/// The number of a name: MurmurHash3 of 32 bits, kept from infinities and denormal numbers.
-uint32_t cryptomatte_id(const char *name);
-
 /// Fills the layer `name` from the mattes of `pixels` pixels: by sheet, or by piece ("letter/12"). Pieces are counted as in
 /// the cache. False if there is no memory. Free it in any case; until then it must not be moved.
 bool cryptomatte_make(Cryptomatte *layer, const char *name, bool pieces, const char *const *sheets,

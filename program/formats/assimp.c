@@ -7,8 +7,6 @@
 
 #ifndef SINGE_ASSIMP
 
-bool assimp_available(void) { return false; }
-
 SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                         Polygons *polygons, SingeError *error) {
     (void)bytes, (void)size;
@@ -31,8 +29,6 @@ SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, Sin
 #include <string.h>
 
 enum { DEPTH_LIMIT = 1000 }; ///< of nested nodes
-
-bool assimp_available(void) { return true; }
 
 // ---- the files that assimp may open: the one to read, which is in memory, and regular files in its folder or below
 

@@ -73,10 +73,9 @@ SINGE_NODISCARD SingeResult gltf_read(const char *name, const uint8_t *bytes, si
 /// of a scene's meshes with their nodes' transforms. assimp runs in a child process with limits (isolate.h): a crash is
 /// an error, and so is using more memory than 512 MiB plus 32 times the file's size, or more time than 10 s plus 1 s
 /// for each 2 MB. Only regular files in the folder of `name` and below are opened. Call it while there is one thread.
+/// It fails in a program built without assimp.
 SINGE_NODISCARD SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                         Polygons *polygons, SingeError *error);
-/// False in a program built without assimp, where assimp_read fails.
-bool assimp_available(void);
 
 // ---- pictures
 

@@ -300,9 +300,6 @@ uint32_t shell_nowhere_count(const Shell *shell);
 SingeResult state_create(Memory *memory, const Shell *shell, State *state);
 void state_free(Memory *memory, State *state);
 
-/// Points the arrays of `state` into an arena of state->arena_size bytes laid out for this shell.
-void state_rebase(const Shell *shell, State *state, void *arena);
-
 /// The vertices' positions in `arena`, a copy of the state's from when this step began, become the `earlier` ones.
 void state_remember(const Shell *shell, State *state, const void *arena);
 

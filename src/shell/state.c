@@ -70,11 +70,6 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
     return used;
 }
 
-void state_rebase(const Shell *shell, State *state, void *arena) {
-    state->arena = arena;
-    state->arena_size = lay_out(shell, state, arena, &state->basic_size);
-}
-
 /// Bytes before an aligned block. The last one holds the block's offset in its allocation.
 enum { LEAD = SLICE };
 
@@ -89,7 +84,8 @@ SingeResult state_create(Memory *memory, const Shell *shell, State *state) {
 
     size_t lead = SLICE - (uintptr_t)block % SLICE; // 1 to 64
     block[lead - 1] = (char)lead;
-    state_rebase(shell, state, block + lead);
+    state->arena = block + lead;
+    lay_out(shell, state, state->arena, &state->basic_size);
 
     // springs, except the spares of tears
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
