@@ -1,5 +1,5 @@
 // What the nodes of game engines have in common: a rectangle of a material that burns live, over the public headers alone.
-// A frame asks for no memory unless the drawn mesh outgrows what there is.
+// A frame allocates only where the drawn mesh outgrows its arrays.
 #ifndef SINGE_BURNING_SHEET_H
 #define SINGE_BURNING_SHEET_H
 

@@ -23,7 +23,7 @@ static void sight_position(const Sight *sight, const float *p, double out[2]) {
     out[1] = sight->height / 2.0 - sight->scale * (y * sin(sight->tilt) + (double)p[2] * cos(sight->tilt) - sight->y);
 }
 
-/// Looks at the centroid of what there is, large enough to fill the drawing.
+/// Looks at the centroid of what is left, so closely that it fills the drawing.
 static Sight sight_fit(const SingeView *view, double turn, double tilt, int width, int height) {
     Sight sight = {.turn = turn, .tilt = tilt, .scale = 1, .width = width, .height = height};
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, p[2];
@@ -67,7 +67,7 @@ static void draw_springs(FILE *file, const SingeView *view, const Sight *sight, 
     fprintf(file, "</svg>\n");
 }
 
-/// The largest difference of the springs a cell from those of a sheet without end; as a table where there is a report.
+/// The largest difference of the springs per cell from those of an endless sheet; writes a table if there is a report.
 static double spring_counts(Report *report, const SingeView *view) {
     static const char *const names[] = {"red", "green", "blue", "yellow"};
     static const double expected[] = {4, 2, 2, 2};

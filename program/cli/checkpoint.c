@@ -88,7 +88,7 @@ static uint64_t hash_files(uint64_t hash, const SceneAssets *assets) {
         }
 
         hash = hash_image(hash, &assets->images[i]);
-        if (back->rgb) hash = hash_image(hash, back); // as it was, where there is none
+        if (back->rgb) hash = hash_image(hash, back); // scenes without one keep their hash
         for (int k = 0; k < SCENE_PARAM_SLOTS; k++) hash = hash_picture(hash, &assets->fields[i][k].texture);
     }
 

@@ -18,7 +18,7 @@
 /// The files of templates/, embedded.
 extern const SceneBuiltin new_templates[];
 
-/// A template: the file to begin with, and one that it needs, which is written only where there is none.
+/// A template: a scene to begin with, and a file that it needs, which is written only if it does not exist.
 static const struct {
     const char *name, *file, *needs;
 } templates[] = {

@@ -26,7 +26,7 @@ uint32_t glb_put_packed(GlbFile *f, size_t begin, uint32_t count, int width, Glb
 
 bool glb_pack_available(void) { return true; }
 
-/// What meshoptimizer may use: memory that is there, as it ends the program where it gets none.
+/// Memory for meshoptimizer, allocated beforehand: it ends the program when an allocation fails.
 static _Thread_local struct {
     uint8_t *next;
     size_t left;

@@ -285,7 +285,7 @@ static ExitCode row_error(Fit *fit, uint32_t row, double *value) {
     fputc(',', file);
     text_close(file, &line);
 
-    // the line that is there, after the header and the earlier rows
+    // the line noted earlier for this row, behind the header and the earlier rows
     const char *at = fit->noted;
     for (uint32_t i = 0; i <= row && at; i++) {
         at = strchr(at, '\n');

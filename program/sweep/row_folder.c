@@ -59,8 +59,8 @@ ExitCode sweep_check_row(Sweep *sweep, uint32_t row) {
 
     Job job;
 
-    // A plan may come from a stranger and name any file of the user's: only the errors of what is a scene, alone or with
-    // the row's values, are shown, with the lines that they quote
+    // A plan may come from a stranger and name any file of the user's: errors
+    // are shown with the lines that they quote only if the file is a scene, alone or with the row's values
     bool foreign = true;
     for (int with = 0; with < 2 && foreign; with++) {
         SceneMessages messages = {0};

@@ -10,7 +10,7 @@
 //   run/1/vertex/12/345       a vertex of the input in a frame
 //   run/1/stats.csv, events.csv, probes.csv, run.json
 //
-// No path of the file system is made of what is asked: names are those of this list.
+// No path is built from a request: only the names of this list are served.
 #include "view/view.h"
 
 #include <stdio.h>

@@ -133,7 +133,7 @@ static const float (*four_positions(const float (*x)[4], uint32_t i, uint32_t la
     return (const float(*)[4])room;
 }
 
-/// What of the particles [first, last) would burn becomes what there is air for.
+/// Reduces what the particles [first, last) would burn to what their air suffices for.
 static void share_air(BurnJob *job, BurnAirNear *near, uint32_t first, uint32_t last) {
     const float(*x)[4] = (const float(*)[4])job->state->dynamics->position;
     float *gone = job->burn->burn_rate, room[4][4];

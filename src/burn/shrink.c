@@ -11,7 +11,7 @@ static inline void shrink_springs(const BurnJob *job, SingeColour colour, const 
         if (which >> k & 1 && !(flags[s[k]] & SINGE_ALIVE)) which &= ~(1u << k);
     if (!which) return;
 
-    uint32_t at[4]; // one that is there in place of those that may not be
+    uint32_t at[4]; // in place of a missing one the first that exists
     for (unsigned k = 0; k < 4; k++) at[k] = s[which >> k & 1 ? k : (unsigned)__builtin_ctz(which)];
     const Float4 length = target_lengths(&job->shell->springs[colour], at, a, b, thickness);
     for (unsigned k = 0; k < 4; k++)

@@ -40,7 +40,7 @@ static inline void smooth_put(const SmoothPart *part, uint32_t k, const SmoothNo
     else float4s_scatter(part->velocity, part->node + (size_t)k * STRAND_LANES, &it->velocity);
 }
 
-/// The length in springs, up to and with spring k, of what is not gone.
+/// The number of springs in the unbroken run that ends with spring k.
 static inline Lanes smooth_run(const SmoothPart *part, uint32_t k, Lanes run) {
     const Lanes zero = lanes_all(0), weight = lanes_load(part->weight + (size_t)k * STRAND_LANES);
     return lanes_where_less(zero, weight, run + lanes_all(1), zero);

@@ -18,7 +18,7 @@
 #define NEAREST 0.03125f
 enum { HALVINGS = 6 };
 
-/// The level of what is gone, at most.
+/// The level of cells that have burnt away is at most this.
 #define LEVEL_GONE -1e-3f
 
 /// Offsets along the normal are at most this share of the distance to another surface. With what the surface beneath

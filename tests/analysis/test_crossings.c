@@ -147,7 +147,7 @@ static const Case cases[] = {
     {"a hair through", {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1e-40f}, {2, 1, 1e-40f}, {1, 2, 1e-40f}}, true},
 };
 
-/// All orders of the corners and of the two, and the axes exchanged.
+/// The answer is the same for all orders of the corners, for both orders of the triangles, and with exchanged axes.
 static void check_case(const Case *one, int turn) {
     static const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
     float a[3][3], b[3][3];

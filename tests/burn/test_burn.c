@@ -52,7 +52,7 @@ TEST(no_exponent_is_a_straight_line) {
     burning_sheet_free(b);
 }
 
-/// How far the mass is off that heats itself by 2400 K for all that burns, after a second of steps of h:
+/// The error of the mass after a second in steps of h, of a sheet that heats itself by 2400 K when all of it burns:
 /// e = T - T_ign grows as exp(eta mu t).
 static double self_heated(float h) {
     SingeMaterialDef material = plain_material();
@@ -112,8 +112,8 @@ static double exact(double k, double t, double p) {
     return y <= 0 ? 0 : pow(y, 1 / (1 - p));
 }
 
-/// By eq 4 40 g/(m2 s) would burn everywhere: what is within 8 mm of the middle does, and a large sheet burns the 24 for
-/// which its two faces have air, however large its cells are and however it lies. Two threads do the same.
+/// Eq 4 alone would burn 40 g/(m2 s) everywhere. Areas of a radius of 8 mm do so, and a large sheet burns the 24 for which
+/// its two faces have air, whatever the size of its cells and its position. Two threads do the same.
 TEST(a_large_area_burns_what_it_has_air_for) {
     static const struct {
         uint32_t side;

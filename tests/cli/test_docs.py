@@ -110,7 +110,7 @@ class Docs(Case):
         for (material, key, value), changed in zip(rows, resolved[len(names):]):
             with self.subTest(material=material, key=key, value=value):
                 plain = dict(built_in[material])
-                plain.pop("measured", None), changed.pop("measured", None)  # not taken over by what is changed
+                plain.pop("measured", None), changed.pop("measured", None)  # a changed material does not inherit these
                 for one in plain, changed:  # detail and seed of patches are not reported
                     if isinstance(one.get(key), dict) and "noise" in one[key]:
                         one[key] = dict(one[key], noise=one[key]["noise"]["scale"])

@@ -158,7 +158,7 @@ def main():
     shutil.rmtree(folder, ignore_errors=True)
     out = make(singe, folder, ["usd"], "--no-preview")
     root = os.path.join(out, "burn.usda")
-    # what USD prints it prints past Python: standard error is looked at in a file
+    # USD prints past Python, so standard error goes to a file
     saved = os.dup(2)
     with open(os.path.join(folder, "stderr.txt"), "wb+") as log:
         os.dup2(log.fileno(), 2)

@@ -150,7 +150,7 @@ static SingeSim *crowd(const Crowd *crowd, int threads, const SingeAllocator *al
 
 static const CollisionPlan *collision(const SingeSim *sim) { return sim->dynamics->collision; }
 
-/// Gives a simulation lists of other sizes.
+/// Replaces the lists of a simulation by lists of other sizes.
 static void resize(SingeSim *sim, const CollisionSizes *sizes) {
     collision_plan_free(&sim->memory, sim->dynamics->collision);
     assert_int_equal(collision_plan_create_sized(&sim->memory, &sim->shell, &sim->def.contact, sim->def.time_step,

@@ -17,7 +17,7 @@ static void print(char *out, size_t size, const char *format, ...) {
     va_end(list);
 }
 
-/// Prints by both, with a name before and behind, and fails where they differ.
+/// Prints a number by snprintf and by ours, between two names, and fails if the texts differ.
 #define same(format, ...)                                               \
     do {                                                                \
         char ours[700], theirs[700];                                    \

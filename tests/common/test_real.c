@@ -14,7 +14,7 @@ static float angle(float x) { return portable_atan2f(x, -0.7f); }
 static double double_angle(double x) { return atan2(x, (double)-0.7f); }
 static float off(float x) { return nextafterf(portable_expf(x), INFINITY); }
 
-/// How far a float is from what it should be, in units of its last digit.
+/// The error of a float, in units of its last digit.
 static double units(float value, double wanted) {
     float size = fabsf(value);
     return fabs((double)value - wanted) / (double)(nextafterf(size, INFINITY) - size);

@@ -26,7 +26,7 @@ static void hold(Bench *b, const SingeMaterialDef *material, int count, const ui
     bench_prepare(b);
 }
 
-/// Throws what is free about, up to 10 cm.
+/// Displaces all free particles at random, by up to 10 cm.
 static void scatter(Bench *b) {
     for (uint32_t i = 0; i < b->shell.particle_count; i++)
         for (int k = 0; k < 3; k++)
@@ -166,7 +166,7 @@ TEST(up_to_four_sources_are_far_apart) {
     bench_close(&bench);
 }
 
-/// The end of the step before a measurement is due, or of the one in which it is.
+/// Updates the attachments as at the end of a step, for which a measurement may be due.
 static void end_step(Bench *b, uint64_t step) {
     b->state.step = step - 1;
     attach_update(&b->plan->attachments, &b->shell, STATE_INPUT(&b->state), false);

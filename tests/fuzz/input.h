@@ -17,7 +17,7 @@ static inline uint8_t input_byte(Input *input) { return input->at < input->end ?
 /// One of `count` numbers from 0, at most 256.
 static inline unsigned input_pick(Input *input, unsigned count) { return input_byte(input) % count; }
 
-/// True for about one byte in `count`, and never for a byte that is missing.
+/// True for about one in `count` bytes, and false after the last byte.
 static inline bool input_rarely(Input *input, unsigned count) { return input_byte(input) % count == count - 1; }
 
 static inline uint32_t input_word(Input *input) {

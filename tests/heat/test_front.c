@@ -10,7 +10,7 @@ static StripResult burn_strip(float size, float h, const SingeMaterialDef *mater
     StripSetup setup = strip_setup(material);
     StripResult result = {0};
     SingeError error = {0};
-    setup.cell = size, setup.time_step = h, setup.length = 0.08f; // of which the front is looked at from 3 to 7 cm
+    setup.cell = size, setup.time_step = h, setup.length = 0.08f; // the front is measured from 3 to 7 cm
     if (strip_burn(&setup, &result, &error)) fail_msg("%s", error.message);
     return result;
 }

@@ -56,7 +56,7 @@ static void end(Torn *t) {
     assert_int_equal(t->memory.held, 0);
 }
 
-/// Splits a vertex anyhow, if that is possible.
+/// Splits a vertex in some way, if there is one.
 static void tear_somewhere(Torn *t) {
     Fan fan;
     SplitResult result;

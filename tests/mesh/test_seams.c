@@ -107,7 +107,7 @@ typedef struct Edge {
 
 static int by_ends(const void *a, const void *b) { return memcmp(a, b, sizeof(Edge)); }
 
-/// Edges that one triangle alone has once vertices at one position, to the bit, are one.
+/// The number of edges of one triangle alone, after vertices at exactly the same position are merged.
 static int open_edges(const SingeSurface *surface) {
     uint32_t vertices = surface->vertex_count, edges = 3 * surface->triangle_count;
     Position *positions = calloc(vertices, sizeof *positions);

@@ -267,7 +267,7 @@ TEST(wrong_syntax_is_reported) {
     whole("frames: 3\nname: \xff\n", "bad.yaml:2:7", "not text");
 }
 
-/// Everything that a message says, in one text.
+/// All messages as one text.
 static char *printed(const SceneMessages *messages) {
     char *text = NULL;
     size_t size = 0;

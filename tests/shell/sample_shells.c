@@ -48,7 +48,7 @@ static uint32_t vertex_at(QuadMesh *mesh, double x, double y, double z) {
     return mesh->vertex_count - 1;
 }
 
-/// Adds n x n cells over the quad with the given corners, sharing vertices with what is there.
+/// Adds n x n cells over the quad with the given corners, sharing vertices with the cells that exist.
 static void add_patch(QuadMesh *mesh, const double corner[4][3], uint32_t n) {
     for (uint32_t j = 0; j < n; j++) {
         for (uint32_t i = 0; i < n; i++) {

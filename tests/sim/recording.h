@@ -40,7 +40,7 @@ static inline uint64_t tape_number(const uint8_t *bytes, int size) {
     return number;
 }
 
-/// The n-th record of a kind, from 0; where it begins, or the size if there is none.
+/// The offset of the n-th record of a kind, from 0; the size of the recording if there is none.
 static inline size_t tape_find(const Tape *tape, int kind, int n) {
     size_t at = HEADER;
     while (at + HEAD <= tape->size) {

@@ -287,7 +287,7 @@ TEST(forged_snapshots_are_refused) {
     free(good.data);
 }
 
-/// Makes the first cell intersect one that is not there.
+/// Lets the first cell intersect a cell that does not exist.
 static void one_crossing(Memory *memory, CollisionPlan *plan) {
     assert_true(initial_reserve(memory, plan, 1));
     plan->initial_other[0] = plan->cell_count;

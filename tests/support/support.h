@@ -101,7 +101,7 @@ typedef struct TestAllocator {
     long blocks; ///< now held
     size_t bytes, peak;
     size_t largest; ///< block asked for so far
-    long faults;    ///< wrong old sizes, and frees of what is not a block
+    long faults;    ///< calls with a wrong old size, or with a pointer to no block
 } TestAllocator;
 
 /// `allocator` is then its context.

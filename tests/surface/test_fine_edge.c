@@ -135,7 +135,7 @@ TEST(edges_are_eaten_by_a_length) {
     assert_float_equal(lost[2] / lost[0], 1, 0.02);
 }
 
-/// Whether a pixel of the raster within `reach` of (x, y) is covered, or is not, as wanted.
+/// Whether some pixel of the raster within `reach` of (x, y) is covered, or uncovered, as wanted.
 static bool near_one_that_is(const uint8_t *raster, bool wanted, int size, int x, int y, int reach) {
     for (int j = y - reach; j <= y + reach; j++)
         for (int i = x - reach; i <= x + reach; i++)

@@ -522,7 +522,7 @@ TEST(flaws_of_meshes_are_counted) {
     garment_free(g);
 }
 
-/// Through the public call: after the commit, to a sheet that there is.
+/// The public call works after the commit, and on sheets that exist.
 TEST(simulations_draw_meshes) {
     SingeSimDef def = singe_default_sim();
     TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);

@@ -520,7 +520,7 @@ TEST(nothing_is_weaker_than_what_is_skipped) {
             print_message("%s%s: %.4f N/m, skipped below %.4f\n", wet ? "wet, " : "", ash ? "with ash" : "char", least,
                           plan->safe_ash);
             assert_true(least >= plan->safe_ash * (1 - 1e-5f));
-            assert_true(least < plan->safe_ash * 1.01f); // and no lower: what is looked at costs time
+            assert_true(least < plan->safe_ash * 1.01f); // and no lower: each vertex that is examined costs time
             singe_sim_destroy(sim);
         }
 }

@@ -149,7 +149,7 @@ FAILING(int, renameat, (int from_folder, const char *from, int to_folder, const 
 FAILING(int, linkat, (int from_folder, const char *from, int to_folder, const char *to, int flags),
         (from_folder, from, to_folder, to, flags), RENAME, -1)
 
-/// Pipes between processes do not fill as disks do, and are none of what is counted.
+/// Pipes between processes cannot be full as disks can, so writes to them are not counted.
 static bool is_pipe(int file) {
     const int reason = errno;
     const bool seeks = lseek(file, 0, SEEK_CUR) >= 0;

@@ -193,7 +193,7 @@ def exit_faults(trial, done, expected):
 
 
 def is_shorter_video(data, left):
-    """Of the first frames, by our ffmpeg: a run that ends early has a video of what is done."""
+    """Whether the video has the first frames only: a run that ends early makes one of the frames it has."""
     pictures = [left[name] for name in sorted(left) if name.startswith("frames/") and name.endswith(".png")]
     return any(data == b"".join(pictures[:count]) for count in range(1, len(pictures) + 1))
 

@@ -157,7 +157,7 @@ def _words(scene):
 
 def inputs(folder):
     """The names of the files beside burn.yaml that a burn has written for the program to read: those that its scene
-    names, or the scene of a run that is there."""
+    names, or those of the scene of an earlier run in this folder."""
     scenes = [_object(os.path.join(folder, SCENE), len(MARK)),
               *(_scene_of(os.path.join(folder, part)) for part in (CACHE, EARLIER))]
     lists, found = [(_words(scene), _frames_of(scene)) for scene in scenes], set()
