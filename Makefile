@@ -1,5 +1,5 @@
 # make            builds Singe into build/
-# make demo       installs what it needs (Debian, Ubuntu), builds the command, burns the note and prints where its video is
+# make demo       installs what it needs (Debian, Ubuntu), builds the command, burns the note and prints its video's path
 # make test       builds and runs the unit tests; PRESET=dev: with assertions
 # make check      installs what it needs, builds everything and runs the tests
 # make pictures   draws the pictures of the documentation again, after make build
@@ -14,8 +14,10 @@ PRESET ?= release
 HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
-.PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check check-examples gate \
-        site check-clients check-godot check-unity check-unreal check-blender check-farm check-packages check-platforms web web-serve web-pictures web-speed check-web check-web-size check-web-core check-web-examples torture mutations coverage fuzz-long soak pictures bench-peers clean
+.PHONY: all web-package build build-asan build-fuzz build-shared build-tsan configure demo test check \
+        check-examples gate site check-clients check-godot check-unity check-unreal check-blender check-farm \
+        check-packages check-platforms web web-serve web-pictures web-speed check-web check-web-size \
+        check-web-core check-web-examples torture mutations coverage fuzz-long soak pictures bench-peers clean
 
 all: build
 
@@ -44,7 +46,8 @@ build-tsan:
 	cmake --preset tsan
 	cmake --build --preset tsan --target threaded_tests
 
-# Smaller pictures, without lens and shutter, which would take most of the time. `singe render out/note` draws them whole.
+# Smaller pictures, without lens and shutter, which would take most of the time. `singe render out/note` draws them
+# whole.
 DEMO_LOOK = --set preview.size=[640,360] --set preview.camera.aperture=0 --set preview.shutter=0 --set preview.samples=13
 
 demo:
@@ -79,7 +82,8 @@ check-examples: build
 gate: build
 	tests/gate/gate.py --singe build/singe --folder build/gate --least 209 --failed 0
 
-# installs other programs into build/clients, and checks that they read the output of a burn; docs/usd.md and others have the table
+# installs other programs into build/clients, and checks that they read the output of a burn; docs/usd.md and others
+# have the table
 check-clients: build
 	tests/clients/check.sh build/singe build/clients
 
@@ -127,7 +131,8 @@ web-package:
 web-serve: web
 	cd web && node serve.mjs
 
-# tests the page in Chromium and measures its speed; views a burn by `singe view` in Chromium and Firefox, and in JupyterLab
+# tests the page in Chromium and measures its speed; views a burn by `singe view` in Chromium and Firefox, and in
+# JupyterLab
 check-web: web
 	cmake --preset release
 	cmake --build --preset release --target singe_program singe_python
@@ -143,13 +148,14 @@ check-web: web
 	cd web && SINGE_PROGRAM=$(CURDIR)/build/singe SINGE_LIBRARY=$(CURDIR)/build/python/singe/libsinge.so \
 	    PYTHONPATH=$(CURDIR)/bindings/python node tests/jupyterlab.mjs ../build/notebook/bin/python ../build/notebook/run
 
-# the page's size, and its speed in Chromium; with CACHE, a large one, that of `singe view` as well, which needs build/singe
+# the page's size, and its speed in Chromium; with CACHE, a large one, that of `singe view` as well, which needs
+# build/singe
 web-speed: web
 	cd web && ONLY=speed node tests/check.mjs
 	[ -z "$(CACHE)" ] || node web/tests/large.mjs $(CACHE)
 
-# pictures of the page for docs/web.md, its first minute among them, into build/web-pictures; with CACHE=out/letter those of
-# docs/view.md as well, which need build/singe
+# pictures of the page for docs/web.md, its first minute among them, into build/web-pictures; with CACHE=out/letter
+# those of docs/view.md as well, which need build/singe
 web-pictures: web
 	cd web && ONLY="first minute|letter burns by itself|each scene|axe" node tests/check.mjs --pictures ../build/web-pictures
 	cd build/web-pictures && for name in letter settings; do ffmpeg -y -loglevel error -i $$name.png -q:v 3 web-$$name.jpg; done
@@ -163,8 +169,9 @@ web-pictures: web
 	    -i small-ember.png -i small-curtain.png -filter_complex "[0][1][2]hstack=3[u];[3][4][5]hstack=3[v];[u][v]vstack,scale=1500:-1" \
 	    -quality 82 web-scenes.webp
 
-# the documentation as a site in build/site/html, with references made from the headers and the docstrings: needs doxygen;
-# Sphinx is installed into build/site. Warnings and dead links are errors. Where `make web` was run, its page is inside
+# the documentation as a site in build/site/html, with references made from the headers and the docstrings: needs
+# doxygen; Sphinx is installed into build/site. Warnings and dead links are errors. Where `make web` was run, its page
+# is inside
 site:
 	cmake --preset release
 	cmake --build --preset release --target singe_python

@@ -176,7 +176,8 @@ static void print_summary(Run *run) {
     if (run->strained)
         console_warn(
             run->console,
-            "in frame %d one edge in a hundred is strained by %.0f %% or more (strain_p99): the sheets move too fast, are pulled too hard, or are too soft; `singe verify` counts edges of twice their length",
+            "in frame %d one edge in a hundred is strained by %.0f %% or more (strain_p99): the sheets move too fast, are "
+            "pulled too hard, or are too soft; `singe verify` counts edges of twice their length",
             run->strained, 100 * run->strain);
 
     const double frames = record->frames_done > 0 ? record->frames_done : 1;
