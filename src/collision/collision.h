@@ -38,10 +38,8 @@ void collision_plan_restore(Memory *memory, CollisionPlan *plan, const Shell *sh
 /// Must be called when the corners of cells have changed.
 void collision_plan_forget(CollisionPlan *plan);
 
-/// In how many parts a step of h seconds is to be taken, so that none moves layers through many others: 1 for all but
-/// storms.
-int collision_parts(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
-                    const DynamicsState *dynamics);
+/// In how many parts the next step is to be taken, so that none moves layers through many others: 1 for all but storms.
+int collision_parts(const CollisionPlan *plan);
 
 /// Opens a step or, if h is less than the time step, a part of one, whose particles are at `dynamics`, the inverse masses
 /// in place; `first`: no part of this step has gone before. SINGE_ERROR_MEMORY, as ccd_apply: where sheets crowd, lists

@@ -246,46 +246,6 @@ static void keep_repulsion(void *context, const void *item, uint32_t number) {
     memcpy(&plan->repulsions[plan->stripe_count > 0 ? plan->active[number] : number], item, sizeof(Repulsion));
 }
 
-/// A step has parts from PARTS_FROM on, as many as leave PARTS_MOTION for each, up to COLLISION_PARTS. The numbers are the
-/// mean, over the cells of the block where that is largest, of a corner's motion relative to the cell's mean, over its
-/// distance from the centroid. It stays below .05 in folds and heaps, and is .3 to 1 where 15 m/s of wind shake cells of
-/// 2 mm 240 times a second: then layers pass through dozens of others in a step, and what CCD makes of that is far too
-/// long. A mean, because a few cells at a burnt edge that tremble must not decide for all: substeps of another length
-/// leave another strain, so that each change of the parts shakes the whole sheet.
-#define PARTS_FROM 0.15f
-#define PARTS_MOTION 0.075f
-
-/// Sum of cells' relative motions, in a second.
-static double motion_sum(void *task, int begin, int end) {
-    const Opening *job = task;
-    double sum = 0;
-    for (int c = begin; c < end; c++) {
-        if (!(job->cell_flags[c] & SINGE_ALIVE)) continue;
-        Float4 speed[4];
-        for (int i = 0; i < 4; i++) speed[i] = float4_load(job->dynamics->velocity[job->shell->cells[c][i]]);
-        sum += (double)(collision_mean(speed)[3] / job->plan->rest[c][3]);
-    }
-
-    return sum;
-}
-
-int collision_parts(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
-                    const DynamicsState *dynamics) {
-    Opening job = {plan, shell, dynamics, state->ablate->cell_flags, false, false};
-    double largest = 0;
-    pool_sum(pool, (int)plan->cell_count, motion_sum, &job, plan->partial);
-    for (int block = 0; block < pool_blocks((int)plan->cell_count); block++)
-        largest = double_max(largest, plan->partial[block]);
-
-    const float cells = plan->cell_count < POOL_BLOCK ? (float)plan->cell_count : POOL_BLOCK;
-    const float motion = h * (float)largest / cells;
-    const int least = plan->restless < 2 ? 1 : (int)(plan->restless / 2);
-    if (!(motion >= PARTS_FROM)) return least;
-
-    const int parts = motion < COLLISION_PARTS * PARTS_MOTION ? (int)ceilf(motion / PARTS_MOTION) : COLLISION_PARTS;
-    return parts > least ? parts : least;
-}
-
 static SingeResult open_step(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state,
                              Pool *pool, const DynamicsState *dynamics) {
     const bool part = plan->h < plan->time_step;

@@ -293,6 +293,8 @@ void collision_plan_forget(CollisionPlan *plan) {
     plan->closed = false;
 }
 
+int collision_parts(const CollisionPlan *plan) { return plan->restless < 2 ? 1 : (int)(plan->restless / 2); }
+
 CollisionCounters collision_counters(const CollisionPlan *plan) { return plan->counters; }
 
 // ---- growth

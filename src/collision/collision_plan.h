@@ -138,7 +138,7 @@ struct CollisionPlan {
     // the last search: part of a snapshot
     uint32_t searched; ///< 0: never
     /// 1: many cells have left their boxes since: search as the next step opens. More, up to 2 COLLISION_PARTS: so too,
-    /// by velocities, and that step has half as many parts at least
+    /// by velocities, and that step has half as many parts
     uint32_t restless;
     uint32_t steps_most;  ///< max steps of it, from what the search before it has served: at most COLLISION_STEPS
     uint32_t narrowed;    ///< how often it has halved the slack, less than COLLISION_TRIALS

@@ -22,7 +22,6 @@
 #define collision_clearance COLLISION_AT(collision_clearance)
 #define collision_is_listed COLLISION_AT(collision_is_listed)
 #define collision_open COLLISION_AT(collision_open)
-#define collision_parts COLLISION_AT(collision_parts)
 #define feature_from_segment COLLISION_AT(feature_from_segment)
 #define feature_from_triangle COLLISION_AT(feature_from_triangle)
 #define feature_is_apart COLLISION_AT(feature_is_apart)

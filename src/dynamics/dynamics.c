@@ -253,8 +253,7 @@ static SingeResult dynamics_parts(Memory *memory, DynamicsPlan *plan, const Step
                                   DynamicsState *dynamics, DynamicsCounters *counters) {
     const StateInput *state = &context->state;
     const bool parts = plan->collision && plan->solver->takes_parts;
-    const int count =
-        parts ? collision_parts(plan->collision, context->shell, state, context->pool, context->h, dynamics) : 1;
+    const int count = parts ? collision_parts(plan->collision) : 1;
     StepContext part = *context;
     part.h = context->h / (float)count;
     for (int k = 0; k < count; k++) {
