@@ -305,8 +305,8 @@ typedef struct SingeSolverDef {
     /// strand: yes: bending is the same in all directions of the mesh, for what drapes or curls and, with substeps: 0
     /// and curvature_max of 130 1/m for cells of 2 mm, folds off the mesh; no: softest along the diagonals
     bool isotropic;
-    /// 0 to 0.5; strand: a substep starts with this share of what the springs moved each node in the last one; 0.4 cuts
-    /// the strain of sheets that hang, swing or drape by a third, or saves a fifth of their substeps
+    /// 0 to 0.65; strand: a substep starts with this share of what steady springs move each node; 0.6 halves the strain
+    /// of sheets that hang, swing or drape, or saves a third of their substeps
     float start;
 } SingeSolverDef;
 

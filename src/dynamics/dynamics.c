@@ -52,7 +52,8 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     const bool done =
         NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->normal, plan->particle_count) &&
         NEW(memory, plan->air, plan->particle_count) && NEW(memory, plan->predicted, plan->particle_count) &&
-        (solver->start == 0 || NEW(memory, plan->start, plan->particle_count)) &&
+        (solver->start == 0 ||
+         (NEW(memory, plan->start, plan->particle_count) && NEW(memory, plan->given, plan->particle_count))) &&
         NEW(memory, plan->soft, plan->particle_count) && NEW(memory, plan->cell_normal, plan->cell_count) &&
         NEW(memory, plan->height_wait, height_wait_count(shell)) &&
         NEW(memory, plan->colliders, plan->collider_capacity) && NEW(memory, plan->partial, plan_partials(shell)) &&
@@ -81,6 +82,7 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) 
     FREE(memory, plan->air, plan->particle_count);
     FREE(memory, plan->predicted, plan->particle_count);
     if (plan->start) FREE(memory, plan->start, plan->particle_count);
+    if (plan->given) FREE(memory, plan->given, plan->particle_count);
     FREE(memory, plan->soft, plan->particle_count);
     FREE(memory, plan->cell_normal, plan->cell_count);
     FREE(memory, plan->height_wait, height_wait_count(shell));

@@ -99,7 +99,8 @@ struct DynamicsPlan {
     float (*normal)[4];    ///< unit; fourth: 1/m, k of the quadratic drag, dv/dt = -k |v_n| v_n
     float (*air)[4];       ///< m/s, the wind there; fourth: 1/s, damping
     float (*predicted)[4]; ///< m, x~ of eq 9
-    float (*start)[4];     ///< m, s (x - x~) of move.c; NULL: none
+    float (*start)[4];     ///< m, s of move.c; NULL: none
+    float (*given)[4];     ///< m, g of move.c; NULL without a start
     const Kernels *kernels;
     float *soft;     ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
     Strands strands; ///< of the strand solver

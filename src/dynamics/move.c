@@ -7,16 +7,22 @@
 //
 //   v~ = v + h F_ext / m,   x~ = x + h v~
 //
-// in vectors (move_kernel.h), and attachments hold it. Strands begin at x~ + s (x - x~)', with the displacement that they
-// gave the particle in the substep before and the solver's `start` s: forces change little from one substep to the next,
-// so strands have less to correct, and leave less strain. Contact, which only pushes, is not in it; eq 13 is as before.
-// Where the displacement turns back, which is no force, there is hardly a start. F_ext: gravity, and quadratic drag on the
+// in vectors (move_kernel.h), and attachments hold it. Strands begin at x~ + s: forces change little from one substep to
+// the next, so strands have less to correct, and leave less strain. With what they gave in the last two substeps,
+//
+//   s = 2 b g' + b^2 g'',   g' = (x^ - x~ - s)'
+//
+// a steady force is g (1 + b)^2, and the solver's `start` 1 - 1/(1 + b)^2 of it. The force comes 2 b/(1 + b) substeps late,
+// less than the one by which eq 8 and 9 damp, for b < 1. Contact, which only pushes, is not in it; eq 13 is as before.
+// Where s turns a displacement back, which is no force, there is hardly a start. F_ext: gravity, and quadratic drag on the
 // normal velocity relative to the air, taken implicitly (v_n <- v_n / (1 + h k |v_n|)), so that no time step makes it
 // overshoot.
 // Damping: v <- v / (1 + h d).
 //
 // The fourth component: of a position, the inverse mass, which its prediction repeats; of a velocity, 0.
 #include "dynamics/dynamics_plan.h"
+
+#include <math.h>
 
 typedef struct Move {
     DynamicsPlan *plan;
@@ -27,6 +33,16 @@ typedef struct Move {
     float h;
     MoveLanes lanes;
 } Move;
+
+/// Starts, where the solver has a `start`.
+static void move_starts(const DynamicsPlan *plan, MoveLanes *lanes) {
+    if (!plan->start) return;
+    const float beta = 1 / sqrtf(1 - plan->settings.solver.start) - 1;
+    lanes->start = plan->start[0];
+    lanes->given = plan->given[0];
+    lanes->share = 2 * beta;
+    lanes->share_before = beta * beta;
+}
 
 /// A block of particles stays in the cache during all of this.
 static double move_block(void *task, int begin, int end) {
@@ -50,8 +66,6 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
                             .predicted = plan->predicted[0],
                             .normal = plan->normal[0],
                             .air = plan->air[0],
-                            .start = plan->start ? plan->start[0] : NULL,
-                            .share = plan->start ? plan->settings.solver.start : 0,
                             .kept = dynamics_keeps_start(plan, between->collider_count),
                             .h = h,
                             .inverse_h = 1 / h,
@@ -59,6 +73,7 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
                             .fall = {h * gravity[0], h * gravity[1], h * gravity[2], 0},
                             .drags = plan->settings.air_density != 0 && (drag.mask != 0 || field_at(drag, 0) != 0),
                             .damps = damping.mask != 0};
+    move_starts(plan, &job.lanes);
     if (between->attaches) attach_position(&plan->attachments, shell, dynamics);
     return (uint64_t)pool_sum(pool, (int)shell->particle_count, move_block, &job, plan->partial);
 }
@@ -70,10 +85,8 @@ static void keep_block(void *task, int begin, int end) {
 
 void dynamics_keep_start(DynamicsPlan *plan, Pool *pool, DynamicsState *dynamics) {
     Move job = {.plan = plan};
-    job.lanes = (MoveLanes){.position = dynamics->position[0],
-                            .predicted = plan->predicted[0],
-                            .start = plan->start[0],
-                            .share = plan->settings.solver.start};
+    job.lanes = (MoveLanes){.position = dynamics->position[0], .predicted = plan->predicted[0]};
+    move_starts(plan, &job.lanes);
     pool_for(pool, (int)plan->particle_count, POOL_BLOCK, keep_block, &job);
 }
 

@@ -12,7 +12,9 @@ typedef struct MoveLanes {
     const float *normal; ///< unit; fourth: 1/m, k of the quadratic drag
     const float *air;    ///< m/s; fourth: 1/s, damping
     float *start;        ///< m, what the next prediction adds; not used where `share` is 0
-    float share;         ///< of what strands have moved a particle, for its start
+    float *given;        ///< m, what the last projection has added to its start
+    float share;         ///< of what this projection has added, for the next start, ...
+    float share_before;  ///< ... and of what the one before had added
     float h, inverse_h;  ///< s, 1/s
     float keep;          ///< share of the velocity that damping leaves, where it is the same for all
     float fall[4];       ///< m/s, of gravity in a substep; fourth: 0

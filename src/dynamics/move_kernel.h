@@ -3,13 +3,22 @@
 // whole quadruples, and their particles never mix: all instruction sets give the same bytes.
 #include "dynamics/move.h"
 
-/// The start that a change by the strands gives, which is kept: hardly any where that turns back.
+/// The start that a change by the strands gives, which is kept: hardly any where it turns that back.
 static inline Lanes move_start(const MoveLanes *job, size_t i, Lanes change) {
     if (job->kept) return lanes_load(job->start + i);
-    const Lanes along = lanes_sums(change * lanes_load(job->start + i)), start = change * lanes_all(job->share);
+    const Lanes given = change - lanes_load(job->start + i);
+    const Lanes start = given * lanes_all(job->share) + lanes_load(job->given + i) * lanes_all(job->share_before);
+    const Lanes along = lanes_sums(change * start);
     const Lanes kept = lanes_where_less(along, lanes_all(0), start * lanes_all(0x1p-10f), start);
+    lanes_store(job->given + i, given);
     lanes_store(job->start + i, kept);
     return kept;
+}
+
+/// A step begins without one.
+static inline void move_start_clear(const MoveLanes *job, size_t i) {
+    lanes_store(job->given + i, lanes_all(0));
+    lanes_store(job->start + i, lanes_all(0));
 }
 
 /// Quadruples from number i on, which is that of the first one times four.
@@ -39,7 +48,7 @@ static inline void move_lanes(const MoveLanes *job, size_t i, bool closes, bool 
         point = point + h * velocity;
         Lanes moved = point;
         if (starts && closes) moved += move_start(job, i, old_point - old_predicted);
-        else if (starts) lanes_store(job->start + i, zero);
+        else if (starts) move_start_clear(job, i);
         lanes_store(job->position + i, lanes_where_less(zero, mass, moved, old_point));
         lanes_store(job->predicted + i, lanes_where_less(zero, mass, point, old_predicted));
     }
