@@ -76,7 +76,7 @@ def run_singe(singe, cells):
     done = subprocess.run([singe, "bench", "swing", "--cells", str(cells), "--thickness", "1", "--json"],
                           capture_output=True, text=True, check=True)
     row = json.loads(done.stdout)["rows"][0]
-    return ("Singe, 48 substeps", row["cpu_ms"], row["blue_pct_max"], row["blue_pct_p99"], row["blue_pct_mean"],
+    return ("Singe, 38 substeps", row["cpu_ms"], row["blue_pct_max"], row["blue_pct_p99"], row["blue_pct_mean"],
             row["off_cm"])
 
 
