@@ -43,7 +43,10 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
                 starved = (a->starved + b->starved + c->starved) / 3;
     const float line = overlap > 0 ? ember_activity(rate) * overlap / maxf(high - low, 2 * half) : 0;
     const float leaf = ember_leaf(rate - flaming, starved, (a->burn + b->burn + c->burn) / 3);
-    const float glowing = cloth_weave(preview, a->sheet) ? CLOTH_LIT * leaf : line + LEAF_LIT * leaf;
+    const float border = expf(-(a->edge + b->edge + c->edge) / (3 * LEAF_BORDER));
+    const float alone = ember_activity(rate - flaming), lit = mixf(LEAF_LIT, LEAF_BORDER_LIT, border);
+    const float glowing =
+        cloth_weave(preview, a->sheet) ? CLOTH_LIT * leaf : line + lit * mixf(alone, leaf, LEAF_FED_LIT);
     if (glowing <= 0) return;
 
     Float3 pa = float3_load(scene->positions[t[0]]), pb = float3_load(scene->positions[t[1]]),

@@ -170,26 +170,26 @@ static void measure(Preview *preview) {
     }
 }
 
-/// The distance from the border of a piece, along sides of triangles, on woven sheets.
+/// The distance from the border of a piece, along sides of triangles, on what burns of a sheet.
 static void find_edges(const Preview *preview) {
     const PreviewScene *scene = &preview->scene;
-    bool woven = false;
+    bool burns = false;
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
         PaperVertex *v = &scene->vertices[i];
         const Weave *weave = cloth_weave(preview, v->sheet);
-        v->edge = weave && v->rim < 0.5f ? CLOTH_EDGE * weave->pitch : 0;
-        woven = woven || weave;
+        v->edge = v->rim >= 0.5f ? 0 : weave ? CLOTH_EDGE * weave->pitch : PAPER_EDGE;
+        burns = burns || v->burn >= BURNT_EDGE;
     }
 
-    // forwards and backwards by turns; only burnt cloth has loose threads
-    bool changes = woven;
+    // forwards and backwards by turns; only what is burnt has loose threads, embers and ash
+    bool changes = burns;
     const uint32_t sides = 3 * scene->triangle_count;
     for (uint32_t pass = 0; changes; pass++) {
         changes = false;
         for (uint32_t i = 0; i < sides; i++) {
             const uint32_t k = pass & 1 ? sides - 1 - i : i, *t = scene->triangles[k / 3];
             PaperVertex *a = &scene->vertices[t[k % 3]], *b = &scene->vertices[t[(k + 1) % 3]];
-            if (maxf(a->burn, b->burn) < 0.5f * PAPER_WHOLE || fabsf(a->edge - b->edge) < 1e-6f) continue;
+            if (maxf(a->burn, b->burn) < BURNT_EDGE || fabsf(a->edge - b->edge) < 1e-6f) continue;
             Float3 side = float3_sub(float3_load(a->rest), float3_load(b->rest));
             PaperVertex *far = a->edge > b->edge ? a : b, *near = a->edge > b->edge ? b : a;
             float edge = near->edge + float3_length(side);

@@ -35,10 +35,13 @@ typedef struct PaperVertex {
     int32_t piece;
     float water; ///< over the mass before it burns
     float bent;  ///< 1/m, how much its normals differ from its neighbours'
-    float edge;  ///< m at rest, to the nearest border of a piece, on woven sheets: at most CLOTH_EDGE threads
+    float
+        edge; ///< m at rest, to the nearest border of a piece where it burns: at most PAPER_EDGE, or CLOTH_EDGE threads
 } PaperVertex;
 
+#define PAPER_EDGE 0.018f ///< m
 #define CLOTH_EDGE 24.0f
+#define BURNT_EDGE 0.175f ///< the burn value from which `edge` is counted
 #define CLOTH_WARM 293.5f ///< K, peak above which cloth may yellow
 
 /// The interpolated fields that determine the appearance of a hit.
@@ -50,7 +53,7 @@ typedef struct PaperState {
     float age;     ///< s of the fire's real time since ignition; 0: not yet
     int32_t sheet, piece;
     float water; ///< over the mass before it burns
-    float edge;  ///< m, of woven sheets
+    float edge;  ///< m, to the nearest border of a piece, at most PAPER_EDGE or CLOTH_EDGE threads
 } PaperState;
 
 /// The sheet's fields at a point in a triangle.
@@ -113,9 +116,12 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 
 #define EMBER_WIDTH 0.00042f ///< m, of the glowing line
 #define EMBER_GAIN 3.4f
-#define EMBER_MOST 6.0f  ///< radiance of the brightest channel, which none reaches
-#define LEAF_LIT 0.1f    ///< a leaf's mean radiance, of one that glows all over at its temperature
-#define CLOTH_LIT 0.027f ///< the same of cloth
+#define EMBER_MOST 6.0f       ///< radiance of the brightest channel, which none reaches
+#define LEAF_LIT 0.03f        ///< a leaf's mean radiance, of one that glows all over at its temperature
+#define LEAF_BORDER_LIT 0.21f ///< the same along its border
+#define LEAF_FED_LIT 0.35f    ///< of that, what is left where it feeds a flame
+#define LEAF_BORDER 0.003f    ///< m
+#define CLOTH_LIT 0.027f      ///< the same of cloth
 
 /// The glowing skin is hotter than the simulation's mean over the sheet's thickness.
 static inline float ember_temperature(float mean) { return mean + 110; }

@@ -110,6 +110,17 @@ static float ash_amount(const Bent *bent) {
     return stepf(0.78f, 0.94f, bent->burn + 0.06f * bent->coarse) * (1 - 0.75f * stepf(760, 1000, bent->temperature));
 }
 
+/// The share of its outermost triangles that a border of burnt paper has lost: it crumbles, so that straight cuts are ragged.
+static float border_bite(float burn, const Bent *bent) {
+    const float bite = 0.40f + 0.38f * bent->medium + 0.20f * bent->fine + 0.28f * bent->coarse;
+    return stepf(PAPER_WHOLE, 0.65f, burn) * clampf(bite, 0, 0.85f);
+}
+
+/// The distance to the ragged border, m.
+static float border_distance(const PaperState *state, const Bent *bent) {
+    return maxf(state->edge - border_bite(state->burn, bent) * minf(state->spacing, 2.5e-3f), 0);
+}
+
 /// How near a border of a piece is: 1 on it, 0 `width` m away and in triangles that do not reach it, uneven.
 static float near_border(const PaperState *state, const Bent *bent, float width) {
     const float distance = (1 - state->rim) * state->spacing;
@@ -198,14 +209,14 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 
 #define EMBER_HOT 1180.0f ///< K
 
-/// Of a leaf's glow: what is neither thread nor speck, and these.
-#define LEAF_DULL 0.75f
-#define LEAF_THREADS 0.9f
-#define LEAF_SPECKS 0.35f
-#define LEAF_COOLER 180.0f ///< K, how much cooler it is than these
-#define LEAF_BRIGHT 1.25f
-#define LEAF_DIM 120.0f      ///< K, how much cooler a thread's sides are
-#define LEAF_CORE 120.0f     ///< K, how much hotter its core is
+/// Of a leaf's glow.
+#define LEAF_SPREAD 1.35f
+#define LEAF_STARVES 0.2f ///< how much less of it is alive below a flame
+#define LEAF_DULL 1.7f
+#define LEAF_COOLER 150.0f ///< K, how much cooler it is between coals
+#define LEAF_BRIGHT 1.4f
+#define LEAF_DIM 150.0f      ///< K, how much cooler a coal's sides are
+#define LEAF_CORE 130.0f     ///< K, how much hotter its core is
 #define STARVED_COOLER 90.0f ///< K, how much cooler threads and border of char below a flame are
 #define STARVED_BORDER 0.42f ///< the burn value of its line
 
@@ -223,6 +234,13 @@ float ember_air(const Preview *preview, Float3 p) {
 static float ember_seen(float temperature) {
     const float above = maxf(temperature - EMBER_HOT, 0), most = 160;
     return temperature - above + above * most / (above + most);
+}
+
+/// Noise of threads .4 mm wide and some millimetres long, whose direction wanders over the sheet, [-1, 1].
+static float ember_fibre(const Bent *bent, float footprint) {
+    Float3 p = bent->position;
+    const float wander = 1.7f * noise3(float3_scale(p, 70), 65), c = cosf(wander), s = sinf(wander);
+    return paper_noise(float3(0.25f * (c * p.x + s * p.y), c * p.y - s * p.x, p.z), 0.5f, footprint, 66);
 }
 
 /// Activity of the line at a point, 0 (dead) to 1.
@@ -273,39 +291,45 @@ static Float3 border_glow(const Preview *preview, const PaperState *state, const
     return float3_scale(blackbody_glow(preview->blackbody, 1090 - 22 * state->age + 50 * bent->fine), 2.5f * strength);
 }
 
-/// A leaf of char that glows away, at its own temperature. The simulation spreads its heat over a cell or two. Real embers
-/// are specks, and threads that creep over black char: here lines where noise that drifts in time changes sign, in several
-/// sizes. Between them the glow is dull. A thread narrower than a pixel is drawn a pixel wide and paler. Char that still
-/// feeds a flame glows in threads only, and along its border, where air comes to it.
+/// How much of a leaf glows at a point, 0 to 1. It is most where air comes to it, along its border, and fades over a
+/// centimetre; within, patches creep: each is brightest at its front, where a phase that grows in time passes a whole number,
+/// and fades behind it. Most of a border and of a leaf is dead at any time, for one to three centimetres.
+static float leaf_alive(const Preview *preview, const PaperState *state, const Bent *bent, float patch) {
+    const float t = seconds(preview), border = 1e3f * border_distance(state, bent); // mm
+    Float3 p = float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 0.5e-3f);
+    const float stretch = noise3(float3_mad(float3(0.05f * t, -0.08f * t, 0.11f * t), p, 1 / 17e-3f), 61);
+    const float rim = stepf(-0.35f, 0.4f, stretch + 0.3f * patch);
+    const float behind = rim * expf(-border / (1 + 4 * rim));
+
+    const float creeps = stepf(-0.1f, 0.5f, 0.35f * patch - stretch);
+    if (creeps <= 0) return behind;
+    const float phase = 1.9f * noise3(float3_mad(float3(0, 0.04f * t, 0), p, 1 / 24e-3f), 63) +
+                        0.6f * noise3(float3_scale(p, 1 / 7e-3f), 64) + 0.11f * t;
+    const float since = phase - floorf(phase);
+    return maxf(behind, 0.8f * creeps * stepf(0, 0.16f, since) * expf(-2.6f * since));
+}
+
+/// A leaf of char that glows away, at its own temperature, which the simulation spreads over a cell or two. Where much of it
+/// is alive it is yellow all over; where less is, coals and threads are left of that, orange in dull red, and then black char.
+/// Char that still feeds a flame, which takes the air, glows along its border and its own front only.
 static Float3 leaf_glow(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
-    enum { SIZES = 4 };
-    static const float size[SIZES] = {24e-3f, 9e-3f, 4e-3f, 1.7e-3f}; // m
-    static const float thick[SIZES] = {0.5e-3f, 0.22e-3f, 0.16e-3f, 0.14e-3f}, weight[SIZES] = {1, 1, 0.9f, 0.6f};
     const float alone = ember_activity(state->glowing), starved = ember_starved(state->starved, bent->burn, alone);
     const float activity = alone + starved;
     if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
 
-    const float life = line_life(preview, bent) * minf(air, 1.2f), t = seconds(preview);
-    Float3 bowed = float3_mad(bent->position, float3(bent->fine, bent->medium, bent->coarse), 0.7e-3f);
-    float thread = 0;
-    for (uint32_t k = 0; k < SIZES && life > 0; k++) {
-        const float n = noise3(float3_mad(float3(0, 0, (0.35f + 0.2f * (float)k) * t), bowed, 1 / size[k]), 61 + k);
-        const float width = thick[k] * (0.4f + 0.9f * life) / size[k], seen = maxf(width, 0.5f * footprint / size[k]);
-        thread += weight[k] * width / seen * ridge(n, 2 * seen);
-    }
-
-    float border = near_border(state, bent, 0.8e-3f) * (0.25f + 0.75f * life);
+    const float t = seconds(preview), fibre = ember_fibre(bent, footprint);
+    const float patch = noise3(float3_mad(float3(-0.3f * t, 0.2f * t, 0.4f * t), bent->position, 1 / 4.4e-3f), 62);
+    float alive = leaf_alive(preview, state, bent, patch) * (1 - LEAF_STARVES * starved);
     const float inward = (bent->burn - STARVED_BORDER) / (maxf(state->gradient, 20) * 2 * EMBER_WIDTH);
-    border = maxf(border, starved * expf(-inward * inward) * (0.25f + 0.75f * life));
-    const float speck = stepf(0.45f, 0.75f, bent->fine + 0.45f * bent->medium) * stepf(0.1f, 0.5f, life);
-    const float hot = maxf(border, life * LEAF_THREADS * thread + LEAF_SPECKS * speck);
-    const float temperature =
-        ember_temperature(state->temperature) + 130 * (life - 0.5f) + 40 * bent->medium - STARVED_COOLER * starved;
-    Float3 dull = blackbody_glow(preview->blackbody, ember_seen(temperature - LEAF_COOLER));
-    const float core = stepf(0.05f, 1.1f, hot); // it cools from there: orange lines in dull red
-    Float3 bright = blackbody_glow(preview->blackbody, ember_seen(temperature + mixf(-LEAF_DIM, LEAF_CORE, core)));
-    dull = float3_scale(dull, LEAF_DULL * (0.2f + 0.8f * life) * alone);
-    return float3_scale(float3_mad(dull, bright, LEAF_BRIGHT * hot * activity), EMBER_GAIN * air);
+    alive = maxf(alive, 0.55f * starved * expf(-inward * inward));
+
+    const float coals = 0.45f * patch + 0.42f * bent->medium + 0.55f * fibre + 0.35f * bent->fine;
+    const float lit = clampf(LEAF_SPREAD * alive + 0.8f * coals - 0.52f, 0, 1), hot = lit * lit * (1.6f - 0.6f * lit);
+    const float temperature = ember_temperature(state->temperature) - STARVED_COOLER * starved;
+    Float3 red = blackbody_glow(preview->blackbody, ember_seen(temperature - LEAF_COOLER * (1.5f - alive)));
+    Float3 bright = blackbody_glow(preview->blackbody, ember_seen(temperature + mixf(-LEAF_DIM, LEAF_CORE, hot)));
+    Float3 glow = float3_scale(red, LEAF_DULL * alive * maxf(0.7f + 0.7f * coals, 0.1f) * alone);
+    return float3_scale(float3_mad(glow, bright, LEAF_BRIGHT * hot * activity), EMBER_GAIN * air);
 }
 
 static void ember_shade(const Preview *preview, const PaperState *state, const Bent *bent, Point *point) {
@@ -322,11 +346,9 @@ static void ember_shade(const Preview *preview, const PaperState *state, const B
 
 // ---- the sheet
 
-/// Burnt borders crumble, so that straight cuts become ragged within a triangle, and ash wears.
+/// Burnt borders crumble, and ash wears.
 static bool is_hole(const PaperState *state, const Bent *bent, float footprint) {
-    float bite = 0.40f + 0.38f * bent->medium + 0.20f * bent->fine + 0.28f * bent->coarse;
-    float burnt = stepf(PAPER_WHOLE, 0.65f, state->burn);
-    if (burnt > 0 && state->rim > 1 - burnt * clampf(bite, 0, 0.85f)) return true;
+    if (state->burn > PAPER_WHOLE && state->rim > 1 - border_bite(state->burn, bent)) return true;
     return bent->burn > 0.7f && ash_amount(bent) * stepf(0.72f, 0.95f, ash_lace(bent, footprint)) > 0.5f;
 }
 

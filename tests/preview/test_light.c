@@ -1,6 +1,6 @@
 // Light and shadow: light of flames, shadows of sheets, light through sheets, and the grain of shadows.
 
-#include "fixture.h"
+#include "plate.h"
 
 #include <math.h>
 
@@ -208,21 +208,18 @@ TEST(a_lamp_lights_what_is_near) {
 /// What char gives off as it is seen, and the light that it throws are one: char that glows alone, char that feeds a flame, and
 /// char whose flame is slow, which is dark. Leaves of char threw no light at all.
 TEST(char_throws_the_light_that_is_seen) {
-    enum { ALONE, FED, SLOW, CASES, TIMES = 8 };
+    enum { ALONE, WIDE, FED, SLOW, CASES, TIMES = 8 };
+    static const float width[CASES] = {0.02f, 0.045f, 0.02f, 0.02f}, fuel[CASES] = {0, 0, 0.3f, 0.3f};
+    static const float rate[CASES] = {1, 1, 1, 0.05f};
     static float glow[W * H][3];
-    static const float mass[CASES] = {0.4f, 0.5f, 0.5f}, rate[CASES] = {1, 1, 0.05f};
-    float charred[4], left[4], ash[4] = {0};
+    static Plate plate;
     PreviewDef def = at_night();
     def.camera.fov = 0.1f;
     const float pixel = 2 * 0.5f * tanf(0.05f) / H;
 
     for (int k = 0; k < CASES; k++) {
-        quad_make(&q, 0.02f, 0);
-        for (int i = 0; i < 4; i++) {
-            q.burn[i] = 0.6f, q.temperature[i] = q.peak[i] = 950, q.rate[i] = rate[k];
-            left[i] = mass[k], charred[i] = k == ALONE ? mass[k] : 0.2f;
-        }
-        q.surface.mass = left, q.surface.char_fraction = charred, q.surface.ash_fraction = ash;
+        plate_make(&plate, width[k]);
+        plate_char(&plate, 950, rate[k], fuel[k]);
         const PreviewLayers layers = {.glow = glow};
         uint8_t *frame;
         size_t size;
@@ -230,8 +227,8 @@ TEST(char_throws_the_light_that_is_seen) {
         uint32_t lights;
         Preview *preview = preview_open(&def);
         for (int time = 0; time < TIMES; time++) {
-            assert_int_equal(preview_draw_layers(preview, &q.surface, 3 * time, NULL, &layers, NULL), SINGE_OK);
-            assert_int_equal(preview_pack(preview, &q.surface, 3 * time, &frame, &size, NULL), SINGE_OK);
+            assert_int_equal(preview_draw_layers(preview, &plate.surface, 12 * time, NULL, &layers, NULL), SINGE_OK);
+            assert_int_equal(preview_pack(preview, &plate.surface, 12 * time, &frame, &size, NULL), SINGE_OK);
             for (int i = 0; i < W * H; i++) seen += glow[i][0] * pixel * pixel / TIMES;
 
             // a light's strength is five times the radiance, over half a sphere (lamps.c, pack.c)

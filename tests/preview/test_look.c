@@ -1,6 +1,6 @@
 // How paper looks in each of its states: fresh, printed, browned, charred, glowing, burnt out.
 
-#include "fixture.h"
+#include "plate.h"
 
 #include <math.h>
 
@@ -362,18 +362,17 @@ TEST(char_is_black_and_greys) {
 /// A leaf of char glows in threads and specks, not as a whole: few of its pixels are as bright as half of the brightest.
 /// Char that still feeds a flame, which takes the air, has fewer; it was black.
 TEST(a_leaf_glows_in_threads) {
-    static float mass[4], charred[4] = {0.2f, 0.2f, 0.2f, 0.2f}, none[4], glow[W * H][3];
-    quad_make(&q, 0.03f, 0);
-    q.surface.mass = mass, q.surface.char_fraction = charred, q.surface.ash_fraction = none;
-    for (int i = 0; i < 4; i++) q.burn[i] = 0.8f, q.temperature[i] = q.peak[i] = 1000, q.rate[i] = 0.5f;
+    static float glow[W * H][3];
+    static Plate plate;
+    plate_make(&plate, 0.03f);
     PreviewDef def = above();
     def.camera.eye[2] = 0.06f, def.ground_height = -INFINITY;
-    for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
+    for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = def.background[c] = 0;
 
     float red[2];
     for (int flames = 0; flames < 2; flames++) {
-        for (int i = 0; i < 4; i++) mass[i] = flames ? 0.4f : 0.2f;
-        draw(&def, &q.surface, 1, rgb);
+        plate_char(&plate, 1000, 0.5f, flames ? 0.2f : 0);
+        draw(&def, &plate.surface, 1, rgb);
 
         int count[256] = {0}, most = 255, above_most = 0, bright = 0;
         for (int i = 0; i < W * H; i++) count[rgb[3 * i]]++;
@@ -388,7 +387,7 @@ TEST(a_leaf_glows_in_threads) {
         // cores are hot, and what is around them is dull and red: one orange was a print
         const PreviewLayers layers = {.glow = glow};
         float average = 0, light[2][2] = {{0, 0}, {0, 0}};
-        draw_layers(&def, &q.surface, NULL, 1, &layers);
+        draw_layers(&def, &plate.surface, NULL, 1, &layers);
         for (int i = 0; i < W * H; i++) average += glow[i][0] / (W * H);
         for (int i = 0; i < 2 * W * H; i++) light[glow[i / 2][0] > 2 * average][i % 2] += glow[i / 2][i % 2];
         const float dull = light[0][1] / light[0][0], core = light[1][1] / light[1][0];
@@ -498,48 +497,6 @@ TEST(print_stays_on_ash) {
                       (double)lighter);
         assert_true(lighter > 12);
     }
-}
-
-/// A sheet of SIDE x SIDE vertices in the plane, which share their triangles.
-enum { SIDE = 17, NODES = SIDE * SIDE };
-
-typedef struct Plate {
-    float position[NODES][3], normal[NODES][3], uv[NODES][2], temperature[NODES], peak[NODES], burn[NODES], rate[NODES];
-    float ignited[NODES];
-    int32_t sheet[NODES];
-    uint32_t triangles[2 * (SIDE - 1) * (SIDE - 1)][3];
-    SingeSurface surface;
-} Plate;
-
-static void plate_make(Plate *plate, float width) {
-    memset(plate, 0, sizeof *plate);
-    for (int i = 0; i < NODES; i++) {
-        plate->position[i][0] = width * ((float)(i % SIDE) / (SIDE - 1) - 0.5f);
-        plate->position[i][1] = width * ((float)(i / SIDE) / (SIDE - 1) - 0.5f);
-        plate->normal[i][2] = 1;
-        plate->temperature[i] = plate->peak[i] = 293;
-    }
-
-    uint32_t count = 0;
-    for (uint32_t i = 0; i + SIDE < NODES; i++) {
-        if (i % SIDE == SIDE - 1) continue;
-        const uint32_t pair[2][3] = {{i, i + 1, i + SIDE + 1}, {i, i + SIDE + 1, i + SIDE}};
-        memcpy(plate->triangles[count], pair, sizeof pair);
-        count += 2;
-    }
-    plate->surface = (SingeSurface){.vertex_count = NODES,
-                                    .triangle_count = count,
-                                    .position = plate->position,
-                                    .normal = plate->normal,
-                                    .uv = plate->uv,
-                                    .rest_position = plate->position,
-                                    .temperature = plate->temperature,
-                                    .temperature_peak = plate->peak,
-                                    .burn = plate->burn,
-                                    .burn_rate = plate->rate,
-                                    .time_ignited = plate->ignited,
-                                    .sheet = plate->sheet,
-                                    .triangles = plate->triangles};
 }
 
 /// A camera from above whose picture is `high` m high.
@@ -671,4 +628,62 @@ TEST(ash_on_char_pales_by_degrees) {
                   (double)(grey / pale));
     assert_true(span > 50);
     assert_true(grey > 0.8f * pale); // was 0.32
+}
+
+/// A plate of char that glows away, drawn in the dark: its own light.
+static void draw_leaf(Plate *plate, float glow[FINE_W * FINE_H][3], double time) {
+    plate_make(plate, 0.033f);
+    plate_char(plate, 1000, 0.5f, 0);
+    PreviewDef def = close_above(FINE_HIGH);
+    def.width = FINE_W, def.height = FINE_H;
+    for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
+    Preview *preview = preview_open(&def);
+    const PreviewLayers layers = {.glow = glow};
+    assert_int_equal(preview_draw_layers(preview, &plate->surface, time, NULL, &layers, NULL), SINGE_OK);
+    preview_destroy(preview);
+}
+
+/// A leaf glows along its border, where air comes to it: yellow there, dull red some millimetres within, and hardly in its
+/// middle; and the border is dead in places, for more than a centimetre. An even mat of coals was lava.
+TEST(a_leaf_glows_along_its_border) {
+    enum { TIMES = 6, BINS = 12, STEP = 3 }; // bins of a millimetre; stretches of border of three
+    static Plate plate;
+    static float glow[FINE_W * FINE_H][3];
+    float sum[BINS][2] = {{0}}, count[BINS] = {0};
+    int dead = 0, all = 0, longest = 0;
+    for (int time = 0; time < TIMES; time++) {
+        float border[4 * 11] = {0};
+        draw_leaf(&plate, glow, 20 * time);
+        for (int i = 0; i < FINE_W * FINE_H; i++) {
+            const float pixel = 1e3f * FINE_HIGH / FINE_H;
+            const float x = ((float)(i % FINE_W) + 0.5f - FINE_W / 2) * pixel + 16.5f;
+            const float y = ((float)(i / FINE_W) + 0.5f - FINE_H / 2) * pixel + 16.5f;
+            const float depth[4] = {x, 33 - x, y, 33 - y};
+            int side = 0;
+            for (int k = 1; k < 4; k++)
+                if (depth[k] < depth[side]) side = k;
+            if (depth[side] < 0 || depth[side] >= BINS) continue;
+            const int bin = (int)depth[side];
+            for (int c = 0; c < 2; c++) sum[bin][c] += glow[i][c];
+            count[bin]++;
+            const int along = (int)fminf((side < 2 ? y : x) / STEP, 10);
+            if (bin < 4) border[11 * side + along] += glow[i][0] * pixel * pixel;
+        }
+        for (int k = 0, run = 0; k < 44; k++) {
+            if (k % 11 == 0) run = 0;
+            const bool dark = border[k] < 0.5f;
+            run = dark ? run + STEP : 0;
+            longest = run > longest ? run : longest;
+            dead += dark, all++;
+        }
+    }
+    const float bright = (sum[1][0] + sum[2][0]) / (count[1] + count[2]);
+    const float within = (sum[6][0] + sum[7][0] + sum[8][0]) / (count[6] + count[7] + count[8]);
+    const float yellow = (sum[1][1] + sum[2][1]) / (sum[1][0] + sum[2][0]),
+                red = (sum[5][1] + sum[6][1]) / (sum[5][0] + sum[6][0]);
+    print_message("border %.2f, within %.2f; green over red %.3f, %.3f; %.2f of the border is dead, for up to %d mm\n",
+                  (double)bright, (double)within, (double)yellow, (double)red, (double)dead / all, longest);
+    assert_true(bright > 3 * within);  // 1.3
+    assert_true(yellow > 1.35f * red); // 1.07
+    assert_true(longest > 9 && dead > all / 10 && dead < all / 2);
 }

@@ -13,13 +13,13 @@ const float EMBER_WIDTH = 0.00042;
 const float EMBER_GAIN = 3.4;
 const float EMBER_MOST = 6.0;
 const float EMBER_HOT = 1180.0;
-const float LEAF_DULL = 0.75;
-const float LEAF_THREADS = 0.9;
-const float LEAF_SPECKS = 0.35;
-const float LEAF_COOLER = 180.0;
-const float LEAF_BRIGHT = 1.25;
-const float LEAF_DIM = 120.0;
-const float LEAF_CORE = 120.0;
+const float LEAF_SPREAD = 1.35;
+const float LEAF_STARVES = 0.2;
+const float LEAF_DULL = 1.7;
+const float LEAF_COOLER = 150.0;
+const float LEAF_BRIGHT = 1.4;
+const float LEAF_DIM = 150.0;
+const float LEAF_CORE = 130.0;
 const float STARVED_COOLER = 90.0;
 const float STARVED_BORDER = 0.42;
 const float BLACKBODY_MIN = 780.0;
@@ -207,32 +207,21 @@ vec3 border_glow(PaperState state, Bent bent, float air) {
     return float3_scale(blackbody_glow(1090.0 - 22.0 * state.age + 50.0 * bent.fine), 2.5 * strength);
 }
 vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
-    float SIZES = 4.0;
-    float size[4] = float[4](24e-3, 9e-3, 4e-3, 1.7e-3);
-    float thick[4] = float[4](0.5e-3, 0.22e-3, 0.16e-3, 0.14e-3), weight[4] = float[4](1.0, 1.0, 0.9, 0.6);
     float alone = ember_activity(state.glowing), starved = ember_starved(state.starved, bent.burn, alone);
     float activity = alone + starved;
     if (activity < 0.02 || ember_temperature(state.temperature) < BLACKBODY_MIN) return vec3(0.0, 0.0, 0.0);
-    float life = line_life(bent) * min(air, 1.2), t = seconds();
-    vec3 bowed = float3_mad(bent.position, vec3(bent.fine, bent.medium, bent.coarse), 0.7e-3);
-    float thread = 0.0;
-    for (float k = 0.0; k < SIZES && life > 0.0; k++) {
-        float n = noise3(float3_mad(vec3(0.0, 0.0, (0.35 + 0.2 * float(k)) * t), bowed, 1.0 / size[int(k)]), 61.0 + k);
-        float width = thick[int(k)] * (0.4 + 0.9 * life) / size[int(k)], seen = max(width, 0.5 * footprint / size[int(k)]);
-        thread += weight[int(k)] * width / seen * ridge(n, 2.0 * seen);
-    }
-    float border = near_border(state, bent, 0.8e-3) * (0.25 + 0.75 * life);
+    float t = seconds(), fibre = ember_fibre(bent, footprint);
+    float patch_ = noise3(float3_mad(vec3(-0.3 * t, 0.2 * t, 0.4 * t), bent.position, 1.0 / 4.4e-3), 62.0);
+    float alive = leaf_alive(state, bent, patch_) * (1.0 - LEAF_STARVES * starved);
     float inward = (bent.burn - STARVED_BORDER) / (max(state.gradient, 20.0) * 2.0 * EMBER_WIDTH);
-    border = max(border, starved * exp(-inward * inward) * (0.25 + 0.75 * life));
-    float speck = stepf(0.45, 0.75, bent.fine + 0.45 * bent.medium) * stepf(0.1, 0.5, life);
-    float hot = max(border, life * LEAF_THREADS * thread + LEAF_SPECKS * speck);
-    float temperature =
-        ember_temperature(state.temperature) + 130.0 * (life - 0.5) + 40.0 * bent.medium - STARVED_COOLER * starved;
-    vec3 dull = blackbody_glow(ember_seen(temperature - LEAF_COOLER));
-    float core = stepf(0.05, 1.1, hot);
-    vec3 bright = blackbody_glow(ember_seen(temperature + mix(-LEAF_DIM, LEAF_CORE, core)));
-    dull = float3_scale(dull, LEAF_DULL * (0.2 + 0.8 * life) * alone);
-    return float3_scale(float3_mad(dull, bright, LEAF_BRIGHT * hot * activity), EMBER_GAIN * air);
+    alive = max(alive, 0.55 * starved * exp(-inward * inward));
+    float coals = 0.45 * patch_ + 0.42 * bent.medium + 0.55 * fibre + 0.35 * bent.fine;
+    float lit = clamp(LEAF_SPREAD * alive + 0.8 * coals - 0.52, 0.0, 1.0), hot = lit * lit * (1.6 - 0.6 * lit);
+    float temperature = ember_temperature(state.temperature) - STARVED_COOLER * starved;
+    vec3 red = blackbody_glow(ember_seen(temperature - LEAF_COOLER * (1.5 - alive)));
+    vec3 bright = blackbody_glow(ember_seen(temperature + mix(-LEAF_DIM, LEAF_CORE, hot)));
+    vec3 glow = float3_scale(red, LEAF_DULL * alive * max(0.7 + 0.7 * coals, 0.1) * alone);
+    return float3_scale(float3_mad(glow, bright, LEAF_BRIGHT * hot * activity), EMBER_GAIN * air);
 }
 void ember_shade(PaperState state, Bent bent, inout Point point) {
     if (state.burn < 0.2 || state.temperature < 420.0) return;
@@ -244,9 +233,7 @@ void ember_shade(PaperState state, Bent bent, inout Point point) {
     point.glow = float3_scale(glow, 1.0 / (1.0 + max(glow.x, max(glow.y, glow.z)) / EMBER_MOST));
 }
 bool is_hole(PaperState state, Bent bent, float footprint) {
-    float bite = 0.40 + 0.38 * bent.medium + 0.20 * bent.fine + 0.28 * bent.coarse;
-    float burnt = stepf(PAPER_WHOLE, 0.65, state.burn);
-    if (burnt > 0.0 && state.rim > 1.0 - burnt * clamp(bite, 0.0, 0.85)) return true;
+    if (state.burn > PAPER_WHOLE && state.rim > 1.0 - border_bite(state.burn, bent)) return true;
     return bent.burn > 0.7 && ash_amount(bent) * stepf(0.72, 0.95, ash_lace(bent, footprint)) > 0.5;
 }
 float flocks_of(PaperState state, inout Point point) {

@@ -128,7 +128,8 @@ ${PAPER}
 void main() {
     // at a border, a pixel's middle may lie outside the triangle, where fields go on beyond what they can be
     vec4 heat = max(vHeat, 0.0), look = max(vLook, 0.0);
-    PaperState state = PaperState(vRest, heat.x, heat.y, min(look.x, 1.0), heat.z, look.y, vLeaf.z, min(look.z, 1.0), max(vLeaf.x, 0.0), heat.w, max(vLeaf.y, 0.0), look.w, 0.0, 0.0);
+    float rim = min(look.z, 1.0), spacing = max(vLeaf.x, 0.0), edge = mix(0.006, (1.0 - rim) * spacing, min(3.0 * rim, 1.0)); // beyond a triangle it is unknown
+    PaperState state = PaperState(vRest, heat.x, heat.y, min(look.x, 1.0), heat.z, look.y, vLeaf.z, rim, spacing, heat.w, max(vLeaf.y, 0.0), look.w, 0.0, edge);
     Point point = Point(vPosition, normalize(vNormal), normalize(eye - vPosition), vec3(0.0), vec3(0.0), vec3(0.0), max(length(dFdx(vPosition)), length(dFdy(vPosition))), transmittance, 0.015, 14.0, 0.0);
 #ifdef SHADOW
     if (state.burn > PAPER_WHOLE && is_hole(state, shade_paper_bend(state, point.footprint), point.footprint)) discard;
