@@ -128,27 +128,30 @@ static float near_border(const PaperState *state, const Bent *bent, float width)
     return minf(1, 5 * state->rim) * (1 - stepf(0.1f * width, width * maxf(uneven, 0.2f), distance));
 }
 
-/// Fibres lie along a direction that wanders over the sheet. 1 on one.
-static float ash_fibre(const Bent *bent, float footprint) {
-    Float3 p = bent->position;
-    float wander = 2.4f * noise3(float3_scale(p, 110), 11), c = cosf(wander), s = sinf(wander);
-    Float3 along = float3(0.16f * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
+/// Along the fibres of ash and across them, whose direction wanders over the sheet.
+static Float3 ash_along(const Bent *bent) {
+    Float3 p = float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 0.45e-3f);
+    const float wander = 2.4f * noise3(float3_scale(p, 70), 11), c = cosf(wander), s = sinf(wander);
+    return float3(0.14f * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
+}
+
+/// 1 on a fibre.
+static float ash_fibre(Float3 along, float footprint) {
     return clampf(1.6f - footprint * 1400, 0, 1) * ridge(noise3(float3_scale(along, 2100), 12), 0.5f);
 }
 
-/// How far cold char has turned to ash, `cloud` its patches and `fibre` its threads: from black at 0 over dark grey to pale at
-/// 1. Plates turn at their borders first, in tongues that follow the fibres, and in time in patches as well. Nothing of it
-/// ends abruptly: what does looks pasted on.
-static float ash_on_char(const PaperState *state, const Bent *bent, float cloud, float fibre) {
+/// How far cold char has turned to ash, `cloud` its patches, `strand` and `fibre` its threads: from black at 0 over dark grey to
+/// pale at 1. A fringe along dead borders, of a millimetre to some, pales first, in tongues that follow the fibres; in time a
+/// thin skin of threads lies on the rest as well. Nothing of it ends abruptly: what does looks pasted on.
+static float ash_on_char(const PaperState *state, const Bent *bent, float cloud, float strand, float fibre) {
     const float cold = stepf(PAPER_WHOLE, 0.5f, bent->burn) * (1 - stepf(520, 760, bent->temperature));
     if (cold <= 0) return 0;
-    const float border = 0.8f * stepf(0, 5, state->age + 2 * bent->coarse) * near_border(state, bent, 1.1e-3f);
-    const float torn = 0.8f * bent->coarse + 0.5f * bent->medium + 0.25f * bent->fine + 0.5f * (fibre - 0.5f);
-    const float edge = near_border(state, bent, 4e-3f), old = stepf(1, 6, state->age + bent->coarse);
-    const float tongues = old * stepf(0.2f, 1.2f, edge + 0.4f * torn) * stepf(0, 0.2f, edge);
-    const float patches =
-        0.8f * stepf(0.53f, 0.62f, bent->burn) * stepf(0.2f, 1.15f, cloud + 0.4f * torn) * stepf(2, 9, state->age);
-    return cold * maxf(border, maxf(tongues, patches));
+    const float border = 1e3f * border_distance(state, bent); // mm
+    const float threads = 0.5f * strand + 0.3f * (fibre - 0.4f), wide = maxf(0.9f + 1.6f * cloud, 0.35f);
+    const float fringe = stepf(0, 5, state->age + 2 * cloud) * minf(1, 1.15f * expf(-border / wide) * (1 + threads));
+    const float skin =
+        0.75f * stepf(0.53f, 0.62f, bent->burn) * stepf(2, 9, state->age) * stepf(-0.1f, 1.25f, cloud + 0.9f * threads);
+    return cold * clampf(maxf(fringe, skin), 0, 1);
 }
 
 /// Noise that wears ash to lace: holes above 0.7.
@@ -159,8 +162,10 @@ static float ash_lace(const Bent *bent, float footprint) {
 static void ash_shade(const PaperState *state, const Bent *bent, float ink, Point *point) {
     const float size = point->footprint;
     if (bent->burn < PAPER_WHOLE) return;
-    const float cloud = paper_noise(bent->position, 14, size, 19) + 0.5f * bent->coarse + 0.2f * bent->medium;
-    const float fibre = ash_fibre(bent, size), plate = ash_on_char(state, bent, cloud, fibre), whole = ash_amount(bent);
+    Float3 along = ash_along(bent);
+    const float cloud = 1.2f * paper_noise(bent->position, 12, size, 19), strand = paper_noise(along, 1.5f, size, 20);
+    const float fibre = ash_fibre(along, size), plate = ash_on_char(state, bent, cloud, strand, fibre);
+    const float whole = ash_amount(bent);
     const float amount = maxf(whole, minf(2.2f * plate, 0.92f));
     const float dry = 1 - 0.4f * stepf(2, 9, state->age); // tar dries
     point->gloss *= dry;
@@ -176,13 +181,12 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
     float pale = maxf(whole * stepf(1, 13, state->age + 4 * cloud), 0.85f * plate * plate);
     float rim = whole * stepf(0.25f, 0.6f, ash_lace(bent, size));
     const float thin = maxf(rim, stepf(0.35f, 0.95f, state->rim + 0.25f * bent->fine));
-    float value = mixf(0.030f, 0.34f, pale) * (1 + 0.22f * bent->medium + 0.18f * bent->coarse) +
-                  (0.010f + 0.07f * pale) * cloud + (0.02f + 0.06f * pale) * vein;
-    value += (0.006f + 0.022f * pale) * fibre + 0.006f * bent->fine;
+    float value = mixf(0.030f, 0.38f, pale) * (1 + 0.22f * strand + 0.22f * (fibre - 0.4f) + 0.1f * bent->fine) +
+                  (0.010f + 0.05f * pale) * cloud + (0.02f + 0.06f * pale) * vein;
     value += (0.03f + 0.07f * pale) * thin;
 
-    const float crackle = paper_cracks(bent, 3.2f, 0.035f, size), fine = paper_cracks(bent, 1.1f, 0.05f, size);
-    value *= 1 - 0.45f * crackle - 0.25f * fine * (1 - crackle);
+    const float crackle = paper_cracks(bent, 4.2f, 0.03f, size);
+    value *= 1 - 0.4f * crackle;
     value += (0.05f + 0.19f * pale) * ink * (1 - 0.3f * crackle);
 
     Float3 tone = float3_mix(float3(0.98f, 0.99f, 1.03f), float3(1.02f, 1.0f, 0.965f), pale);
@@ -298,7 +302,7 @@ static float leaf_alive(const Preview *preview, const PaperState *state, const B
     const float t = seconds(preview), border = 1e3f * border_distance(state, bent); // mm
     Float3 p = float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 0.5e-3f);
     const float stretch = noise3(float3_mad(float3(0.05f * t, -0.08f * t, 0.11f * t), p, 1 / 17e-3f), 61);
-    const float rim = stepf(-0.35f, 0.4f, stretch + 0.3f * patch);
+    const float rim = stepf(-0.3f, 0.5f, stretch + 0.4f * patch);
     const float behind = rim * expf(-border / (1 + 4 * rim));
 
     const float creeps = stepf(-0.1f, 0.5f, 0.35f * patch - stretch);
@@ -324,7 +328,7 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     alive = maxf(alive, 0.55f * starved * expf(-inward * inward));
 
     const float coals = 0.45f * patch + 0.42f * bent->medium + 0.55f * fibre + 0.35f * bent->fine;
-    const float lit = clampf(LEAF_SPREAD * alive + 0.8f * coals - 0.52f, 0, 1), hot = lit * lit * (1.6f - 0.6f * lit);
+    const float lit = clampf(LEAF_SPREAD * alive + coals - 0.56f, 0, 1), hot = lit * lit * (1.6f - 0.6f * lit);
     const float temperature = ember_temperature(state->temperature) - STARVED_COOLER * starved;
     Float3 red = blackbody_glow(preview->blackbody, ember_seen(temperature - LEAF_COOLER * (1.5f - alive)));
     Float3 bright = blackbody_glow(preview->blackbody, ember_seen(temperature + mixf(-LEAF_DIM, LEAF_CORE, hot)));
@@ -450,20 +454,20 @@ static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) 
     point->albedo = burnt;
     if (black <= 0) return;
 
-    float value = 1 + 0.35f * bent->medium + 0.3f * bent->fine + 0.35f * bent->coarse;
+    float value = 1 + 0.2f * bent->medium + 0.1f * bent->fine + 0.4f * bent->coarse;
     Float3 soot =
         float3_mix(float3(0.034f, 0.020f, 0.012f), float3(0.0125f, 0.0125f, 0.0132f), stepf(0.22f, 0.62f, bent->burn));
-    float craze = paper_cracks(bent, 2.1f, 0.05f, point->footprint);
+    float craze = paper_cracks(bent, 3.1f, 0.04f, point->footprint);
     Float3 colour = float3_scale(soot, value * (1 - 0.6f * craze));
-    point->albedo = float3_mix(burnt, float3_mad(colour, float3(0.052f, 0.052f, 0.055f), ink), black);
+    point->albedo = float3_mix(burnt, float3_mad(colour, float3(0.060f, 0.060f, 0.063f), ink), black);
 
     // tar makes it shine
     float tar = clampf(0.75f + 0.5f * bent->coarse - 0.5f * ink, 0.2f, 1.2f);
-    point->gloss = 0.055f * black * tar;
+    point->gloss = 0.06f * black * tar;
     point->shininess = 14;
     point->mirror = 0.45f * black * tar;
-    tilt(bent->position, 3.6f, 0.34f * black, true, 32, point);
-    tilt(bent->position, 0.9f, 0.11f * black, false, 31, point);
+    tilt(bent->position, 5.2f, 0.40f * black, true, 32, point);
+    tilt(bent->position, 1.6f, 0.10f * black, false, 31, point);
 }
 
 /// How brown paper is: by heat, up to 0.76, and by what has burnt. Near a front, where the peak temperature falls off within

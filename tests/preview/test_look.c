@@ -534,7 +534,7 @@ TEST(plates_have_pale_borders_that_glow_for_a_while) {
     draw(&def, &plate.surface, 4, rgb);
     border_and_middle(rgb, 1, pale);
 
-    for (int c = 0; c < 3; c++) def.sun_colour[c] = 0;
+    for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
     for (int i = 0; i < NODES; i++) plate.temperature[i] = 600;
     draw(&def, &plate.surface, 1, rgb);
     border_and_middle(rgb, 0, young);
@@ -643,6 +643,49 @@ static void draw_leaf(Plate *plate, float glow[FINE_W * FINE_H][3], double time)
     preview_destroy(preview);
 }
 
+/// How far into the plate a pixel of the fine picture lies, mm, and at which of its sides.
+static float plate_depth(int pixel, float width, int *side, float *along) {
+    const float size = 1e3f * FINE_HIGH / FINE_H, half = 500 * width;
+    const float x = ((float)(pixel % FINE_W) + 0.5f - FINE_W / 2) * size + half;
+    const float y = ((float)(pixel / FINE_W) + 0.5f - FINE_H / 2) * size + half;
+    const float depth[4] = {x, 2 * half - x, y, 2 * half - y};
+    *side = 0;
+    for (int k = 1; k < 4; k++)
+        if (depth[k] < depth[*side]) *side = k;
+    *along = *side < 2 ? y : x;
+    return depth[*side];
+}
+
+/// Ash is a fringe along dead borders, and a thin skin elsewhere: pale patches all over a leaf were blots.
+TEST(ash_is_a_fringe_along_dead_borders) {
+    enum { BINS = 12 };
+    static Plate plate;
+    static uint8_t picture[FINE_W * FINE_H * 3];
+    const float width = 0.033f;
+    plate_make(&plate, width);
+    for (int i = 0; i < NODES; i++) plate.burn[i] = 0.64f, plate.peak[i] = 900;
+    PreviewDef def = close_above(FINE_HIGH);
+    def.width = FINE_W, def.height = FINE_H;
+    Preview *preview = preview_open(&def);
+    assert_int_equal(preview_draw(preview, &plate.surface, 12, picture, NULL), SINGE_OK);
+    preview_destroy(preview);
+
+    float sum[BINS] = {0}, count[BINS] = {0};
+    for (int i = 0; i < FINE_W * FINE_H; i++) {
+        int side;
+        float along;
+        const float depth = plate_depth(i, width, &side, &along);
+        if (depth < 0 || depth >= BINS || picture[3 * i] == 0) continue;
+        sum[(int)depth] += picture[3 * i + 1], count[(int)depth]++;
+    }
+    const float fringe = (sum[0] + sum[1]) / (count[0] + count[1]), next = sum[2] / count[2];
+    const float within = (sum[8] + sum[9] + sum[10] + sum[11]) / (count[8] + count[9] + count[10] + count[11]);
+    print_message("ash at the border %.1f, 2 mm within %.1f, in the middle %.1f\n", (double)fringe, (double)next,
+                  (double)within);
+    assert_true(fringe > 1.4f * within); // 1.2
+    assert_true(next < 0.8f * fringe);
+}
+
 /// A leaf glows along its border, where air comes to it: yellow there, dull red some millimetres within, and hardly in its
 /// middle; and the border is dead in places, for more than a centimetre. An even mat of coals was lava.
 TEST(a_leaf_glows_along_its_border) {
@@ -655,18 +698,14 @@ TEST(a_leaf_glows_along_its_border) {
         float border[4 * 11] = {0};
         draw_leaf(&plate, glow, 20 * time);
         for (int i = 0; i < FINE_W * FINE_H; i++) {
-            const float pixel = 1e3f * FINE_HIGH / FINE_H;
-            const float x = ((float)(i % FINE_W) + 0.5f - FINE_W / 2) * pixel + 16.5f;
-            const float y = ((float)(i / FINE_W) + 0.5f - FINE_H / 2) * pixel + 16.5f;
-            const float depth[4] = {x, 33 - x, y, 33 - y};
-            int side = 0;
-            for (int k = 1; k < 4; k++)
-                if (depth[k] < depth[side]) side = k;
-            if (depth[side] < 0 || depth[side] >= BINS) continue;
-            const int bin = (int)depth[side];
+            int side;
+            float way;
+            const float depth = plate_depth(i, 0.033f, &side, &way), pixel = 1e3f * FINE_HIGH / FINE_H;
+            if (depth < 0 || depth >= BINS) continue;
+            const int bin = (int)depth;
             for (int c = 0; c < 2; c++) sum[bin][c] += glow[i][c];
             count[bin]++;
-            const int along = (int)fminf((side < 2 ? y : x) / STEP, 10);
+            const int along = (int)fminf(way / STEP, 10);
             if (bin < 4) border[11 * side + along] += glow[i][0] * pixel * pixel;
         }
         for (int k = 0, run = 0; k < 44; k++) {

@@ -97,27 +97,35 @@ void tilt(vec3 position, float millimetres, float height, bool folded, float see
 float ash_amount(Bent bent) {
     return stepf(0.78, 0.94, bent.burn + 0.06 * bent.coarse) * (1.0 - 0.75 * stepf(760.0, 1000.0, bent.temperature));
 }
+float border_bite(float burn, Bent bent) {
+    float bite = 0.40 + 0.38 * bent.medium + 0.20 * bent.fine + 0.28 * bent.coarse;
+    return stepf(PAPER_WHOLE, 0.65, burn) * clamp(bite, 0.0, 0.85);
+}
+float border_distance(PaperState state, Bent bent) {
+    return max(state.edge - border_bite(state.burn, bent) * min(state.spacing, 2.5e-3), 0.0);
+}
 float near_border(PaperState state, Bent bent, float width) {
     float distance_ = (1.0 - state.rim) * state.spacing;
     float uneven = 1.0 + 0.5 * bent.coarse + 0.6 * bent.medium + 0.4 * bent.fine;
     return min(1.0, 5.0 * state.rim) * (1.0 - stepf(0.1 * width, width * max(uneven, 0.2), distance_));
 }
-float ash_fibre(Bent bent, float footprint) {
-    vec3 p = bent.position;
-    float wander = 2.4 * noise3(float3_scale(p, 110.0), 11.0), c = cos(wander), s = sin(wander);
-    vec3 along = vec3(0.16 * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
+vec3 ash_along(Bent bent) {
+    vec3 p = float3_mad(bent.position, vec3(bent.medium, bent.coarse, bent.fine), 0.45e-3);
+    float wander = 2.4 * noise3(float3_scale(p, 70.0), 11.0), c = cos(wander), s = sin(wander);
+    return vec3(0.14 * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
+}
+float ash_fibre(vec3 along, float footprint) {
     return clamp(1.6 - footprint * 1400.0, 0.0, 1.0) * ridge(noise3(float3_scale(along, 2100.0), 12.0), 0.5);
 }
-float ash_on_char(PaperState state, Bent bent, float cloud, float fibre) {
+float ash_on_char(PaperState state, Bent bent, float cloud, float strand, float fibre) {
     float cold = stepf(PAPER_WHOLE, 0.5, bent.burn) * (1.0 - stepf(520.0, 760.0, bent.temperature));
     if (cold <= 0.0) return 0.0;
-    float border = 0.8 * stepf(0.0, 5.0, state.age + 2.0 * bent.coarse) * near_border(state, bent, 1.1e-3);
-    float torn = 0.8 * bent.coarse + 0.5 * bent.medium + 0.25 * bent.fine + 0.5 * (fibre - 0.5);
-    float edge = near_border(state, bent, 4e-3), old = stepf(1.0, 6.0, state.age + bent.coarse);
-    float tongues = old * stepf(0.2, 1.2, edge + 0.4 * torn) * stepf(0.0, 0.2, edge);
-    float patches =
-        0.8 * stepf(0.53, 0.62, bent.burn) * stepf(0.2, 1.15, cloud + 0.4 * torn) * stepf(2.0, 9.0, state.age);
-    return cold * max(border, max(tongues, patches));
+    float border = 1e3 * border_distance(state, bent);
+    float threads = 0.5 * strand + 0.3 * (fibre - 0.4), wide = max(0.9 + 1.6 * cloud, 0.35);
+    float fringe = stepf(0.0, 5.0, state.age + 2.0 * cloud) * min(1.0, 1.15 * exp(-border / wide) * (1.0 + threads));
+    float skin =
+        0.75 * stepf(0.53, 0.62, bent.burn) * stepf(2.0, 9.0, state.age) * stepf(-0.1, 1.25, cloud + 0.9 * threads);
+    return cold * clamp(max(fringe, skin), 0.0, 1.0);
 }
 float ash_lace(Bent bent, float footprint) {
     return paper_noise(bent.position, 2.6, footprint, 15.0) + 0.25 * bent.fine - 0.45 * bent.coarse;
@@ -125,8 +133,10 @@ float ash_lace(Bent bent, float footprint) {
 void ash_shade(PaperState state, Bent bent, float ink, inout Point point) {
     float size = point.footprint;
     if (bent.burn < PAPER_WHOLE) return;
-    float cloud = paper_noise(bent.position, 14.0, size, 19.0) + 0.5 * bent.coarse + 0.2 * bent.medium;
-    float fibre = ash_fibre(bent, size), plate = ash_on_char(state, bent, cloud, fibre), whole = ash_amount(bent);
+    vec3 along = ash_along(bent);
+    float cloud = 1.2 * paper_noise(bent.position, 12.0, size, 19.0), strand = paper_noise(along, 1.5, size, 20.0);
+    float fibre = ash_fibre(along, size), plate = ash_on_char(state, bent, cloud, strand, fibre);
+    float whole = ash_amount(bent);
     float amount = max(whole, min(2.2 * plate, 0.92));
     float dry = 1.0 - 0.4 * stepf(2.0, 9.0, state.age);
     point.gloss *= dry;
@@ -139,12 +149,11 @@ void ash_shade(PaperState state, Bent bent, float ink, inout Point point) {
     float pale = max(whole * stepf(1.0, 13.0, state.age + 4.0 * cloud), 0.85 * plate * plate);
     float rim = whole * stepf(0.25, 0.6, ash_lace(bent, size));
     float thin = max(rim, stepf(0.35, 0.95, state.rim + 0.25 * bent.fine));
-    float value = mix(0.030, 0.34, pale) * (1.0 + 0.22 * bent.medium + 0.18 * bent.coarse) +
-                  (0.010 + 0.07 * pale) * cloud + (0.02 + 0.06 * pale) * vein;
-    value += (0.006 + 0.022 * pale) * fibre + 0.006 * bent.fine;
+    float value = mix(0.030, 0.38, pale) * (1.0 + 0.22 * strand + 0.22 * (fibre - 0.4) + 0.1 * bent.fine) +
+                  (0.010 + 0.05 * pale) * cloud + (0.02 + 0.06 * pale) * vein;
     value += (0.03 + 0.07 * pale) * thin;
-    float crackle = paper_cracks(bent, 3.2, 0.035, size), fine = paper_cracks(bent, 1.1, 0.05, size);
-    value *= 1.0 - 0.45 * crackle - 0.25 * fine * (1.0 - crackle);
+    float crackle = paper_cracks(bent, 4.2, 0.03, size);
+    value *= 1.0 - 0.4 * crackle;
     value += (0.05 + 0.19 * pale) * ink * (1.0 - 0.3 * crackle);
     vec3 tone = mix(vec3(0.98, 0.99, 1.03), vec3(1.02, 1.0, 0.965), pale);
     vec3 grey = float3_scale(tone, clamp(value, 0.02, 0.64));
@@ -165,6 +174,11 @@ float ember_air(vec3 p) {
 float ember_seen(float temperature) {
     float above = max(temperature - EMBER_HOT, 0.0), most = 160.0;
     return temperature - above + above * most / (above + most);
+}
+float ember_fibre(Bent bent, float footprint) {
+    vec3 p = bent.position;
+    float wander = 1.7 * noise3(float3_scale(p, 70.0), 65.0), c = cos(wander), s = sin(wander);
+    return paper_noise(vec3(0.25 * (c * p.x + s * p.y), c * p.y - s * p.x, p.z), 0.5, footprint, 66.0);
 }
 float line_life(Bent bent) {
     float t = seconds();
@@ -206,6 +220,19 @@ vec3 border_glow(PaperState state, Bent bent, float air) {
     float strength = near * warm * air * line_life(bent) * exp(-0.35 * state.age);
     return float3_scale(blackbody_glow(1090.0 - 22.0 * state.age + 50.0 * bent.fine), 2.5 * strength);
 }
+float leaf_alive(PaperState state, Bent bent, float patch_) {
+    float t = seconds(), border = 1e3 * border_distance(state, bent);
+    vec3 p = float3_mad(bent.position, vec3(bent.medium, bent.coarse, bent.fine), 0.5e-3);
+    float stretch = noise3(float3_mad(vec3(0.05 * t, -0.08 * t, 0.11 * t), p, 1.0 / 17e-3), 61.0);
+    float rim = stepf(-0.3, 0.5, stretch + 0.4 * patch_);
+    float behind = rim * exp(-border / (1.0 + 4.0 * rim));
+    float creeps = stepf(-0.1, 0.5, 0.35 * patch_ - stretch);
+    if (creeps <= 0.0) return behind;
+    float phase = 1.9 * noise3(float3_mad(vec3(0.0, 0.04 * t, 0.0), p, 1.0 / 24e-3), 63.0) +
+                        0.6 * noise3(float3_scale(p, 1.0 / 7e-3), 64.0) + 0.11 * t;
+    float since = phase - floor(phase);
+    return max(behind, 0.8 * creeps * stepf(0.0, 0.16, since) * exp(-2.6 * since));
+}
 vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float alone = ember_activity(state.glowing), starved = ember_starved(state.starved, bent.burn, alone);
     float activity = alone + starved;
@@ -216,7 +243,7 @@ vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float inward = (bent.burn - STARVED_BORDER) / (max(state.gradient, 20.0) * 2.0 * EMBER_WIDTH);
     alive = max(alive, 0.55 * starved * exp(-inward * inward));
     float coals = 0.45 * patch_ + 0.42 * bent.medium + 0.55 * fibre + 0.35 * bent.fine;
-    float lit = clamp(LEAF_SPREAD * alive + 0.8 * coals - 0.52, 0.0, 1.0), hot = lit * lit * (1.6 - 0.6 * lit);
+    float lit = clamp(LEAF_SPREAD * alive + coals - 0.56, 0.0, 1.0), hot = lit * lit * (1.6 - 0.6 * lit);
     float temperature = ember_temperature(state.temperature) - STARVED_COOLER * starved;
     vec3 red = blackbody_glow(ember_seen(temperature - LEAF_COOLER * (1.5 - alive)));
     vec3 bright = blackbody_glow(ember_seen(temperature + mix(-LEAF_DIM, LEAF_CORE, hot)));
@@ -261,18 +288,18 @@ void char_shade(Bent bent, vec3 burnt, float ink, inout Point point) {
     float black = stepf(0.12, 0.46, bent.burn);
     point.albedo = burnt;
     if (black <= 0.0) return;
-    float value = 1.0 + 0.35 * bent.medium + 0.3 * bent.fine + 0.35 * bent.coarse;
+    float value = 1.0 + 0.2 * bent.medium + 0.1 * bent.fine + 0.4 * bent.coarse;
     vec3 soot =
         mix(vec3(0.034, 0.020, 0.012), vec3(0.0125, 0.0125, 0.0132), stepf(0.22, 0.62, bent.burn));
-    float craze = paper_cracks(bent, 2.1, 0.05, point.footprint);
+    float craze = paper_cracks(bent, 3.1, 0.04, point.footprint);
     vec3 colour = float3_scale(soot, value * (1.0 - 0.6 * craze));
-    point.albedo = mix(burnt, float3_mad(colour, vec3(0.052, 0.052, 0.055), ink), black);
+    point.albedo = mix(burnt, float3_mad(colour, vec3(0.060, 0.060, 0.063), ink), black);
     float tar = clamp(0.75 + 0.5 * bent.coarse - 0.5 * ink, 0.2, 1.2);
-    point.gloss = 0.055 * black * tar;
+    point.gloss = 0.06 * black * tar;
     point.shininess = 14.0;
     point.mirror = 0.45 * black * tar;
-    tilt(bent.position, 3.6, 0.34 * black, true, 32.0, point);
-    tilt(bent.position, 0.9, 0.11 * black, false, 31.0, point);
+    tilt(bent.position, 5.2, 0.40 * black, true, 32.0, point);
+    tilt(bent.position, 1.6, 0.10 * black, false, 31.0, point);
 }
 float light_mirrored(Point point) {
     float rest = 1.0 - max(dot(point.normal, point.view), 0.0), rest2 = rest * rest;
