@@ -3,7 +3,7 @@
 # Prints:
 #   0.5 s: lowest at -140 mm
 #   1.0 s: lowest at -30 mm
-#   1.5 s: lowest at -730 mm
+#   1.5 s: lowest at -720 mm
 import sample
 
 sim = sample.fire()
