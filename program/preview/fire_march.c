@@ -9,7 +9,8 @@
 
 #define FIRE_SHORT 0.18f   ///< step near an edge, relative to the usual one: .35 leaves ribs in thin sheets
 #define FIRE_NOTED 0.8f    ///< of the usual step, which what is noted is longer than
-#define FIRE_NEAR 4.0f     ///< short steps from an edge, in usual ones: with 2, arcs are seen inside of tongues
+#define FIRE_NEAR 5.0f     ///< short steps from an edge, in usual ones: with 2, arcs are seen inside of tongues
+#define FIRE_JUMP 0.5f     ///< of a step: by more the depth changes only near edges that eddies have bent
 #define SMOKE_APART 0.005f ///< m, between rays that have smoke
 #define SMOKE_STEP 0.010f  ///< m, distance at most between the places of a ray where its smoke is looked up
 #define FIRE_SOFT 6.0f     ///< pixels, over which the edges of flames begin: rays are two apart, depths rough
@@ -146,7 +147,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile
     SmokeLine line = {
         .length = maxf(minf(fire->cell, SMOKE_STEP), min), .first = -2, .ray = number, .pixel = preview->camera.pixel};
     if (tile && tile->apart && line.length == tile->length) line.tile = tile;
-    float leave = -1;
+    float leave = -1, again = -1; // again: up to where steps are short, as a long one has met an edge
     int in_brick = 0, near = 0;
 
     while (t < far && clear > 0.02f) {
@@ -183,11 +184,17 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile
         known = true;
         bool seek = dark && flame;
         const float away = here.depth > FIRE_OUTSIDE ? 2 * fine : 3 * fine;
-        float length = dark ? away : fabsf(here.depth) < FIRE_NEAR * fine ? FIRE_SHORT * fine : fine;
+        const bool edge = t < again || fabsf(here.depth) < FIRE_NEAR * fine;
+        float length = dark ? away : edge ? FIRE_SHORT * fine : fine;
         float step = maxf(flame ? length : line.length, min);
         float next = minf(maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step), until);
         step = next - t;
         const FirePoint there = flame ? fire_at_point(fire, float3_mad(eye, d, next), blur * next) : outside;
+        const bool jumps = fabsf(there.depth - here.depth) > FIRE_JUMP * step && there.depth < FIRE_NEAR * fine;
+        if (flame && !dark && !edge && jumps) {
+            again = next; // the same distance in short steps: else the long ones of rays side by side are bars
+            continue;
+        }
         dark = there.depth < -2 * fine;
         if (seek && !dark) continue; // the same distance again in short steps
         if (maxf(here.depth, there.depth) > FIRE_OUTSIDE) view_extend(view, t, next);
