@@ -36,7 +36,8 @@
 // sheets has a pale core, too.
 //
 // Soot is clear and hot in threads, the creases of a noise, and denser and cooler in the folds between them. So a sheet in
-// front hides much of what burns behind it, and a body of many sheets does not add up to one flat yellow. Above the foot
+// front hides much of what burns behind it, and a body of many sheets does not add up to one flat yellow: in a strong fire
+// above its foot, soot hides somewhat more than it glows, as what is nearest is cooler than what it hides. Above the foot
 // filaments run along the flow, hotter and denser, with gaps between them. They are folds of a sheet, sharp at one side and
 // soft at the other: alike at both they would be strands. Soot cools with height and thins out towards the tips.
 
@@ -114,7 +115,7 @@
 #define FOOT_COOL 0.20f         ///< of the range of temperatures: soot begins orange
 #define FOOT_HOT 0.50f          ///< of that range: streaks in the foot are hot
 #define JOINED_HOT 0.15f
-#define FILAMENT_HOT 0.52f
+#define FILAMENT_HOT 0.55f
 #define HIGH_COOL 0.18f
 #define SPENT_COOL 0.25f
 #define SPENT_THIN 0.4f
@@ -125,6 +126,7 @@
 #define STREAK 0.05f        ///< of the noise whose creases they are
 #define CORE_BEGINS 0.0030f ///< m
 #define CORE_FULL 0.0240f
+#define CORE_HIDES 0.22f ///< more than it glows
 
 // ---- looking up
 
@@ -289,7 +291,7 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
     const float fold = (1 - clear) * (1 - clear) * mixf(0.25f, 1, above);
     soot *= 0.35f + 3.5f * fold * (1 + 0.7f * pane) + 1.2f * clear * clear + 2.5f * streak * (1 - above);
     soot *= (0.6f + 0.9f * torn * maxf(thread.b, -0.5f)) * (1 - 0.75f * tip) * (1 + 0.95f * filament);
-    point->opaque = SOOT_DENSE * soot;
+    point->opaque = SOOT_DENSE * soot * (1 + CORE_HIDES * above * core);
     point->soot = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * soot);
     point->root = float3_scale(float3(0.12f, 0.42f, 1.25f), BLUE_DENSE * root);
 }

@@ -97,6 +97,29 @@ TEST(a_body_of_flame_has_folds) {
     assert_true(differs > 18 * (float)count); // 15.0 where soot was as dense everywhere
 }
 
+/// A deep bed of flames is not one white, at the exposure of a dim room: its folds are seen before what is behind them.
+TEST(a_deep_fire_is_not_all_pale) {
+    enum { MOMENTS = 6 };
+    static Line line;
+    static Burning paper;
+    static uint8_t rgb[BYTES];
+    int flame = 0, pale = 0;
+    line_make(&line, 0.003f), burning_make(&paper);
+    for (int i = 0; i < COLUMN; i++)
+        line.flame[i] = i % WIDE > 0 && i % WIDE < WIDE - 1 ? 5e6f * expf(-0.1f * (float)(i / (WIDE * DEEP))) : 0;
+    PreviewDef def = aside(0.02f);
+    def.camera = (PreviewCamera){.eye = {0, -0.5f, 0.07f}, .target = {0, 0, 0.07f}, .up = {0, 0, 1}, .fov = 0.3f};
+    def.exposure = 1.6f;
+    for (int k = 0; k < MOMENTS; k++) {
+        draw_gas(&def, &paper.surface, &line.gas, 0.3 + k / 6.0, rgb);
+        for (int i = 0; i < W * H; i++)
+            flame += pixel_flames(rgb + 3 * i), pale += pixel_flames(rgb + 3 * i) && pixel_is_pale(rgb + 3 * i);
+    }
+    print_message("a deep fire: of %d pixels of flame %.1f %% are pale\n", flame, 100.0 * pale / flame);
+    assert_true(flame > MOMENTS * W * H / 5);
+    assert_true(1000 * pale > 80 * flame && 1000 * pale < 155 * flame); // 17.2 % where soot hid what it glows
+}
+
 /// The light that a ray meets over 16 cm, in steps of a tenth of a mm.
 static float light_in_short_steps(const Fire *fire, Float3 from, Float3 direction) {
     const float step = 1e-4f, blur = 6 * 2e-4f;

@@ -368,7 +368,7 @@ const float STREAK_FULL = 0.0058;
 const float FOOT_COOL = 0.2;
 const float FOOT_HOT = 0.5;
 const float JOINED_HOT = 0.15;
-const float FILAMENT_HOT = 0.52;
+const float FILAMENT_HOT = 0.55;
 const float HIGH_COOL = 0.18;
 const float SPENT_COOL = 0.25;
 const float SPENT_THIN = 0.4;
@@ -379,6 +379,7 @@ const float FOOT_HAZE = 0.08;
 const float STREAK = 0.05;
 const float CORE_BEGINS = 0.003;
 const float CORE_FULL = 0.024;
+const float CORE_HIDES = 0.22;
 const float SMOKE_STEP = 0.01;
 const float FIRE_SOFT = 6.0;
 struct FireCell { float flame; float rise; float smoke; float glow; };
@@ -465,7 +466,7 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     float fold = (1.0 - clear) * (1.0 - clear) * mix(0.25, 1.0, above);
     soot *= 0.35 + 3.5 * fold * (1.0 + 0.7 * pane) + 1.2 * clear * clear + 2.5 * streak * (1.0 - above);
     soot *= (0.6 + 0.9 * torn * max(thread.b, -0.5)) * (1.0 - 0.75 * tip) * (1.0 + 0.95 * filament);
-    point.opaque = SOOT_DENSE * soot;
+    point.opaque = SOOT_DENSE * soot * (1.0 + CORE_HIDES * above * core);
     point.soot = float3_scale(flame_colour(clamp(hot, 0.0, 1.0)), SOOT_DENSE * soot);
     point.root = float3_scale(vec3(0.12, 0.42, 1.25), BLUE_DENSE * root);
 }
