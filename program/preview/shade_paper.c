@@ -302,7 +302,7 @@ static float leaf_alive(const Preview *preview, const PaperState *state, const B
     const float t = seconds(preview), border = 1e3f * border_distance(state, bent); // mm
     Float3 p = float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 0.5e-3f);
     const float stretch = noise3(float3_mad(float3(0.05f * t, -0.08f * t, 0.11f * t), p, 1 / 17e-3f), 61);
-    const float rim = stepf(-0.3f, 0.5f, stretch + 0.4f * patch);
+    const float rim = stepf(-0.3f, 0.5f, stretch + 0.9f * patch);
     const float behind = rim * expf(-border / (1 + 4 * rim));
 
     const float creeps = stepf(-0.1f, 0.5f, 0.35f * patch - stretch);
@@ -325,7 +325,7 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     const float patch = noise3(float3_mad(float3(-0.3f * t, 0.2f * t, 0.4f * t), bent->position, 1 / 4.4e-3f), 62);
     float alive = leaf_alive(preview, state, bent, patch) * (1 - LEAF_STARVES * starved);
     const float inward = (bent->burn - STARVED_BORDER) / (maxf(state->gradient, 20) * 2 * EMBER_WIDTH);
-    alive = maxf(alive, 0.55f * starved * expf(-inward * inward));
+    alive = maxf(alive, 1.1f * starved * expf(-inward * inward));
 
     const float coals = 0.45f * patch + 0.42f * bent->medium + 0.55f * fibre + 0.35f * bent->fine;
     const float lit = clampf(LEAF_SPREAD * alive + coals - 0.56f, 0, 1), hot = lit * lit * (1.6f - 0.6f * lit);

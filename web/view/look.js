@@ -224,7 +224,7 @@ float leaf_alive(PaperState state, Bent bent, float patch_) {
     float t = seconds(), border = 1e3 * border_distance(state, bent);
     vec3 p = float3_mad(bent.position, vec3(bent.medium, bent.coarse, bent.fine), 0.5e-3);
     float stretch = noise3(float3_mad(vec3(0.05 * t, -0.08 * t, 0.11 * t), p, 1.0 / 17e-3), 61.0);
-    float rim = stepf(-0.3, 0.5, stretch + 0.4 * patch_);
+    float rim = stepf(-0.3, 0.5, stretch + 0.9 * patch_);
     float behind = rim * exp(-border / (1.0 + 4.0 * rim));
     float creeps = stepf(-0.1, 0.5, 0.35 * patch_ - stretch);
     if (creeps <= 0.0) return behind;
@@ -241,7 +241,7 @@ vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float patch_ = noise3(float3_mad(vec3(-0.3 * t, 0.2 * t, 0.4 * t), bent.position, 1.0 / 4.4e-3), 62.0);
     float alive = leaf_alive(state, bent, patch_) * (1.0 - LEAF_STARVES * starved);
     float inward = (bent.burn - STARVED_BORDER) / (max(state.gradient, 20.0) * 2.0 * EMBER_WIDTH);
-    alive = max(alive, 0.55 * starved * exp(-inward * inward));
+    alive = max(alive, 1.1 * starved * exp(-inward * inward));
     float coals = 0.45 * patch_ + 0.42 * bent.medium + 0.55 * fibre + 0.35 * bent.fine;
     float lit = clamp(LEAF_SPREAD * alive + coals - 0.56, 0.0, 1.0), hot = lit * lit * (1.6 - 0.6 * lit);
     float temperature = ember_temperature(state.temperature) - STARVED_COOLER * starved;
