@@ -357,13 +357,6 @@ float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth
     return 1 - stepf(-0.4f, 0.3f, up);
 }
 
-/// How much burns there, 0 to 1: most of a rim is dead for some centimetres, and the rest of it varies.
-static float cloth_life(const float at[2], float wide, float t) {
-    const float far[2] = {at[0] + 0.9f * t, at[1] - 0.6f * t}, near[2] = {at[0] - 1.7f * t, at[1] + 1.1f * t};
-    const float n = 0.75f * oblique(far, 90, wide, 201) + 0.5f * oblique(near, 34, wide, 202);
-    return stepf(-0.05f, 0.5f, n + 0.2f * oblique(near, 12, wide, 203));
-}
-
 /// A line so far from its middle, in threads; narrower than a pixel it is drawn a pixel wide and paler.
 static float cloth_line(float distance, float width, float wide) {
     const float seen = maxf(width, 0.6f * wide), x = distance / seen;
@@ -381,7 +374,13 @@ void cloth_glow(const Preview *preview, const Weave *weave, const PaperState *st
     point->glow = float3(0, 0, 0);
     if (alone + starved < 0.02f || mean < BLACKBODY_MIN) return;
 
-    const float t = (float)fmod(preview->time, 4096.0), life = cloth_life(cloth->at, wide, t);
+    // how much burns there, 0 to 1: most of a rim is dead for some centimetres, and the rest of it varies
+    const float t = (float)fmod(preview->time, 4096.0), *place = cloth->at;
+    const float far[2] = {place[0] + 0.9f * t, place[1] - 0.6f * t},
+                near[2] = {place[0] - 1.7f * t, place[1] + 1.1f * t};
+    const float alive = 0.75f * oblique(far, 90, wide, 201) + 0.5f * oblique(near, 34, wide, 202);
+    const float life = stepf(-0.05f, 0.5f, alive + 0.2f * oblique(near, 12, wide, 203));
+
     const float rim = cloth_line(cloth->left, RIM_GLOW * (0.5f + life), wide);
     const float bow = 5 * oblique(cloth->at, 9, wide, 207), at[2] = {cloth->at[0] + bow - 0.8f * t, cloth->at[1] - bow};
     const float creeping = life > 0 ? cloth_line(32 * fabsf(oblique(at, 80, wide, 205)), 0.9f, wide) : 0;

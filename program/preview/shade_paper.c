@@ -135,11 +135,6 @@ static Float3 ash_along(const Bent *bent) {
     return float3(0.14f * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
 }
 
-/// 1 on a fibre.
-static float ash_fibre(Float3 along, float footprint) {
-    return clampf(1.6f - footprint * 1400, 0, 1) * ridge(noise3(float3_scale(along, 2100), 12), 0.5f);
-}
-
 /// How far cold char has turned to ash, `cloud` its patches, `strand` and `fibre` its threads: from black at 0 over dark grey to
 /// pale at 1. A fringe along dead borders, of a millimetre to some, pales first, in tongues that follow the fibres; in time a
 /// thin skin of threads lies on the rest as well. Nothing of it ends abruptly: what does looks pasted on.
@@ -164,7 +159,8 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
     if (bent->burn < PAPER_WHOLE) return;
     Float3 along = ash_along(bent);
     const float cloud = 1.2f * paper_noise(bent->position, 12, size, 19), strand = paper_noise(along, 1.5f, size, 20);
-    const float fibre = ash_fibre(along, size), plate = ash_on_char(state, bent, cloud, strand, fibre);
+    const float fibre = clampf(1.6f - size * 1400, 0, 1) * ridge(noise3(float3_scale(along, 2100), 12), 0.5f);
+    const float plate = ash_on_char(state, bent, cloud, strand, fibre);
     const float whole = ash_amount(bent);
     const float amount = maxf(whole, minf(2.2f * plate, 0.92f));
     const float dry = 1 - 0.4f * stepf(2, 9, state->age); // tar dries
@@ -238,13 +234,6 @@ float ember_air(const Preview *preview, Float3 p) {
 static float ember_seen(float temperature) {
     const float above = maxf(temperature - EMBER_HOT, 0), most = 160;
     return temperature - above + above * most / (above + most);
-}
-
-/// Noise of threads .4 mm wide and some millimetres long, whose direction wanders over the sheet, [-1, 1].
-static float ember_fibre(const Bent *bent, float footprint) {
-    Float3 p = bent->position;
-    const float wander = 1.7f * noise3(float3_scale(p, 70), 65), c = cosf(wander), s = sinf(wander);
-    return paper_noise(float3(0.25f * (c * p.x + s * p.y), c * p.y - s * p.x, p.z), 0.5f, footprint, 66);
 }
 
 /// Activity of the line at a point, 0 (dead) to 1.
@@ -321,7 +310,12 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     const float activity = alone + starved;
     if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
 
-    const float t = seconds(preview), fibre = ember_fibre(bent, footprint);
+    // threads .4 mm wide and some millimetres long, whose direction wanders over the sheet
+    Float3 p = bent->position;
+    const float wander = 1.7f * noise3(float3_scale(p, 70), 65), c = cosf(wander), s = sinf(wander);
+    const float fibre = paper_noise(float3(0.25f * (c * p.x + s * p.y), c * p.y - s * p.x, p.z), 0.5f, footprint, 66);
+
+    const float t = seconds(preview);
     const float patch = noise3(float3_mad(float3(-0.3f * t, 0.2f * t, 0.4f * t), bent->position, 1 / 4.4e-3f), 62);
     float alive = leaf_alive(preview, state, bent, patch) * (1 - LEAF_STARVES * starved);
     const float inward = (bent->burn - STARVED_BORDER) / (maxf(state->gradient, 20) * 2 * EMBER_WIDTH);

@@ -305,31 +305,26 @@ static double motion_sum(void *task, int begin, int end) {
     return sum;
 }
 
-/// How many parts the next step is to have, as this one has moved.
-static uint32_t next_parts(const Ccd *ccd, Pool *pool) {
-    const CollisionPlan *plan = ccd->plan;
-    double largest = 0;
-    pool_sum(pool, (int)plan->cell_count, motion_sum, (void *)ccd, plan->partial);
-    for (int block = 0; block < pool_blocks((int)plan->cell_count); block++)
-        largest = double_max(largest, plan->partial[block]);
-
-    const float cells = plan->cell_count < POOL_BLOCK ? (float)plan->cell_count : POOL_BLOCK;
-    const float motion = plan->time_step / plan->h * (float)largest / cells;
-    if (!(motion >= PARTS_FROM)) return 1;
-    return motion < COLLISION_PARTS * PARTS_MOTION ? (uint32_t)ceilf(motion / PARTS_MOTION) : COLLISION_PARTS;
-}
-
 SingeResult ccd_apply(Memory *memory, CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                       float h, DynamicsState *dynamics) {
     double start = clock_seconds();
     const uint64_t halts = plan->counters.halts;
     SingeResult result = close_step(memory, plan, shell, state, pool, h, dynamics);
 
-    // the next step has half as many parts as this one at least, and four times as many if this one has halted
+    // how this step has moved the cells of the block where that is most
+    Ccd ccd = {.plan = plan, .cell_flags = state->ablate->cell_flags};
+    double largest = 0;
+    pool_sum(pool, (int)plan->cell_count, motion_sum, &ccd, plan->partial);
+    for (int block = 0; block < pool_blocks((int)plan->cell_count); block++)
+        largest = double_max(largest, plan->partial[block]);
+    const float cells = plan->cell_count < POOL_BLOCK ? (float)plan->cell_count : POOL_BLOCK;
+    const float motion = plan->time_step / plan->h * (float)largest / cells;
+
+    // the next one has half as many parts as this one at least, and four times as many if this one has halted
     const uint32_t parts = (uint32_t)(plan->time_step / plan->h + 0.5f), max = COLLISION_PARTS;
-    const Ccd ccd = {.plan = plan, .cell_flags = state->ablate->cell_flags};
-    const uint32_t least = plan->counters.halts > halts ? 4 * parts : parts / 2, moved = next_parts(&ccd, pool);
-    const uint32_t next = moved > least ? moved : least;
+    uint32_t next = plan->counters.halts > halts ? 4 * parts : parts / 2, asked = 1;
+    if (motion >= PARTS_FROM) asked = motion < max * PARTS_MOTION ? (uint32_t)ceilf(motion / PARTS_MOTION) : max;
+    if (asked > next) next = asked;
     if (next > 1 || parts > 1) plan->restless = next < max ? 2 * next : 2 * max;
 
     plan->pair_count = plan->listed_count;

@@ -15,12 +15,6 @@ static inline Lanes move_start(const MoveLanes *job, size_t i, Lanes change) {
     return kept;
 }
 
-/// A step begins without one.
-static inline void move_start_clear(const MoveLanes *job, size_t i) {
-    lanes_store(job->given + i, lanes_all(0));
-    lanes_store(job->start + i, lanes_all(0));
-}
-
 /// Quadruples from number i on, which is that of the first one times four.
 static inline void move_lanes(const MoveLanes *job, size_t i, bool closes, bool opens, bool drags, bool damps,
                               bool starts) {
@@ -48,7 +42,11 @@ static inline void move_lanes(const MoveLanes *job, size_t i, bool closes, bool 
         point = point + h * velocity;
         Lanes moved = point;
         if (starts && closes) moved += move_start(job, i, old_point - old_predicted);
-        else if (starts) move_start_clear(job, i);
+        if (starts && !closes) { // a step begins without a start
+            lanes_store(job->given + i, zero);
+            lanes_store(job->start + i, zero);
+        }
+
         lanes_store(job->position + i, lanes_where_less(zero, mass, moved, old_point));
         lanes_store(job->predicted + i, lanes_where_less(zero, mass, point, old_predicted));
     }

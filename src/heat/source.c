@@ -13,7 +13,6 @@
 static void source_ball(HeatPass *pass, const Source *source, const SingeView *view);
 static void source_texture(HeatPass *pass, const Source *source, const SingeView *view);
 static void source_callback(HeatPass *pass, const Source *source, const SingeView *view);
-static void source_arrives(HeatPass *pass, const Source *source, const SingeView *view);
 static void source_wets(HeatPass *pass, const Source *source, const SingeView *view);
 static void source_blow(HeatPass *pass, const Source *source, const SingeView *view);
 static SingeResult source_check_air(const SingeSourceDef *def, SingeError *error);
@@ -21,7 +20,8 @@ static SingeResult source_check_ball(const SingeSourceDef *def, SingeError *erro
 static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *error);
 static SingeResult source_check_arrival(const SingeSourceDef *def, SingeError *error);
 
-/// A kind of source: what it checks besides the ranges of its fields (NULL: nothing), and how it adds its heat.
+/// A kind of source: what it checks besides the ranges of its fields (NULL: nothing), and how it adds its heat (NULL:
+/// it does not).
 static const struct SourceKind {
     SingeResult (*check)(const SingeSourceDef *def, SingeError *error);
     void (*add)(HeatPass *pass, const Source *source, const SingeView *view);
@@ -30,8 +30,8 @@ static const struct SourceKind {
     [SINGE_SOURCE_BALL] = {source_check_ball, source_ball, true},
     [SINGE_SOURCE_TEXTURE] = {source_check_texture, source_texture, false},
     [SINGE_SOURCE_SPOT] = {source_check_ball, source_ball, true},
-    [SINGE_SOURCE_CALLBACK] = {NULL, source_callback, false}, // its function may be set later
-    [SINGE_SOURCE_ARRIVAL] = {source_check_arrival, source_arrives, false},
+    [SINGE_SOURCE_CALLBACK] = {NULL, source_callback, false},     // its function may be set later
+    [SINGE_SOURCE_ARRIVAL] = {source_check_arrival, NULL, false}, // no heat before conduction: arrival.c
     [SINGE_SOURCE_WATER] = {source_check_texture, source_wets, false},
     [SINGE_SOURCE_JET] = {source_check_air, source_blow, true},
     [SINGE_SOURCE_VORTEX] = {source_check_air, source_blow, true},
@@ -368,11 +368,6 @@ static void source_blow(HeatPass *pass, const Source *source, const SingeView *v
     pool_for(pass->pool, (int)pass->plan->particles, POOL_GRAIN, source_blow_task, &job);
 }
 
-/// A map adds no heat before conduction (arrival.c).
-static void source_arrives(HeatPass *pass, const Source *source, const SingeView *view) {
-    (void)pass, (void)source, (void)view;
-}
-
 static void source_callback(HeatPass *pass, const Source *source, const SingeView *view) {
     HeatPlan *plan = pass->plan;
     if (!source->def.callback) return;
@@ -477,7 +472,8 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
 
     for (uint32_t k = 0; sources && k < sources->count; k++) {
         const Source *source = &sources->items[k];
-        if (source_is_lit(source, time)) source_kinds[source->def.kind].add(pass, source, view);
+        const struct SourceKind *kind = &source_kinds[source->def.kind];
+        if (kind->add && source_is_lit(source, time)) kind->add(pass, source, view);
     }
 
     // sheets that smother

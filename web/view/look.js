@@ -114,9 +114,6 @@ vec3 ash_along(Bent bent) {
     float wander = 2.4 * noise3(float3_scale(p, 70.0), 11.0), c = cos(wander), s = sin(wander);
     return vec3(0.14 * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
 }
-float ash_fibre(vec3 along, float footprint) {
-    return clamp(1.6 - footprint * 1400.0, 0.0, 1.0) * ridge(noise3(float3_scale(along, 2100.0), 12.0), 0.5);
-}
 float ash_on_char(PaperState state, Bent bent, float cloud, float strand, float fibre) {
     float cold = stepf(PAPER_WHOLE, 0.5, bent.burn) * (1.0 - stepf(520.0, 760.0, bent.temperature));
     if (cold <= 0.0) return 0.0;
@@ -135,7 +132,8 @@ void ash_shade(PaperState state, Bent bent, float ink, inout Point point) {
     if (bent.burn < PAPER_WHOLE) return;
     vec3 along = ash_along(bent);
     float cloud = 1.2 * paper_noise(bent.position, 12.0, size, 19.0), strand = paper_noise(along, 1.5, size, 20.0);
-    float fibre = ash_fibre(along, size), plate = ash_on_char(state, bent, cloud, strand, fibre);
+    float fibre = clamp(1.6 - size * 1400.0, 0.0, 1.0) * ridge(noise3(float3_scale(along, 2100.0), 12.0), 0.5);
+    float plate = ash_on_char(state, bent, cloud, strand, fibre);
     float whole = ash_amount(bent);
     float amount = max(whole, min(2.2 * plate, 0.92));
     float dry = 1.0 - 0.4 * stepf(2.0, 9.0, state.age);
@@ -174,11 +172,6 @@ float ember_air(vec3 p) {
 float ember_seen(float temperature) {
     float above = max(temperature - EMBER_HOT, 0.0), most = 160.0;
     return temperature - above + above * most / (above + most);
-}
-float ember_fibre(Bent bent, float footprint) {
-    vec3 p = bent.position;
-    float wander = 1.7 * noise3(float3_scale(p, 70.0), 65.0), c = cos(wander), s = sin(wander);
-    return paper_noise(vec3(0.25 * (c * p.x + s * p.y), c * p.y - s * p.x, p.z), 0.5, footprint, 66.0);
 }
 float line_life(Bent bent) {
     float t = seconds();
@@ -237,7 +230,10 @@ vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float alone = ember_activity(state.glowing), starved = ember_starved(state.starved, bent.burn, alone);
     float activity = alone + starved;
     if (activity < 0.02 || ember_temperature(state.temperature) < BLACKBODY_MIN) return vec3(0.0, 0.0, 0.0);
-    float t = seconds(), fibre = ember_fibre(bent, footprint);
+    vec3 p = bent.position;
+    float wander = 1.7 * noise3(float3_scale(p, 70.0), 65.0), c = cos(wander), s = sin(wander);
+    float fibre = paper_noise(vec3(0.25 * (c * p.x + s * p.y), c * p.y - s * p.x, p.z), 0.5, footprint, 66.0);
+    float t = seconds();
     float patch_ = noise3(float3_mad(vec3(-0.3 * t, 0.2 * t, 0.4 * t), bent.position, 1.0 / 4.4e-3), 62.0);
     float alive = leaf_alive(state, bent, patch_) * (1.0 - LEAF_STARVES * starved);
     float inward = (bent.burn - STARVED_BORDER) / (max(state.gradient, 20.0) * 2.0 * EMBER_WIDTH);

@@ -252,19 +252,6 @@ void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h,
     strands_project_colour(plan, colour, pool, h, 1, dynamics, counters);
 }
 
-/// Times that the last colour is projected after the others, as its families pull each other's strands off their lengths:
-/// twice halves the strain, for a tenth of a substep's work. Where one vertex carries a sheet, two edges have its load,
-/// and take longest. Sheets that may tear have one: by the forces of several a cold one would.
-static int strands_last(const DynamicsPlan *plan, const Shell *shell) {
-    enum { TWICE = 2, HUNG_BY_ONE = 5 };
-    if (shell->spare_count > 0) return 1;
-    for (uint32_t s = 0; s < shell->sheet_count && plan->settings.solver.attachments; s++) {
-        const uint32_t *source = plan->attachments.source[s];
-        if (source[0] != SHELL_NONE && source[1] == SHELL_NONE) return HUNG_BY_ONE;
-    }
-    return TWICE;
-}
-
 /// A projection of all colours: the attachments come first, for the load, and before the last colour, which is satisfied
 /// best: so it repairs what they disturb.
 static SingeResult strands_project(DynamicsPlan *plan, const Substep *substep) {
@@ -274,6 +261,17 @@ static SingeResult strands_project(DynamicsPlan *plan, const Substep *substep) {
     Pool *pool = substep->pool;
     DynamicsState *dynamics = substep->dynamics;
     const float h = substep->h;
+
+    // Times that the last colour is projected after the others, as its families pull each other's strands off their lengths:
+    // twice halves the strain, for a tenth of a substep's work. Where one vertex carries a sheet, two edges have its load,
+    // and take longest. Sheets that may tear have one: by the forces of several a cold one would.
+    enum { TWICE = 2, HUNG_BY_ONE = 5 };
+    int times = shell->spare_count > 0 ? 1 : TWICE;
+    for (uint32_t s = 0; s < shell->sheet_count && solver->attachments && times > 1; s++) {
+        const uint32_t *source = plan->attachments.source[s];
+        if (source[0] != SHELL_NONE && source[1] == SHELL_NONE) times = HUNG_BY_ONE;
+    }
+
     for (int projection = 0; projection < solver->projections; projection++)
         for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
             const bool last = i == SINGE_COLOUR_COUNT - 1,
@@ -282,7 +280,7 @@ static SingeResult strands_project(DynamicsPlan *plan, const Substep *substep) {
                 attach_project(&plan->attachments, shell, plan->kernels->hold, pool, dynamics);
             if (last) curvature_project(plan, pool, dynamics);
             double start = clock_seconds();
-            const int count = last && projection + 1 == solver->projections ? strands_last(plan, shell) : 1;
+            const int count = last && projection + 1 == solver->projections ? times : 1;
             for (int k = 0; k < count; k++)
                 strands_project_colour(plan, solver->order[i], pool, h, count, dynamics, substep->counters);
             substep->counters->seconds += clock_seconds() - start;
