@@ -74,7 +74,7 @@ typedef enum Number {
     NUMBERS
 } Number;
 
-static const float STILL_SPEED = 1e-4f; // m/s
+static const float STILL_SPEED = 1e-4f; // m/s, as the title says
 
 static const struct {
     const char *key, *title, *format;

@@ -212,6 +212,7 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 /// Of a leaf's glow.
 #define LEAF_SPREAD 1.35f
 #define LEAF_STARVES 0.2f ///< how much less of it is alive below a flame
+#define LEAF_FRONT 1.1f   ///< alive along the front of char that feeds a flame; above 1 it has no gaps
 #define LEAF_DULL 1.7f
 #define LEAF_COOLER 150.0f ///< K, how much cooler it is between coals
 #define LEAF_BRIGHT 1.4f
@@ -319,7 +320,7 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     const float patch = noise3(float3_mad(float3(-0.3f * t, 0.2f * t, 0.4f * t), bent->position, 1 / 4.4e-3f), 62);
     float alive = leaf_alive(preview, state, bent, patch) * (1 - LEAF_STARVES * starved);
     const float inward = (bent->burn - STARVED_BORDER) / (maxf(state->gradient, 20) * 2 * EMBER_WIDTH);
-    alive = maxf(alive, 1.1f * starved * expf(-inward * inward));
+    alive = maxf(alive, LEAF_FRONT * starved * expf(-inward * inward));
 
     const float coals = 0.45f * patch + 0.42f * bent->medium + 0.55f * fibre + 0.35f * bent->fine;
     const float lit = clampf(LEAF_SPREAD * alive + coals - 0.56f, 0, 1), hot = lit * lit * (1.6f - 0.6f * lit);

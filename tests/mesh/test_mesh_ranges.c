@@ -43,13 +43,13 @@ static SingeResult make_mesh(const void *def, SingeMesh **mesh, SingeError *erro
     return singe_mesh_create(def, mesh, error);
 }
 
-/// Tries each element of a row at the ends of its range, and just beyond them.
+/// Tries each element of a row at the ends of its range, just beyond them, and as no number.
 static void try_row(const Row *row, const void *standard, size_t size, MakeFn *make) {
     const float low = row->range.low, high = row->range.high;
     const float values[] = {low, high, row->whole ? low - 1 : nextafterf(low, -INFINITY),
-                            row->whole ? high + 1 : nextafterf(high, INFINITY)};
+                            row->whole ? high + 1 : nextafterf(high, INFINITY), NAN};
     for (int k = 0; k < row->length; k++)
-        for (int v = row->whole ? 2 : 0; v < 4; v++) { // a grid of 20000 cells a side takes long
+        for (int v = row->whole ? 2 : 0; v < (row->whole ? 4 : 5); v++) { // a grid of 20000 cells a side takes long
             union {
                 SingeGridDef grid;
                 SingeMeshDef mesh;
@@ -57,7 +57,7 @@ static void try_row(const Row *row, const void *standard, size_t size, MakeFn *m
             SingeMesh *mesh;
             SingeError error = {0};
             const bool fits = range_has(&row->range, values[v]);
-            const uint32_t whole = (uint32_t)values[v];
+            const uint32_t whole = row->whole ? (uint32_t)values[v] : 0;
             memcpy(&def, standard, size);
             memcpy((char *)&def + row->offset + 4 * (size_t)k, row->whole ? (const void *)&whole : &values[v], 4);
 

@@ -15,6 +15,7 @@ const float EMBER_MOST = 6.0;
 const float EMBER_HOT = 1180.0;
 const float LEAF_SPREAD = 1.35;
 const float LEAF_STARVES = 0.2;
+const float LEAF_FRONT = 1.1;
 const float LEAF_DULL = 1.7;
 const float LEAF_COOLER = 150.0;
 const float LEAF_BRIGHT = 1.4;
@@ -237,7 +238,7 @@ vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float patch_ = noise3(float3_mad(vec3(-0.3 * t, 0.2 * t, 0.4 * t), bent.position, 1.0 / 4.4e-3), 62.0);
     float alive = leaf_alive(state, bent, patch_) * (1.0 - LEAF_STARVES * starved);
     float inward = (bent.burn - STARVED_BORDER) / (max(state.gradient, 20.0) * 2.0 * EMBER_WIDTH);
-    alive = max(alive, 1.1 * starved * exp(-inward * inward));
+    alive = max(alive, LEAF_FRONT * starved * exp(-inward * inward));
     float coals = 0.45 * patch_ + 0.42 * bent.medium + 0.55 * fibre + 0.35 * bent.fine;
     float lit = clamp(LEAF_SPREAD * alive + coals - 0.56, 0.0, 1.0), hot = lit * lit * (1.6 - 0.6 * lit);
     float temperature = ember_temperature(state.temperature) - STARVED_COOLER * starved;
