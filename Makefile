@@ -213,9 +213,10 @@ mutations:
 	scripts/setup.sh
 	tests/mutations/mutations.py
 
-# the swinging sheet in other solvers and in this one, and the table of docs/performance.md
+# a swinging and a falling sheet in other solvers and in this one, and the tables of docs/performance.md; NVCLOTH=FOLDER: also
+# in NvCloth, whose sources are there
 bench-peers: build
-	scripts/bench_peers.py build/singe --table
+	scripts/bench_peers.py build/singe --table $(if $(NVCLOTH),--nvcloth $(NVCLOTH))
 
 # how much of each folder of src, program/formats and program/scene the tests reach; docs/coverage.md lists the rest
 coverage:

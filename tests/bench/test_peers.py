@@ -25,12 +25,12 @@ with open(out, "wb") as file:
 
 
 class Peers(unittest.TestCase):
-    def row(self, above=0.0, short=0):
+    def row(self, above=0.0, short=0, drop=False):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "peer")
             Path(path).write_text(PEER.format(python=sys.executable, above=above, short=short), encoding="utf-8")
             os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
-            return bench_peers.run_peer("Known", [path], 8, 10, 5)
+            return bench_peers.run_peer("Known", [path], 8, 10, 5, drop)
 
     def test_known_motion(self):
         name, ms, most, p99, mean, off = self.row(above=0.02)
@@ -40,6 +40,12 @@ class Peers(unittest.TestCase):
         self.assertAlmostEqual(p99, 1, 3)
         self.assertAlmostEqual(mean, 0.5, 3)  # half of the edges lie along y
         self.assertAlmostEqual(off, 2, 3)
+
+    def test_a_known_drop(self):
+        name, ms, end, worst = self.row(drop=True)
+        self.assertAlmostEqual(ms, 2.45)  # the mean of 48 frames
+        self.assertAlmostEqual(end, 1, 3)
+        self.assertAlmostEqual(worst, 1, 3)
 
     def test_a_peer_that_is_cut_short_is_refused(self):
         with self.assertRaisesRegex(ValueError, "not 16 frames of 81 points"):

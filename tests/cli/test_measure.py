@@ -73,7 +73,10 @@ class Measure(Case):
             self.singe("measure", self.path(name), "--csv", self.path("rest.csv"), "--no-preview")
             row = self.table("rest.csv")[-1]
             (_, vertices) = read_ply(self.path(name, "ply", name + ".0030.ply"))
-            slow = [sum(v * v for v in vertex[1]) < 1e-8 for vertex in vertices.values()]
+            squares = sorted(sum(v * v for v in vertex[1]) for vertex in vertices.values())
+            # a sheet at rest without a fire does not creep: p99 of .01 mm/s
+            self.assertEqual(squares[int(0.99 * len(squares))] < 1e-10, name == "lies")
+            slow = [square < 1e-8 for square in squares]
             self.assertAlmostEqual(float(row["still_percent"]), 100 * sum(slow) / len(slow), delta=0.01)
             self.assertTrue(low <= float(row["still_percent"]) <= high, row["still_percent"])
 
