@@ -126,6 +126,13 @@ class Bench(Case):
         self.assertEqual(row["crossing"], 0)
         self.assertGreater(few["worst_p99_pct"], 4)
 
+    def test_wind_costs_by_its_speed(self):
+        """Three times the wind is at most four times the work, and nothing crosses; six times the wind is more."""
+        calm, windy, stormy = self.measure("wind")["rows"]
+        self.assertEqual([row["crossing"] for row in (calm, windy, stormy)], [0, 0, 0])
+        self.assertLess(windy["of_first"], 4)  # 3.1; 39 when CCD went on in rounds over all that moved
+        self.assertGreater(stormy["of_first"], 4)
+
     def test_limit(self):
         out, err = self.singe("bench", "step", "--springs", "1000", "--steps", "3", "--limit-ms", "0.001", expect=1)
         self.assertIn("above the limit of 0.001 ms", err)
