@@ -131,8 +131,8 @@ def find_nvcloth(sources, folder):
     """Compiles its sources and the adapter; None without them."""
     if not sources:
         return None
-    parts = [str(path) for of in ("src", "src/ps/unix", "extensions/src") for path in Path(sources, "NvCloth", of).glob("*.cpp")
-             if path.stem != "PsUnixMutex"]
+    folders = [Path(sources, "NvCloth", of) for of in ("src", "src/ps/unix", "extensions/src")]
+    parts = [str(path) for of in folders for path in of.glob("*.cpp") if path.stem != "PsUnixMutex"]
     include = [f"-I{Path(sources, of)}" for of in ("NvCloth/include", "NvCloth/src", "NvCloth/extensions/include",
                                                    "PxShared/include")]
     program = os.path.join(folder, "nvcloth")
@@ -188,16 +188,16 @@ def main():
 
     with tempfile.TemporaryDirectory() as folder:
         peers = find_peers(options, folder)
-        swing, missing = compare(peers, SETTINGS, [run_singe(options.singe, options.cells, "swing", of) for of in SWING], options.cells, False)
-        drop, none = compare(peers, DROP_SETTINGS, [run_singe(options.singe, options.cells, "drop", of) for of in DROP],
-                             options.cells, True)
+        own = [run_singe(options.singe, options.cells, "swing", of) for of in SWING]
+        swing, missing = compare(peers, SETTINGS, own, options.cells, False)
+        own = [run_singe(options.singe, options.cells, "drop", of) for of in DROP]
+        drop, none = compare(peers, DROP_SETTINGS, own, options.cells, True)
 
-    lines = [f"| {options.cells} x {options.cells} cells swing | ms a frame | strain max / p99 / mean, % | height off by, cm |",
-             "|---|---|---|---|"]
+    size = f"{options.cells} x {options.cells} cells"
+    lines = [f"| {size} swing | ms a frame | strain max / p99 / mean, % | height off by, cm |", "|---|---|---|---|"]
     lines += [f"| {name} | {ms:.3g} | {most:.3g} / {middle:.3g} / {mean:.2g} | {off:.2g} |"
               for name, ms, most, middle, mean, off in swing]
-    lines += ["", f"| {options.cells} x {options.cells} cells drop | ms a frame | p99 of the strain at the end, % | worst of a frame, % |",
-              "|---|---|---|---|"]
+    lines += ["", f"| {size} drop | ms a frame | p99 of the strain at the end, % | worst of a frame, % |", "|---|---|---|---|"]
     lines += [f"| {name} | {ms:.3g} | {end:.3g} | {worst:.3g} |" for name, ms, end, worst in drop]
     print("\n".join(lines + missing + none))
     if options.table:
