@@ -23,10 +23,10 @@
 #define COVER 0.03f       ///< m
 #define COVER_OFF 0.0015f ///< m off the sheet, where the search begins
 #define COVER_WHOLE 0.3f  ///< burnt share, up to which paper hides flames below it
-#define LEAN 1.0f
+#define LEAN 0.7f
 #define LEAN_BELOW 2.0f
 #define BELOW_FREE 1.5f   ///< cells below, from where on it counts: the flame at the paper is a mean with theirs
-#define LEAN_FOOT 0.002f  ///< m
+#define LEAN_FOOT 0.001f  ///< m
 #define LEAN_FALLS 160.0f ///< 1/m
 #define RIM_FLAME 0.85f   ///< of a full flame, where paper burns
 #define RIM_REACH 1.5f    ///< cells, over which that ends

@@ -28,9 +28,9 @@
 // and a step of a ray takes its mean between the depths of its ends, by the integral of P: the shell is thinner than
 // a step. w is SHELL_RISE, or more where rays are further apart, as edges would have steps; the light of a flame
 // stays. It begins at the paper, is faint, clear and blue in the first millimetres, where there is little soot, then
-// pale in its core, and orange at its tips. In its foot, some three centimetres tall, soot glows in hot streaks that
-// widen upwards into the tongues above. A thin seam roots them in what burns, and above it there is next to nothing
-// between them: soot that is even and cool there is a veil.
+// pale in its core, and orange at its tips. Its foot, some two centimetres tall, is one low sheet along what burns, in which
+// soot begins by and by: dim, orange and so thin that the rim is seen through it. In tongues there is more of it, and sooner.
+// They are wide below: with narrow, hot feet they stood on points and seemed to hang.
 // Soot glows as a black body between FLAME_COOL and FLAME_HOT, and hides as much as it glows. It is the hotter the
 // more heat is released around it (core) and the further it is from the edge (strong): so a flame of one or two
 // sheets has a pale core, too.
@@ -102,7 +102,7 @@
 #define FLAME_CAST 0.875f       ///< of that range, 1900 K: the colour of the light that they cast
 #define FLAME_BAKED 3.0f        ///< radiance of what is 1 where gas is baked
 #define SOOT_DENSE 198.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
-#define BLUE_DENSE 3.3f         ///< 1/m: radiance of the root per metre
+#define BLUE_DENSE 4.5f         ///< 1/m: radiance of the root per metre
 #define BLUE_ENDS 0.005f        ///< m above the paper
 #define SHELL_RISE 0.0005f      ///< m, w
 #define SHELL_RISE_MOST 0.0016f ///< more would dim thin tongues
@@ -110,20 +110,24 @@
 #define EDGE 0.42f              ///< f at a flame's edge
 #define TAPER 0.55f             ///< what is added to it above a flame's height
 #define STAND_OFF 0.0006f       ///< m above the paper, below which nothing is visible
-#define SOOT_FULL 0.0075f       ///< m
-#define STREAK_FULL 0.0058f     ///< m, of streaks
-#define FOOT_COOL 0.20f         ///< of the range of temperatures: soot begins orange
-#define FOOT_HOT 0.50f          ///< of that range: streaks in the foot are hot
 #define JOINED_HOT 0.15f
 #define FILAMENT_HOT 0.55f
 #define HIGH_COOL 0.18f
 #define SPENT_COOL 0.25f
 #define SPENT_THIN 0.4f
-#define FOOT_CLEAR 0.004f   ///< m above the paper, from where on soot fills the gaps between streaks
-#define FOOT_FULL 0.027f    ///< m, where it has
-#define FOOT_SEAM 0.58f     ///< below that, so that they are rooted in what burns
-#define FOOT_HAZE 0.08f     ///< of the soot, in those gaps
-#define STREAK 0.05f        ///< of the noise whose creases they are
+#define FOOT_CLEAR 0.004f   ///< m above the paper, from where on a flame is no longer a foot
+#define FOOT_FULL 0.027f    ///< m, where it is none
+#define FOOT_SOOT 0.009f    ///< m, where there is all of its soot in the middle of a tongue
+#define FOOT_BESIDE 0.017f  ///< m, and beside it
+#define FOOT_WARM 0.017f    ///< m, where that is as hot as above
+#define FOOT_LATE 0.030f    ///< m, beside
+#define FOOT_COOL 0.65f     ///< of the range of temperatures, what soot has where it begins
+#define FOOT_GLOWS 0.8f     ///< more soot
+#define FOOT_HIDES 0.4f     ///< less than it glows: what burns is seen through it
+#define FOOT_HAZE 0.22f     ///< of the soot, beside tongues
+#define TONGUE_MIDDLE 0.05f ///< of the noise whose creases tongues are
+#define TONGUE_ENDS 0.33f
+#define TONGUE_ROOTED 0.6f  ///< in the foot they are wide
 #define CORE_BEGINS 0.0030f ///< m
 #define CORE_FULL 0.0240f
 #define CORE_HIDES 0.22f ///< more than it glows
@@ -242,16 +246,16 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
     point->shell = same * (0.5f * outer * outer / first + fill * inner + SHELL * (1 - fill - fading));
 
     const float foot = rise + 0.0012f * fine.d + 0.0016f * wide.d;
-    float soot = stepf(0, SOOT_FULL, foot);
 
-    // in the foot, which is lower where flames are small, it glows in streaks that begin at what burns; between them that is seen
-    const float small_foot = minf(fire->scale, 1), clear_foot = small_foot * FOOT_CLEAR;
-    const float above = stepf(clear_foot, small_foot * FOOT_FULL, rise);
-    const float narrow = mixf(0.7f * STREAK, 1.1f * STREAK, above);
-    const float streak = 1 - stepf(narrow, 4 * narrow, fabsf(wide.c) + 0.3f * fabsf(fine.c));
-    const float seam = mixf(FOOT_SEAM, FOOT_HAZE, stepf(clear_foot, 2 * clear_foot, rise));
-    const float dense = mixf(seam, 1, maxf(streak, above));
-    soot = mixf(soot, stepf(0, STREAK_FULL, foot), streak);
+    // the foot, which is lower where flames are small, is one sheet along what burns: first it is clear and blue, then soot
+    // begins in it, dim and orange, in the middle of tongues sooner than beside them
+    const float small_foot = minf(fire->scale, 1);
+    const float above = stepf(small_foot * FOOT_CLEAR, small_foot * FOOT_FULL, rise);
+    const float tongue =
+        1 - stepf(TONGUE_MIDDLE, mixf(TONGUE_ROOTED, TONGUE_ENDS, above), fabsf(wide.c) + 0.3f * fabsf(fine.c));
+    const float warm = stepf(0, small_foot * mixf(FOOT_LATE, FOOT_WARM, tongue), foot);
+    const float dense = mixf(mixf(FOOT_HAZE, 1, tongue), 1, above);
+    float soot = stepf(0, small_foot * mixf(FOOT_BESIDE, FOOT_SOOT, tongue), foot);
 
     // threads are clear and hot, what is between them is denser and cooler
     const Float3 bent =
@@ -278,22 +282,22 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
     float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.138f;
     hot += FILAMENT_HOT * filament + 0.15f * pane * (1 - clear) - HIGH_COOL * stepf(0.1f, 1.5f, tall);
     hot += JOINED_HOT * stepf(1.1f, 1.6f, flame); // where tongues have joined
-    hot += FOOT_HOT * streak * soot * (1 - above) - FOOT_COOL * (1 - stepf(0, 1.2f * SOOT_FULL, foot));
+    hot *= mixf(FOOT_COOL, 1, warm);
 
     // what is above a body of flame without its noise, is cooler and thinner: tongues end faint
     const float body = stepf(-0.35f, 0.1f, flame - EDGE - TAPER * (1 - expf(-tall)));
     const float spent = stepf(0.5f, 1.6f, tall) * (1 - body);
     hot -= SPENT_COOL * spent;
 
-    soot *= (1 - SPENT_THIN * spent) * dense * soot * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);
+    soot *= (1 - SPENT_THIN * spent) * dense * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);
     float root =
         clampf((rise + STAND_OFF) / (8 * STAND_OFF), 0, 1) * (1 - soot) * (1 - stepf(BLUE_ENDS / 2, BLUE_ENDS, rise));
     const float fold = (1 - clear) * (1 - clear) * mixf(0.25f, 1, above);
-    soot *= 0.35f + 3.5f * fold * (1 + 0.7f * pane) + 1.2f * clear * clear + 2.5f * streak * (1 - above);
+    soot *= 0.35f + 3.5f * fold * (1 + 0.7f * pane) + 1.2f * clear * clear + FOOT_GLOWS * tongue * (1 - above);
     soot *= (0.6f + 0.9f * torn * maxf(thread.b, -0.5f)) * (1 - 0.75f * tip) * (1 + 0.95f * filament);
-    point->opaque = SOOT_DENSE * soot * (1 + CORE_HIDES * above * core);
+    point->opaque = SOOT_DENSE * soot * mixf(FOOT_HIDES, 1 + CORE_HIDES * core, above);
     point->soot = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * soot);
-    point->root = float3_scale(float3(0.12f, 0.42f, 1.25f), BLUE_DENSE * root);
+    point->root = float3_scale(float3(0.28f, 0.56f, 1.18f), BLUE_DENSE * root);
 }
 
 void fire_between(const FirePoint *a, const FirePoint *b, float step, Matter *matter) {

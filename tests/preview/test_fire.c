@@ -29,8 +29,8 @@ TEST(still_air_changes_no_pixel) {
     synthetic_free(&surface);
 }
 
-/// A flame is faint and a little blue at the paper, orange from 3 mm above it on, and has gaps between its tongues.
-/// How blue it is and the gaps are means over moments.
+/// A flame is faint and a little blue at the paper, then orange, by and by brighter up to 16 mm above it, and has gaps between
+/// its tongues. How blue it is and the gaps are means over moments.
 TEST(a_flame_has_a_blue_base_and_tongues) {
     enum { FRAMES = 8 };
     static float fire[W * H][4], mean[H][4];
@@ -50,11 +50,11 @@ TEST(a_flame_has_a_blue_base_and_tongues) {
     assert_true(mean[0][2] > 0.002f && mean[0][2] > 1.3f * mean[0][0]);
     for (int row = 0; row < 4; row++) assert_true(blue[row] < 0.011f); // .029, and char under flames was violet
     assert_true(mean[2][0] < 0.1f * mean[20][0]);
-    assert_true(mean[3][0] > 0.18f * mean[20][0] &&
-                mean[4][0] > 0.25f * mean[20][0]); // .14 and .18: tongues hung above the paper
-    assert_true(mean[3][2] > 0.006f);              // .001: no blue seen
-    assert_true(mean[8][0] > 0.15f * mean[20][0] && mean[12][0] > 0.25f * mean[20][0] && // clear between streaks
-                mean[20][0] > 3 * mean[20][2]);
+    assert_true(mean[4][0] > 0.08f * mean[20][0] &&
+                mean[8][0] > 0.25f * mean[20][0]); // .05: tongues hung above the paper
+    assert_true(mean[4][0] < 0.25f * mean[20][0] && mean[8][0] < 0.55f * mean[20][0]); // .38 and .68: cut off below
+    assert_true(mean[3][2] > 0.006f);                                                  // .001: no blue seen
+    assert_true(mean[12][0] > 0.5f * mean[20][0] && mean[20][0] > 3 * mean[20][2]);
     assert_in_range(dark, FRAMES * W / 8, FRAMES * W / 2);
 }
 
@@ -76,7 +76,8 @@ TEST(flames_begin_where_paper_burns) {
 
     apart = sqrtf(fmaxf(apart - off * off, 0));
     print_message("flames begin %.1f mm above burning paper, deviation %.1f mm\n", (double)off, (double)apart);
-    assert_true(off > 0 && off < 3 && apart < 2.5f);
+    assert_true(off > 0 && off < 3.6f &&
+                apart < 2.5f); // 2.7 with bright feet, 5.2 and 15 where they were not on the paper
 }
 
 /// A flame has its foot where paper burns. Where gas burns low over ground that gives off none there is little light. Before,
@@ -311,13 +312,13 @@ TEST(thin_tongues_are_not_cut) {
                 0.008f * lit); // .064 where they were cut, .010 with edges that are sharper than rays are apart
 }
 
-/// In the foot of a flame, 5 to 12 mm above what burns, streaks are bright and what is between them hides little. A veil of
-/// one orange lay there.
-TEST(a_foot_is_clear_between_streaks) {
-    enum { FRAMES = 4, LOW = 5, HIGH = 12 };
+/// The foot of a flame, 5 to 12 mm above what burns, is one sheet, dim and clear. A veil of one orange lay there, and after
+/// that tongues stood on points as bright as their middles.
+TEST(a_foot_is_one_dim_clear_sheet) {
+    enum { FRAMES = 4, LOW = 5, HIGH = 12, MIDDLE = 20 };
     static float fire[W * H][4], mean[H][4];
     const float each = 1.0f / (FRAMES * (HIGH - LOW) * W);
-    float clear = 0, hidden = 0, sum = 0, squares = 0;
+    float clear = 0, hidden = 0, sum = 0, squares = 0, most[2] = {0, 0};
 
     line_make(&line, 0.003f), burning_make(&paper);
     for (int k = 0; k < FRAMES; k++) {
@@ -327,12 +328,21 @@ TEST(a_foot_is_clear_between_streaks) {
             clear += at[3] < 0.15f ? each : 0, hidden += at[3] * each;
             sum += light * each, squares += light * light * each;
         }
+        for (int x = 0; x < W; x++)
+            for (int up = 0; up < 2; up++) {
+                const float light = luminance(fire[(H - 1 - (up ? MIDDLE : LOW)) * W + x]);
+                most[up] = fmaxf(most[up], light);
+            }
     }
 
     const float varies = sqrtf(squares - sum * sum) / sum;
-    print_message("foot: %.2f of it is clear, %.2f hidden, its light varies by %.2f of the mean\n", (double)clear,
-                  (double)hidden, (double)varies);
-    assert_true(clear > 0.45f && hidden < 0.2f && varies > 1.2f); // .21, .25, .99: a film in front of the rim
+    print_message(
+        "foot: %.2f of it is clear, %.2f hidden, its light varies by %.2f of the mean; most at %d mm is %.2f of that "
+        "at %d mm\n",
+        (double)clear, (double)hidden, (double)varies, LOW, (double)(most[0] / most[1]), MIDDLE);
+    assert_true(clear > 0.45f && hidden < 0.2f); // .21, .25: a film in front of the rim
+    assert_true(varies < 1);                     // 1.31: points, and nothing between them
+    assert_true(most[0] < 0.4f * most[1]);
 }
 
 static int ascending(const void *a, const void *b) {

@@ -324,8 +324,8 @@ static float firelight_deviation(float day) {
 TEST(firelight_flickers) {
     const float night = firelight_deviation(0), day = firelight_deviation(1);
     print_message("firelight varies by %.1f %% at night, %.1f %% by day\n", (double)(100 * night), (double)(100 * day));
-    assert_true(night > 0.1f && night < 0.5f);
-    assert_true(day > 0.08f && day < night); // 0.047 if flames cast what they are drawn with
+    assert_true(night > 0.1f && night < 0.54f); // .50 with bright feet, which are steadier than what is above
+    assert_true(day > 0.08f && day < night);    // 0.047 if flames cast what they are drawn with
 }
 
 /// Smoke dims a bright background and is visible against a dark one.

@@ -1,5 +1,5 @@
 // Made by scripts/write_look.py from program/preview: do not edit.
-export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.01, FIRE_FINE_CELL: 0.008, FLAMES_FROM: 0.02, FLAME_SEEN: 0.15, FLAME_HEIGHT: 0.08, FLAME_END: 0.3, FLAME_MOST: 2, FIRE_SWAY: 0.027, RISE_MOST: 0.55, EDDY_RATE: 8, LICK_WIDE: 0.045, LICK_FULL: 0.05, LICK: 0.6, UNLIKE: 1.5, JOIN: 0.7, JOIN_BEGINS: 0.02, JOIN_FULL: 0.08, GROUP_WIDE: 0.075, GROUP_RATE: 2, GROUP: 0.35, GROUP_UNLIKE: 1.5, FED_WHOLLY: 0.3, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 6.5, TAPER: 0.55, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, ROOT_REACH: 4.4, ROOT_OVER: 1.5, ROOT_FALLS: 0.05, ROOT_WIDE: 0.6, ROOT_LEAN: 0.4, NOISE_LARGER: 0.85, NOISE_SIZES: 0.68, FIRE_PASSING: 0.93, MIX_PASSES: 2, MIX_SHARE: 0.2, MIX_BEGINS: 0.01, MIX_FULL: 0.06, MIX_FEEDS: 0.5, MIX_BURNT: 1.5, SMOKE_LEAVES: 0.25, LEAN: 1, LEAN_BELOW: 2, BELOW_FREE: 1.5, LEAN_FOOT: 0.002, LEAN_FALLS: 160, RIM_FLAME: 0.85, RIM_REACH: 1.5, RIM_UP: 0.6, RIM_BELOW: 2, RIM_LOW: 0.1, RIM_HIGH: 1, LEAN_REACH: 0.04, SLAB: 0.55, SHAPE_GAIN: 0.3, SHAPE_MIDDLE: 80, SHAPE_LIMB: 330, SHAPE_BELOW: 150, SCALE_COOLER: 150 };
+export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.01, FIRE_FINE_CELL: 0.008, FLAMES_FROM: 0.02, FLAME_SEEN: 0.15, FLAME_HEIGHT: 0.08, FLAME_END: 0.3, FLAME_MOST: 2, FIRE_SWAY: 0.027, RISE_MOST: 0.55, EDDY_RATE: 8, LICK_WIDE: 0.045, LICK_FULL: 0.05, LICK: 0.6, UNLIKE: 1.5, JOIN: 0.7, JOIN_BEGINS: 0.02, JOIN_FULL: 0.08, GROUP_WIDE: 0.075, GROUP_RATE: 2, GROUP: 0.35, GROUP_UNLIKE: 1.5, FED_WHOLLY: 0.3, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 6.5, TAPER: 0.55, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, ROOT_REACH: 4.4, ROOT_OVER: 1.5, ROOT_FALLS: 0.05, ROOT_WIDE: 0.6, ROOT_LEAN: 0.4, NOISE_LARGER: 0.85, NOISE_SIZES: 0.68, FIRE_PASSING: 0.93, MIX_PASSES: 2, MIX_SHARE: 0.2, MIX_BEGINS: 0.01, MIX_FULL: 0.06, MIX_FEEDS: 0.5, MIX_BURNT: 1.5, SMOKE_LEAVES: 0.25, LEAN: 0.7, LEAN_BELOW: 2, BELOW_FREE: 1.5, LEAN_FOOT: 0.001, LEAN_FALLS: 160, RIM_FLAME: 0.85, RIM_REACH: 1.5, RIM_UP: 0.6, RIM_BELOW: 2, RIM_LOW: 0.1, RIM_HIGH: 1, LEAN_REACH: 0.04, SLAB: 0.55, SHAPE_GAIN: 0.3, SHAPE_MIDDLE: 80, SHAPE_LIMB: 330, SHAPE_BELOW: 150, SCALE_COOLER: 150 };
 
 export const PAPER = /* glsl */ `
 const float EMBER_BURN = 0.74;
@@ -352,7 +352,7 @@ const float SMOKE_DARK = 0.4;
 const float SMOKE_SLOW = 0.4;
 const float SMOKE_SPEED = 0.5;
 const float SOOT_DENSE = 198.0;
-const float BLUE_DENSE = 3.3;
+const float BLUE_DENSE = 4.5;
 const float BLUE_ENDS = 0.005;
 const float SHELL_RISE = 0.0005;
 const float SHELL_RISE_MOST = 0.0016;
@@ -360,10 +360,6 @@ const float SHELL = 0.0018;
 const float EDGE = 0.42;
 const float TAPER = 0.55;
 const float STAND_OFF = 0.0006;
-const float SOOT_FULL = 0.0075;
-const float STREAK_FULL = 0.0058;
-const float FOOT_COOL = 0.2;
-const float FOOT_HOT = 0.5;
 const float JOINED_HOT = 0.15;
 const float FILAMENT_HOT = 0.55;
 const float HIGH_COOL = 0.18;
@@ -371,9 +367,17 @@ const float SPENT_COOL = 0.25;
 const float SPENT_THIN = 0.4;
 const float FOOT_CLEAR = 0.004;
 const float FOOT_FULL = 0.027;
-const float FOOT_SEAM = 0.58;
-const float FOOT_HAZE = 0.08;
-const float STREAK = 0.05;
+const float FOOT_SOOT = 0.009;
+const float FOOT_BESIDE = 0.017;
+const float FOOT_WARM = 0.017;
+const float FOOT_LATE = 0.03;
+const float FOOT_COOL = 0.65;
+const float FOOT_GLOWS = 0.8;
+const float FOOT_HIDES = 0.4;
+const float FOOT_HAZE = 0.22;
+const float TONGUE_MIDDLE = 0.05;
+const float TONGUE_ENDS = 0.33;
+const float TONGUE_ROOTED = 0.6;
 const float CORE_BEGINS = 0.003;
 const float CORE_FULL = 0.024;
 const float CORE_HIDES = 0.22;
@@ -424,14 +428,13 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     point.profile = same * outer / first * (fill + fading);
     point.shell = same * (0.5 * outer * outer / first + fill * inner + SHELL * (1.0 - fill - fading));
     float foot = rise + 0.0012 * fine.d + 0.0016 * wide.d;
-    float soot = stepf(0.0, SOOT_FULL, foot);
-    float small_foot = min(fireScale, 1.0), clear_foot = small_foot * FOOT_CLEAR;
-    float above = stepf(clear_foot, small_foot * FOOT_FULL, rise);
-    float narrow = mix(0.7 * STREAK, 1.1 * STREAK, above);
-    float streak = 1.0 - stepf(narrow, 4.0 * narrow, abs(wide.c) + 0.3 * abs(fine.c));
-    float seam = mix(FOOT_SEAM, FOOT_HAZE, stepf(clear_foot, 2.0 * clear_foot, rise));
-    float dense = mix(seam, 1.0, max(streak, above));
-    soot = mix(soot, stepf(0.0, STREAK_FULL, foot), streak);
+    float small_foot = min(fireScale, 1.0);
+    float above = stepf(small_foot * FOOT_CLEAR, small_foot * FOOT_FULL, rise);
+    float tongue =
+        1.0 - stepf(TONGUE_MIDDLE, mix(TONGUE_ROOTED, TONGUE_ENDS, above), abs(wide.c) + 0.3 * abs(fine.c));
+    float warm = stepf(0.0, small_foot * mix(FOOT_LATE, FOOT_WARM, tongue), foot);
+    float dense = mix(mix(FOOT_HAZE, 1.0, tongue), 1.0, above);
+    float soot = stepf(0.0, small_foot * mix(FOOT_BESIDE, FOOT_SOOT, tongue), foot);
     vec3 bent =
         float3_mad(p, vec3(wide.b + 0.2 * fine.b, wide.a + 0.2 * fine.a, 0.0), fireScale * THREAD_WARP);
     Noise thread = Noise(0.0, 0.0, 0.0, 0.0);
@@ -453,19 +456,19 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     float hot = 0.14 * strong + (0.04 + 0.13 * core) * low + 0.25 * core + 0.74 * clear - 0.14 * tip - 0.138;
     hot += FILAMENT_HOT * filament + 0.15 * pane * (1.0 - clear) - HIGH_COOL * stepf(0.1, 1.5, tall);
     hot += JOINED_HOT * stepf(1.1, 1.6, flame);
-    hot += FOOT_HOT * streak * soot * (1.0 - above) - FOOT_COOL * (1.0 - stepf(0.0, 1.2 * SOOT_FULL, foot));
+    hot *= mix(FOOT_COOL, 1.0, warm);
     float body = stepf(-0.35, 0.1, flame - EDGE - TAPER * (1.0 - exp(-tall)));
     float spent = stepf(0.5, 1.6, tall) * (1.0 - body);
     hot -= SPENT_COOL * spent;
-    soot *= (1.0 - SPENT_THIN * spent) * dense * soot * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
+    soot *= (1.0 - SPENT_THIN * spent) * dense * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
     float root =
         clamp((rise + STAND_OFF) / (8.0 * STAND_OFF), 0.0, 1.0) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 2.0, BLUE_ENDS, rise));
     float fold = (1.0 - clear) * (1.0 - clear) * mix(0.25, 1.0, above);
-    soot *= 0.35 + 3.5 * fold * (1.0 + 0.7 * pane) + 1.2 * clear * clear + 2.5 * streak * (1.0 - above);
+    soot *= 0.35 + 3.5 * fold * (1.0 + 0.7 * pane) + 1.2 * clear * clear + FOOT_GLOWS * tongue * (1.0 - above);
     soot *= (0.6 + 0.9 * torn * max(thread.b, -0.5)) * (1.0 - 0.75 * tip) * (1.0 + 0.95 * filament);
-    point.opaque = SOOT_DENSE * soot * (1.0 + CORE_HIDES * above * core);
+    point.opaque = SOOT_DENSE * soot * mix(FOOT_HIDES, 1.0 + CORE_HIDES * core, above);
     point.soot = float3_scale(flame_colour(clamp(hot, 0.0, 1.0)), SOOT_DENSE * soot);
-    point.root = float3_scale(vec3(0.12, 0.42, 1.25), BLUE_DENSE * root);
+    point.root = float3_scale(vec3(0.28, 0.56, 1.18), BLUE_DENSE * root);
 }
 void fire_between(FirePoint a, FirePoint b, float step_, inout Matter matter) {
     if (!(a.depth > 0.0 || b.depth > 0.0)) return;
