@@ -31,6 +31,7 @@
 // pale in its core, and orange at its tips. Its foot, some two centimetres tall, is one low sheet along what burns, in which
 // soot begins by and by: dim, orange and so thin that the rim is seen through it. In tongues there is more of it, and sooner.
 // They are wide below: with narrow, hot feet they stood on points and seemed to hang.
+// Near its edge a flame is thinner than the shell alone would be: there rays run along it, and drew outlines.
 // Soot glows as a black body between FLAME_COOL and FLAME_HOT, and hides as much as it glows. It is the hotter the
 // more heat is released around it (core) and the further it is from the edge (strong): so a flame of one or two
 // sheets has a pale core, too.
@@ -119,7 +120,7 @@
 #define FOOT_FULL 0.027f    ///< m, where it is none
 #define FOOT_SOOT 0.009f    ///< m, where there is all of its soot in the middle of a tongue
 #define FOOT_BESIDE 0.017f  ///< m, and beside it
-#define FOOT_WARM 0.017f    ///< m, where that is as hot as above
+#define FOOT_WARM 0.015f    ///< m, where that is as hot as above
 #define FOOT_LATE 0.030f    ///< m, beside
 #define FOOT_COOL 0.65f     ///< of the range of temperatures, what soot has where it begins
 #define FOOT_GLOWS 0.8f     ///< more soot
@@ -127,7 +128,10 @@
 #define FOOT_HAZE 0.22f     ///< of the soot, beside tongues
 #define TONGUE_MIDDLE 0.05f ///< of the noise whose creases tongues are
 #define TONGUE_ENDS 0.33f
-#define TONGUE_ROOTED 0.6f  ///< in the foot they are wide
+#define TONGUE_ROOTED 0.6f ///< in the foot they are wide
+#define BORDER_WIDE 0.003f ///< m inside of its edge, in which a flame is thinner: a sheet seen edge-on is no outline
+#define BORDER_THIN 0.4f
+#define BORDER_GAIN 1.25f   ///< of soot, for what the border has lost
 #define CORE_BEGINS 0.0030f ///< m
 #define CORE_FULL 0.0240f
 #define CORE_HIDES 0.22f ///< more than it glows
@@ -294,6 +298,7 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
         clampf((rise + STAND_OFF) / (8 * STAND_OFF), 0, 1) * (1 - soot) * (1 - stepf(BLUE_ENDS / 2, BLUE_ENDS, rise));
     const float fold = (1 - clear) * (1 - clear) * mixf(0.25f, 1, above);
     soot *= 0.35f + 3.5f * fold * (1 + 0.7f * pane) + 1.2f * clear * clear + FOOT_GLOWS * tongue * (1 - above);
+    soot *= BORDER_GAIN * mixf(BORDER_THIN, 1, stepf(0, fire->scale * BORDER_WIDE, point->depth));
     soot *= (0.6f + 0.9f * torn * maxf(thread.b, -0.5f)) * (1 - 0.75f * tip) * (1 + 0.95f * filament);
     point->opaque = SOOT_DENSE * soot * mixf(FOOT_HIDES, 1 + CORE_HIDES * core, above);
     point->soot = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * soot);

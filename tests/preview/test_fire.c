@@ -431,11 +431,13 @@ TEST(the_rim_is_seen_through_the_flames) {
 }
 
 /// Bodies of flame have filaments along the flow and gaps between them: within 3 mm aside light changes. Large patches of one
-/// orange and one yellow looked like plastic.
-TEST(bodies_have_filaments) {
-    enum { FRAMES = 4, NEAR = 5 }; // pixels of .3 mm
+/// orange and one yellow looked like plastic. Their borders are thin: where what is seen edge-on hides as much as their middles,
+/// flames have outlines.
+TEST(bodies_have_filaments_and_thin_borders) {
+    enum { FRAMES = 4, NEAR = 5, BORDER = 2, INSIDE = 12 }; // pixels of .3 mm
     static float fire[W * H][4];
     int lit = 0, flat = 0;
+    float hidden[2] = {0, 0};
 
     line_make(&line, 0.003f), burning_make(&paper);
     PreviewDef def = aside(0.02f);
@@ -456,10 +458,17 @@ TEST(bodies_have_filaments) {
             }
             lit++, flat += high < 1.3f * low;
         }
+        for (int i = 0; i < W * H; i++) { // what begins here, beside clear air
+            if (i % W < 1 || i % W >= W - INSIDE || fire[i - 1][3] > 0.01f || fire[i][3] <= 0.01f) continue;
+            if (fire[i + INSIDE][3] < 0.2f) continue;
+            hidden[0] += fire[i + BORDER][3], hidden[1] += fire[i + INSIDE][3];
+        }
     }
 
     preview_destroy(preview);
-    print_message("of %d pixels of flame %d are flat\n", lit, flat);
+    print_message("of %d pixels of flame %d are flat; borders hide %.2f of what is hidden 3 mm inside\n", lit, flat,
+                  (double)(hidden[0] / hidden[1]));
+    assert_true(hidden[0] < 0.13f * hidden[1]); // .15
     assert_true(lit > 3000 && flat < lit / 16); // 2125 of 9365, and 576 of 8466 where panes were even
 }
 
