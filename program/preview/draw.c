@@ -117,10 +117,13 @@ static void fill_table(Preview *preview, Block *block) {
             else ground_look(preview, position, block->direction[i].z, wide * distance, &look);
             sum[i].albedo = float3_add(sum[i].albedo, look.albedo);
             sum[i].polish += look.polish;
-            sum[i].crumb += look.crumb;
-            sum[i].crumbs += look.crumbs;
-            sum[i].tilt[0] += look.tilt[0];
-            sum[i].tilt[1] += look.tilt[1];
+            sum[i].ash.albedo += look.ash.albedo;
+            sum[i].ash.cover += look.ash.cover;
+            for (int d = 0; d < 2; d++) {
+                sum[i].tilt[d] += look.tilt[d];
+                sum[i].ash.tilt[d] += look.ash.tilt[d];
+                sum[i].ash.from[d] += look.ash.from[d];
+            }
             count[i]++;
         }
     }
@@ -131,8 +134,10 @@ static void fill_table(Preview *preview, Block *block) {
         preview->table[block_pixel(preview, block, i)] =
             (Table){.albedo = float3_scale(sum[i].albedo, share),
                     .polish = share * sum[i].polish,
-                    .crumb = share * sum[i].crumb,
-                    .crumbs = share * sum[i].crumbs,
+                    .ash = {.cover = share * sum[i].ash.cover,
+                            .albedo = share * sum[i].ash.albedo,
+                            .tilt = {share * sum[i].ash.tilt[0], share * sum[i].ash.tilt[1]},
+                            .from = {share * sum[i].ash.from[0], share * sum[i].ash.from[1]}},
                     .tilt = {share * sum[i].tilt[0], share * sum[i].tilt[1]}};
     }
 }

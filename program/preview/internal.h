@@ -26,12 +26,20 @@ typedef struct Texture {
     float texels_per_metre; ///< of level 0, measured on the surface
 } Texture;
 
+/// Ash that lies on the table at a pixel if it is stained.
+typedef struct Ash {
+    float cover;   ///< share of the table that it and its shadow hide
+    float albedo;  ///< times the share that it hides
+    float tilt[2]; ///< what it adds to the slope
+    float from[2]; ///< m: to the middle of the leaf, times cover: all of a leaf lies there or none
+} Ash;
+
 /// The table at a pixel.
 typedef struct Table {
     Float3 albedo;
-    float tilt[2];       ///< slope of its surface along x and y
-    float polish;        ///< its reflectance
-    float crumb, crumbs; ///< albedo of the crumbs there if the ground is stained, times their cover; and that
+    float tilt[2]; ///< slope of its surface along x and y
+    float polish;  ///< its reflectance
+    Ash ash;
 } Table;
 
 /// A point of a piece of wood.
@@ -288,6 +296,10 @@ void wood_look(const Plank *plank, float x, float y, uint32_t seed, float footpr
 
 /// Whether details of that size are seen, 0 to 1.
 static inline float visible(float metres, float footprint) { return clampf(1.5f - 0.9f * footprint / metres, 0, 1); }
+
+// shade_ash.c
+/// What lies on the ground at a point of it, where a pixel sees `footprint` m.
+void ash_look(const Preview *preview, Float3 position, float footprint, Ash *ash);
 
 // shade_ground.c
 void ground_look(const Preview *preview, Float3 position, float cosine, float distance, Table *table);

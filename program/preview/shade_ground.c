@@ -129,54 +129,6 @@ Float3 background_colour(const Preview *preview, Float3 direction) {
     return float3_scale(base, height > 0 ? mixf(1.12f, 0.62f, height) : mixf(1.12f, 0.75f, -height));
 }
 
-/// Scales of pale ash and of char, one or none in each square of three lattices, as they lie where the stain is full: in
-/// drifts, few of them large. A scale is curled, so that a part of it is brighter and its shadow is wider on one side, and
-/// it is palest at its edge and along its creases.
-static void crumbs(const Preview *preview, Float3 position, float footprint, Table *table) {
-    enum { SIDES = 5 };
-    static const float squares[3] = {0.019f, 0.0085f, 0.0026f}, most[3] = {0.5f, 0.5f, 0.35f}; // m; share that has one
-    const uint32_t seed = preview->def.seed;
-    const float drift =
-        noise2(position.x * 21, position.y * 21, seed) + 0.6f * noise2(position.x * 57, position.y * 57, seed + 310);
-    const float often = 0.06f + 1.9f * stepf(-0.1f, 0.8f, drift);
-    for (uint32_t k = 0; k < 3; k++) {
-        const float wide = squares[k];
-        float fx, fy, shown = visible(0.4f * wide, footprint);
-        if (shown <= 0) continue;
-        int i = noise_floor(position.x / wide + 0.37f * (float)k, &fx);
-        int j = noise_floor(position.y / wide + 0.61f * (float)k, &fy);
-        const uint32_t key = sample_key(i, j, seed + 311 + k);
-        if (hash_unit(key) > most[k] * often) continue;
-        const float size = mixf(0.13f, 0.36f, hash_unit(key + 4) * hash_unit(key + 5)), room = 1.05f * size + 0.08f;
-        const float x = (fx - mixf(room, 1 - room, hash_unit(key + 1))) / size;
-        const float y = (fy - mixf(room, 1 - room, hash_unit(key + 2))) / size;
-
-        // how far inside its outline the point is: 1 in the middle. It is torn off along a few lines, so that it has corners
-        float depth = 1;
-        for (uint32_t s = 0; s < SIDES; s++) {
-            const float turn = 2 * PI_F * ((float)s + 0.7f * hash_unit(key + 20 + s)) / SIDES;
-            depth = minf(depth, mixf(0.35f, 1, hash_unit(key + 30 + s)) - cosf(turn) * x - sinf(turn) * y);
-        }
-        depth += 0.13f * noise2(3 * x, 3 * y, key & 255) + 0.065f * noise2(8 * x, 8 * y, key >> 8 & 255);
-        const float lean = 2 * PI_F * hash_unit(key + 3), side = cosf(lean) * x + sinf(lean) * y;
-
-        // its curled side stands off the ground
-        const float beside = 0.20f + 0.30f * stepf(-0.2f, 0.9f, side), soft = 0.6f * footprint / (wide * size);
-        const float shadow = 0.8f * shown * stepf(-beside - soft, 0.05f, depth);
-        const float cover = shown * stepf(-soft, 0.06f + soft, depth);
-        if (shadow <= 0) continue;
-        const float ash = stepf(0.3f, 0.65f, hash_unit(key + 6));
-        const float crease = 1 - stepf(0, 0.16f, fabsf(noise2(2.2f * x, 2.2f * y, key >> 16 & 255)));
-        const float rim = 1 - stepf(0.02f, 0.22f, depth),
-                    grain = visible(0.0006f, footprint) * noise2(position.x * 2600, position.y * 2600, key & 255);
-        float value = mixf(0.020f, 0.20f + 0.24f * hash_unit(key + 8), ash);
-        value *= (1 + 0.5f * clampf(side, -1, 1)) * (1 + 0.16f * grain);
-        value += (0.03f + 0.12f * ash) * maxf(rim, 0.6f * crease);
-        table->crumb = mixf(table->crumb * (1 - shadow), value, cover);
-        table->crumbs += (1 - table->crumbs) * maxf(shadow, cover);
-    }
-}
-
 /// A pixel's size on the table: the mean of along and across.
 static float footprint(const Preview *preview, float distance, float cosine) {
     return preview->camera.pixel * distance / sqrtf(maxf(fabsf(cosine), 0.02f));
@@ -190,11 +142,11 @@ void ground_look(const Preview *preview, Float3 position, float cosine, float di
     if (preview->def.ground == PREVIEW_GROUND_WOOD) wood_look(&plank, position.x, position.y, seed, size, table);
     if (preview->def.ground == PREVIEW_GROUND_STONE) stone(preview, position, size, table);
     table->albedo = float3_mul(table->albedo, float3_load(preview->def.ground_colour));
-    if (stain_may_be(preview, position.x, position.y)) crumbs(preview, position, size, table);
+    if (stain_may_be(preview, position.x, position.y)) ash_look(preview, position, size, &table->ash);
 }
 
 /// Scorches the ground under burnt paper, ragged at the scale of the picture: tan, then brown and dull with soot.
-static void ground_stain(const Preview *preview, const Table *table, Point *point) {
+static void ground_stain(const Preview *preview, Point *point) {
     const uint32_t seed = preview->def.seed + 277;
     float x = point->position.x, y = point->position.y;
     float aside = 0.006f * noise2(x * 60, y * 60, seed + 3), along = 0.006f * noise2(x * 60, y * 60, seed + 4);
@@ -209,10 +161,19 @@ static void ground_stain(const Preview *preview, const Table *table, Point *poin
     point->albedo = float3_mix(point->albedo, float3(0.016f, 0.014f, 0.013f), soot);
     point->mirror *= 1 - 0.6f * soot;
     point->gloss *= 1 - 0.8f * soot;
+}
 
-    const float lie = preview->def.ground_stain * stepf(0.05f, 0.6f, stain), cover = lie * table->crumbs;
-    point->albedo = float3_mad(float3_scale(point->albedo, 1 - cover), float3(1, 1, 0.97f), lie * table->crumb);
-    point->mirror *= 1 - cover;
+/// Lays ash on the ground where its leaves have come down.
+static void ground_ash(const Preview *preview, const Ash *ash, Point *point) {
+    if (!(ash->cover > 0)) return;
+    const float x = point->position.x + ash->from[0] / ash->cover, y = point->position.y + ash->from[1] / ash->cover;
+    const float lies = preview->def.ground_stain * stepf(0.03f, 0.2f, stain_at(preview, x, y)),
+                left = 1 - lies * ash->cover;
+    point->albedo = float3_mad(float3_scale(point->albedo, left), float3(1, 1, 0.98f), lies * ash->albedo);
+    point->mirror *= left;
+    point->gloss *= left;
+    const Float3 tilt = float3(ash->tilt[0], ash->tilt[1], 0);
+    point->normal = float3_unit_or(float3_mad(point->normal, tilt, lies), point->geometric);
 }
 
 void ground_shade(const Preview *preview, float distance, const Table *table, Point *point) {
@@ -226,5 +187,7 @@ void ground_shade(const Preview *preview, float distance, const Table *table, Po
     point->gloss = 0.10f * table->polish;
     point->shininess = 26;
     point->mirror = table->polish * preview->def.ground_gloss;
-    if (preview->stain.grids[0]) ground_stain(preview, table, point);
+    if (!preview->stain.grids[0]) return;
+    ground_stain(preview, point);
+    ground_ash(preview, &table->ash, point);
 }
