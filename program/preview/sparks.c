@@ -4,7 +4,8 @@
 //
 //     p(a) = p0 + w (a - g) + u g + eddies,   g = LAG (1 - exp(-a / LAG)) at the age a,
 //
-// is drawn with the air towards the middle of the fire around it, and cools, T(a) = SPARK_COLD + (T0 - SPARK_COLD) exp(-COOLING a / life), so that it turns from yellow to orange to red
+// is drawn with the air towards the middle of the fire around it, winds about its way with the eddies that rise in the plume,
+// and cools, T(a) = SPARK_COLD + (T0 - SPARK_COLD) exp(-COOLING a / life), so that it turns from yellow to orange to red
 // and goes out. What the film sees is its way while the shutter is open: light that is spread over a streak.
 //
 // Crumbs break as stones do: sizes and light are log-normal, so few sparks are bright and many are hardly seen, and most
@@ -12,25 +13,30 @@
 
 #include "preview/airborne.h"
 
-enum { SPARKS_A_SLOT = 4 }; ///< that a site may throw in a slot
+enum { SPARKS_A_SLOT = 6 }; ///< that a site may throw in a slot
 #define SPARK_CELL 0.012f   ///< m, of the sites
 #define SLOT 0.05f          ///< s
 #define LIFE 1.05f          ///< s, the longest
 #define LAG 0.09f           ///< s
 #define CURL 0.0016f        ///< m, the widest
+#define EDDY 0.034f         ///< m from one eddy of the plume to the next
+#define EDDY_RISE 0.28f     ///< m/s: sparks pass them
+#define EDDY_WIDE 0.009f    ///< m, by which they carry a spark aside, at most
 #define TAIL_COLD 0.22f     ///< by which share what it leaves behind is colder
 #define SPARK_COLD 900.0f   ///< K
-#define COOLING 3.2f
+#define COOLING 3.8f
 #define PULL 0.75f              ///< of the way to the middle of the fire that the air takes them
 #define PULL_TIME 0.4f          ///< s
 #define FIRE_AROUND 0.05f       ///< m, from a site, of which the fire is around it
 #define SPARK_OPEN (1 / 120.0f) ///< s, the shortest exposure of a spark: eye and film keep it
 #define BLUR_MOST 2.0f          ///< pixels
-#define STREAK_MOST 0.04f       ///< of the picture's height
-#define STREAK_SHORT 24.0f      ///< pixels, which no streak is too long with
-#define BUSY_RATE 0.8f          ///< 1/s, at which a site throws many and then few
-#define BUSY 4.6f               ///< times as many, at most
-#define SPARKS_A_METRE 2600.0f  ///< 1/(m s), of sites that glow along a few cm
+#define WIDE_MOST 1.0f          ///< pixels
+#define STREAK_MOST 0.03f       ///< of the picture's height
+#define STREAK_SHORT 23.0f      ///< pixels, which no streak is too long with
+#define BUSY_RATE 2.1f          ///< 1/s, at which embers that crackle throw many and then none
+#define BUSY_WIDE 0.03f         ///< m from embers that crackle to others that do not
+#define BUSY 13.0f              ///< times as many, at most
+#define SPARKS_A_METRE 3600.0f  ///< 1/(m s), of sites that glow along a few cm
 #define SPARKS_CROWD 0.25f      ///< m of glowing line above which sparks become rarer
 
 /// A spark's flight.
@@ -39,6 +45,7 @@ typedef struct Spark {
     float life, hot, size;    ///< s, K, m
     float wander, turn[2];    ///< m/s, and the phases of its eddies
     float pull[2];            ///< m, along x and y, to the middle of the fire
+    float eddy[2], winds;     ///< rad: their phases when it leaves; and m, aside with them
     float curl, spin;         ///< m, 1/s: crumbs spin, and their way curls
     float shows;              ///< times the exposure, while its glowing side does
     float comet;              ///< 0: both of its ends fade alike; 1: it has a bright head
@@ -52,6 +59,12 @@ static Float3 spark_at(const Spark *spark, float age) {
     p.y += pull * spark->pull[1];
     p.x += aside * (sinf(spark->turn[0] + 7.3f * age) - sinf(spark->turn[0]));
     p.y += aside * (sinf(spark->turn[1] + 6.1f * age) - sinf(spark->turn[1]));
+
+    // eddies rise more slowly than sparks, which so pass through them: their ways are arcs, and neighbours' ways are alike
+    const float rise = maxf(p.z - spark->from.z, 0), winds = spark->winds * rise / (rise + 0.5f * EDDY);
+    const float passed = 2 * PI_F * (rise - EDDY_RISE * age) / EDDY;
+    p.x += winds * sinf(spark->eddy[0] + passed);
+    p.y += winds * sinf(spark->eddy[1] + 0.8f * passed);
 
     const float curl = spark->curl * minf(age / LAG, 1);
     p.x += curl * sinf(spark->spin * age + spark->turn[1]);
@@ -81,10 +94,10 @@ static void spark_draw(Preview *preview, const Spark *spark, float begin, float 
 
     const float pixel = preview->camera.pixel * depth;
     // a wide lens would draw those that pass before the focus as capsules, which no eye takes for sparks
-    const float radius =
-        maxf(maxf(1.1f, 1.1f * spark->size / pixel), minf(camera_blur(&preview->camera, depth), BLUR_MOST));
+    const float radius = maxf(1.1f, minf(camera_blur(&preview->camera, depth), BLUR_MOST));
     const int dots = 1 + (int)minf(streak / 0.5f, 400);
-    const float wide = maxf(spark->size / pixel, 0.6f); // a lens spreads any point
+    // a lens spreads any point, and film bears only so much of a near one: no spark is a lamp
+    const float wide = clampf(spark->size / pixel, 0.6f, WIDE_MOST);
     for (int k = 0; k < dots; k++) {
         float part = ((float)k + 0.5f) / (float)dots, age = mixf(begin, end, part);
         float temperature = SPARK_COLD + (spark->hot - SPARK_COLD) * expf(-COOLING * age / spark->life);
@@ -137,14 +150,16 @@ static Spark spark_make(const EmberSite *site, const Around *around, uint32_t ke
     Spark spark = {.from = float3_mad(site->position, float3(r[6] - 0.5f, r[7] - 0.5f, 0), 0.006f),
                    .launch = float3_scale(float3(out * cosf(turn), out * sinf(turn), up), speed),
                    .life = LIFE * mixf(0.65f, 1, around->flaming) * (0.15f + 0.85f * r[3] * r[3] * r[3]),
-                   .hot = 1460 + 420 * r[4] * r[4],
-                   .size = 0.00018f * expf(0.55f * size),
+                   .hot = 1220 + 620 * r[4] * r[4],
+                   .size = 0.00012f * expf(0.55f * size),
                    .wander = 0.02f + 0.5f * leans * r[6],
                    .turn = {2 * PI_F * r[7], 2 * PI_F * r[8]},
                    .curl = CURL * r[10] * r[10],
                    .spin = (r[11] < 0.5f ? -1 : 1) * (40 + 110 * r[5]),
-                   .shows = 0.4f + 0.8f * r[9],
-                   .comet = r[5]};
+                   .shows = 0.12f + 1.1f * r[9] * r[9],
+                   .comet = r[5],
+                   .eddy = {site->position.x / BUSY_WIDE + 1.3f * r[6], site->position.y / BUSY_WIDE + 1.3f * r[7]},
+                   .winds = EDDY_WIDE * r[2] * r[9]};
 
     // the air leans as the eddies of the moment do; large crumbs fall through it
     spark.air = float3(leans * (r[8] - 0.5f), leans * (r[9] - 0.5f),
@@ -173,9 +188,12 @@ void sparks_draw(Preview *preview) {
             // a rim that collapses throws many at once
             const uint32_t moment = hash_u32(sites[i].key ^ (uint32_t)slot * 0x8da6b343u);
             const bool burst = hash_unit(moment) < 0.012f;
-            const float busy = BUSY * stepf(0, 0.6f, noise2(BUSY_RATE * SLOT * (float)slot, 0, sites[i].key & 0xffff));
+            const float crackle = noise3(float3(sites[i].position.x / BUSY_WIDE, sites[i].position.y / BUSY_WIDE,
+                                                BUSY_RATE * SLOT * (float)slot),
+                                         71);
+            const float busy = BUSY * stepf(0.2f, 0.75f, crackle);
             const float chance =
-                rate * (1 + 1.2f * around.flaming) * sites[i].length * SLOT * (burst ? 14 : busy) / SPARKS_A_SLOT;
+                rate * (1 + 1.2f * around.flaming) * sites[i].length * SLOT * (burst ? 20 : busy) / SPARKS_A_SLOT;
             for (uint32_t k = 0; k < SPARKS_A_SLOT; k++) {
                 const uint32_t key = hash_u32(moment + 97 * k);
                 const float strength = clampf(5 * (1 - hash_unit(key) / chance), 0, 1);
@@ -184,7 +202,7 @@ void sparks_draw(Preview *preview) {
                 const float age = now - ((float)slot + hash_unit(key ^ 0x5bd1e995u)) * SLOT;
                 const float begin = maxf(age - 0.5f * spark.shows * open, 0),
                             end = minf(age + 0.5f * spark.shows * open, spark.life);
-                const float bright = 0.5f * expf(1.7f * hash_normal(key + 30));
+                const float bright = 0.6f * expf(1.5f * minf(hash_normal(key + 30), 1.9f));
                 if (begin < end) spark_draw(preview, &spark, begin, end, bright * strength * (end - begin) / open);
             }
         }

@@ -156,11 +156,11 @@ TEST(sparks_are_thin) {
 /// Sparks are no needles, which are bright from end to end, straight and alike: the share of a spark's length that is nearly as
 /// bright as its head, the mean over their light, and how far lengths differ. Nor is any a comet, as long as the picture.
 TEST(sparks_taper_and_differ_in_length) {
-    enum { FRAMES = 96, PARTS = 8 };
+    enum { FRAMES = 480, PARTS = 8 };
     static float fire[W * H][4], left[W * H][4];
     static Burning paper;
     PreviewDef def = embers_make(&paper);
-    def.sparks = 0.5f; // so that they do not touch
+    def.sparks = 0.1f; // so that they do not touch
     def.camera.eye[1] = -0.2f, def.camera.fov = 0.3f, def.shutter = 1 / 48.0f;
     PreviewLayers layers = {.fire = fire};
     Preview *preview = preview_open(&def);
@@ -190,7 +190,7 @@ TEST(sparks_taper_and_differ_in_length) {
     const float mean = sum / sparks, varies = sqrtf(squares / sparks - mean * mean) / mean;
     print_message("%.0f sparks: %.2f even, lengths of %.1f pixels vary by %.2f, %.0f at most\n", (double)sparks,
                   (double)(even / light), (double)mean, (double)varies, (double)longest);
-    assert_true(sparks > FRAMES / 2);
+    assert_true(sparks > FRAMES / 12);
     assert_true(even < 0.79f * light && varies > 0.28f); // 0.83
     assert_true(longest < 26);                           // 34, half of the picture
 }
@@ -239,6 +239,32 @@ TEST(sparks_differ) {
     print_message("the light of %d sparks varies by %.2f of the mean\n", sparks, (double)varies);
     assert_true(sparks > 3 * FRAMES);
     assert_true(varies > 2.7f); // 1.48, 2.00, 2.45
+}
+
+/// Embers crackle: sparks come in bursts, here and there, with none elsewhere. How much their number in a part of the rim
+/// varies from moment to moment, over what it would if each came by itself.
+TEST(sparks_come_in_bursts) {
+    enum { FRAMES = 96, PARTS = 6 };
+    static float fire[W * H][4];
+    static Burning paper;
+    PreviewDef def = embers_make(&paper);
+    PreviewLayers layers = {.fire = fire};
+    Preview *preview = preview_open(&def);
+    float sum = 0, squares = 0;
+    for (int k = 0; k < FRAMES; k++) {
+        float count[PARTS] = {0};
+        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 2.0, NULL, &layers, NULL), SINGE_OK);
+        for (int i = 0; i < W * (H - 10); i++) {
+            Streak streak = {.pixels = 0};
+            take_spark(fire, i, &streak);
+            if (streak.pixels) count[i % W * PARTS / W]++;
+        }
+        for (int n = 0; n < PARTS; n++) sum += count[n], squares += count[n] * count[n];
+    }
+    preview_destroy(preview);
+    const float mean = sum / (FRAMES * PARTS), over = (squares / (FRAMES * PARTS) - mean * mean) / mean;
+    print_message("%.1f sparks to a part, their variance over that is %.2f\n", (double)mean, (double)over);
+    assert_true(over > 6.4f); // 5.6
 }
 
 /// Sparks are in the fire's plume, and few are beside it: of those of a rim 3 cm long, in slices from 3 to 19 cm up, how far
