@@ -10,7 +10,8 @@
 //
 // both about an axis that itself turns slowly. f follows from f d / w, which differs little between plates.
 //
-// What is drawn are points of the plate, each a soft dot, at moments while the shutter is open.
+// It is a scrap of burnt paper (shade_ash.c), bent and creased, so that its parts take the light as they lie. What is drawn
+// are points of it, each a soft dot, at moments while the shutter is open.
 
 #include "preview/airborne.h"
 
@@ -32,6 +33,12 @@ enum {
 #define FLAKE_DEPTH 3.2f      ///< optical depth across: 0.96 of what is behind is hidden
 #define FLAKE_AIR_DENSITY 1.2f
 #define FLAKE_COLD 600.0f ///< K: nothing of it glows
+#define FLAKE_BENT 1.7f   ///< times as a scrap that lies
+
+/// What reaches a flake along the axes, and against them: what an albedo of 1 reflects that faces so.
+typedef struct FlakeLight {
+    Float3 from[6];
+} FlakeLight;
 
 /// A flake's flight.
 typedef struct Flake {
@@ -76,50 +83,81 @@ static Plate flake_at(const Flake *flake, float age) {
     return plate;
 }
 
-/// Draws the flake as it is at the age; `share` of the exposure, `lit` what an albedo of 1 reflects. `apart`: pixels from one
-/// such moment to the next.
-static void plate_draw(Preview *preview, const Flake *flake, Float3 lit, float age, float share, float apart) {
+/// The height of a flake over its plate.
+static float flake_height(float u, float v, uint32_t seed) { return FLAKE_BENT * (scrap_height(u, v, seed) - 0.14f); }
+
+/// Draws the flake as it is at the age; `share` of the exposure. `apart`: pixels from one such moment to the next.
+static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *lit, float age, float share,
+                       float apart) {
     const Plate plate = flake_at(flake, age);
-    const Float3 to = float3_sub(preview->camera.eye, plate.centre);
+    const Float3 to = float3_unit_or(float3_sub(preview->camera.eye, plate.centre), plate.normal);
     float at[2], depth;
     if (!airborne_project(preview, plate.centre, at, &depth)) return;
     const float pixel = preview->camera.pixel * depth, wide = 2 * flake->size / pixel;
     const int across = (int)clampf(ceilf(1.2f * wide), 3, ACROSS_LIMIT);
     const float spacing = wide / (float)across, blur = camera_blur(&preview->camera, depth);
     const float radius = maxf(maxf(0.8f * spacing, blur), 1.6f * apart);
-
-    // edge on, it is as thick as it is curled
-    const float seen = 0.07f + 0.93f * fabsf(float3_dot(plate.normal, to)) / float3_length(to);
-    const float cover = FLAKE_DEPTH * share * seen * flake->narrow * spacing * spacing;
+    const float cover = FLAKE_DEPTH * share * flake->narrow * spacing * spacing;
     const float heat = FLAKE_COLD + (flake->hot - FLAKE_COLD) * expf(-3.2f * age / flake->life);
 
     for (int j = 0; j < across; j++)
         for (int i = 0; i < across; i++) {
-            const uint32_t dither =
-                hash_u32(flake->seed ^ (uint32_t)(i + across * j) ^ (uint32_t)(age * 65536) * 0x8da6b343u);
+            const uint32_t seed = flake->seed;
+            const uint32_t dither = hash_u32(seed ^ (uint32_t)(i + across * j) ^ (uint32_t)(age * 65536) * 0x8da6b343u);
             const float u = 2 * ((float)i + hash_unit(dither)) / (float)across - 1;
             const float v = 2 * ((float)j + hash_unit(dither + 1)) / (float)across - 1;
-
-            // a torn outline has corners
-            const float from = sqrtf(u * u + v * v) + 1e-6f, x = u / from, y = v / from;
-            const float inside = 0.80f + 0.34f * noise2(1.6f * x + 9, 1.6f * y + 5, flake->seed) +
-                                 0.15f * noise2(5 * x + 3, 5 * y + 8, flake->seed) - from;
+            const float inside = scrap_depth(u, v, seed);
             if (inside <= 0) continue;
 
-            // pale at its border and in patches; embers last there
-            const float patch = noise2(2.3f * u + 5, 2.3f * v + 5, flake->seed + 1);
-            const float rim = 1 - stepf(0, 0.28f, inside), pale = clampf(flake->ash + 0.15f * rim + 0.3f * patch, 0, 1);
-            const float curl = 1 + 0.35f * v * (patch + 0.4f);
-            const float albedo = mixf(0.03f, 0.36f, pale * pale) * maxf(curl, 0.4f);
-            const float alive = stepf(-0.1f, 0.5f, noise2(4 * u + 1, 4 * v + 1, flake->seed + 2));
-            const float glows = maxf(rim * alive, stepf(0.3f, 0.6f, patch)) * stepf(FLAKE_COLD, 900, heat);
-            Float3 light = float3_scale(lit, albedo);
-            light = float3_mad(light, blackbody_glow(preview->blackbody, heat + 80 * patch), EMBER_GAIN * glows);
+            // as it is bent there; edge on, it is as thick as it is creased
+            const float e = 0.08f, high = flake_height(u, v, seed);
+            const float slope[2] = {(flake_height(u + e, v, seed) - high) / e,
+                                    (flake_height(u, v + e, seed) - high) / e};
+            Float3 normal = float3_mad(plate.normal, plate.along, -slope[0] / flake->size);
+            normal = float3_mad(normal, plate.across, -slope[1] / (flake->size * flake->narrow * flake->narrow));
+            normal = float3_unit_or(normal, plate.normal);
+            const float facing = float3_dot(normal, to), seen = 0.07f + 0.93f * fabsf(facing);
+            if (facing < 0) normal = float3_scale(normal, -1);
 
-            const Float3 point = float3_mad(float3_mad(plate.centre, plate.along, u), plate.across, v);
+            // pale at its rim and in patches; embers last at the rim, in threads
+            const float patch = noise2(2.3f * u + 5, 2.3f * v + 5, seed + 1);
+            const float rim = expf(-inside / 0.13f),
+                        pale = clampf(0.85f * flake->ash + 0.4f * rim + 0.32f * patch, 0, 1);
+            const float albedo = mixf(0.026f, 0.36f, pale * pale);
+            const float alive = stepf(0.05f, 0.5f, noise2(3 * u + 1, 3 * v + 1, seed + 2) + 0.3f * patch);
+            const float glows = rim * alive * stepf(FLAKE_COLD, 900, heat);
+            Float3 light = float3_scale(lit->from[normal.x < 0], albedo * normal.x * normal.x);
+            light = float3_mad(light, lit->from[2 + (normal.y < 0)], albedo * normal.y * normal.y);
+            light = float3_mad(light, lit->from[4 + (normal.z < 0)], albedo * normal.z * normal.z);
+            light = float3_mad(light, blackbody_glow(preview->blackbody, heat + 120 * rim), EMBER_GAIN * glows);
+
+            Float3 point = float3_mad(float3_mad(plate.centre, plate.along, u), plate.across, v);
+            point = float3_mad(point, plate.normal, flake->size * high);
             if (!airborne_project(preview, point, at, &depth)) return;
-            airborne_dot(preview, at, radius, float3_scale(light, cover), cover);
+            airborne_dot(preview, at, radius, float3_scale(light, seen * cover), seen * cover);
         }
+}
+
+/// The light around a place.
+static FlakeLight flake_light(const Preview *preview, Float3 place) {
+    const EmberLights *lamps = &preview->scene.lights;
+    const float through = 0.25f; // of what comes from behind
+    FlakeLight light;
+    for (int d = 0; d < 6; d++) {
+        const float axis[3] = {d / 2 == 0, d / 2 == 1, d / 2 == 2};
+        const Float3 normal = float3_scale(float3_load(axis), d % 2 ? -1 : 1);
+        const float sun = float3_dot(normal, preview->sun);
+        Float3 lit = float3_mad(sky_ambient(&preview->sky, normal), preview->sun_light, maxf(sun, -through * sun));
+        Float3 fire = {0, 0, 0};
+        for (int k = 0; k < preview->scene.light_count; k++) {
+            const Float3 to = float3_sub(float3(lamps->x[k], lamps->y[k], lamps->z[k]), place);
+            const float d2 = float3_dot(to, to) + lamps->softness[k], cosine = float3_dot(normal, to) / sqrtf(d2);
+            const float share = maxf(cosine, -through * cosine) / d2;
+            fire = float3_mad(fire, float3(lamps->strength[0][k], lamps->strength[1][k], lamps->strength[2][k]), share);
+        }
+        light.from[d] = float3_mad(lit, fire, 1 / (1 + float3_luminance(fire) / FIRE_MOST));
+    }
+    return light;
 }
 
 /// Draws the flake while the shutter is open, from the age `begin` to `end`.
@@ -134,22 +172,7 @@ static void flake_draw(Preview *preview, const Flake *flake, float begin, float 
     if (!airborne_project(preview, points[SIGHT_POINTS - 1], last, &depth)) return;
     airborne_sight(preview, points, SIGHT_POINTS, clear);
 
-    // light of both sides
-    const EmberLights *lamps = &preview->scene.lights;
-    const Plate plate = flake_at(flake, 0.5f * (begin + end));
-    const float facing = float3_dot(plate.normal, float3_sub(preview->camera.eye, plate.centre)), through = 0.25f;
-    const Float3 normal = float3_scale(plate.normal, facing < 0 ? -1 : 1);
-    const float sun = float3_dot(normal, preview->sun);
-    Float3 lit = float3_mad(sky_ambient(&preview->sky, normal), preview->sun_light, maxf(sun, -through * sun));
-    Float3 fire = {0, 0, 0};
-    for (int k = 0; k < preview->scene.light_count; k++) {
-        const Float3 to = float3_sub(float3(lamps->x[k], lamps->y[k], lamps->z[k]), plate.centre);
-        const float d2 = float3_dot(to, to) + lamps->softness[k], cosine = float3_dot(normal, to) / sqrtf(d2);
-        const float share = maxf(cosine, -through * cosine) / d2;
-        fire = float3_mad(fire, float3(lamps->strength[0][k], lamps->strength[1][k], lamps->strength[2][k]), share);
-    }
-    lit = float3_mad(lit, fire, 1 / (1 + float3_luminance(fire) / FIRE_MOST));
-
+    const FlakeLight lit = flake_light(preview, flake_at(flake, 0.5f * (begin + end)).centre);
     const float way = hypotf(last[0] - first[0], last[1] - first[1]);
     const float turned = flake->often * (end - begin) * flake->size / (preview->camera.pixel * depth);
     const int moments = (int)clampf(1 + way + turned, 1, MOMENT_LIMIT);
@@ -157,7 +180,7 @@ static void flake_draw(Preview *preview, const Flake *flake, float begin, float 
         const float part = ((float)k + 0.5f) / (float)moments, age = mixf(begin, end, part);
         const float left = 1 - stepf(0.75f, 1, age / flake->life), open = clear[(int)(part * SIGHT_POINTS)];
         if (open * left > 0)
-            plate_draw(preview, flake, lit, age, 6 * part * (1 - part) * strength * open * left / (float)moments,
+            plate_draw(preview, flake, &lit, age, 6 * part * (1 - part) * strength * open * left / (float)moments,
                        way / (float)moments);
     }
 }
@@ -170,7 +193,7 @@ static Flake flake_make(const Preview *preview, const EmberSite *site, uint32_t 
 
     // char of 20 g/m2, ash of 6; most are small, and char
     const float ash = r[0] * r[0] * r[0], grammage = mixf(0.020f, 0.006f, ash), drag = 1.3f;
-    const float size = 0.0013f + 0.0040f * r[1] * r[1] * r[1];
+    const float size = 0.0015f + 0.0045f * r[1] * r[1] * r[1];
     Flake flake = {.from = float3_mad(site->position, float3(r[2] - 0.5f, r[3] - 0.5f, r[4] - 0.5f), 0.010f),
                    .drift = float3(0.24f * (r[5] - 0.5f), 0.24f * (r[6] - 0.5f), 0),
                    .up = (0.8f + 0.4f * flames) * clampf(1.3f * r[7] - 0.25f, 0, 1),

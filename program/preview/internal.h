@@ -298,8 +298,20 @@ void wood_look(const Plank *plank, float x, float y, uint32_t seed, float footpr
 static inline float visible(float metres, float footprint) { return clampf(1.5f - 0.9f * footprint / metres, 0, 1); }
 
 // shade_ash.c
+#define SCRAP_FLAT 0.5f ///< of its size: no part of a scrap is as high
+
+/// How far a point of the plane is inside a scrap of burnt paper, in units of its size, half of its length: below 0 outside.
+/// It is torn off along lines, bitten and frayed. `key`: which scrap.
+float scrap_depth(float x, float y, uint32_t key);
+
+/// Its height at the point, in units of its size: it is bent across, and creased.
+float scrap_height(float x, float y, uint32_t key);
+
 /// What lies on the ground at a point of it, where a pixel sees `footprint` m.
 void ash_look(const Preview *preview, Float3 position, float footprint, Ash *ash);
+
+/// Lays it on a point of the ground if its leaf has come down.
+void ash_lay(const Preview *preview, const Ash *ash, Point *point);
 
 // shade_ground.c
 void ground_look(const Preview *preview, Float3 position, float cosine, float distance, Table *table);

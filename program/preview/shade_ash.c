@@ -12,7 +12,6 @@ enum {
     ASH_STEPS = 9, ///< of a ray of sight down to the ground
     ASH_KINDS = 4, ///< leaves, scraps, crumbs and grains
 };
-#define ASH_FLAT 0.5f  ///< of a leaf's size: no part of it is as high
 #define ASH_ASIDE 5.0f ///< m aside for a metre of height, at most, of a ray of sight
 
 /// What lies in the squares of a lattice, one or none in each.
@@ -66,12 +65,11 @@ static Leaf leaf_find(uint32_t seed, uint32_t kind, float x, float y) {
                   .middle = {x - size * dx, y - size * dy}};
 }
 
-/// How far inside its outline the point is, in units of its size: it is torn off along lines, bitten and frayed.
-static float leaf_depth(const Leaf *leaf) {
-    const uint32_t key = leaf->key;
-    const float x = leaf->x + 0.22f * noise2(1.9f * leaf->x, 1.9f * leaf->y, key & 255);
-    const float y = leaf->y + 0.22f * noise2(1.9f * leaf->x, 1.9f * leaf->y, key >> 8 & 255);
+float scrap_depth(float x, float y, uint32_t key) {
+    const float warp = noise2(1.9f * x, 1.9f * y, key & 255), bend = noise2(1.9f * x, 1.9f * y, key >> 8 & 255);
     float depth = 1;
+    x += 0.22f * warp;
+    y += 0.22f * bend;
     for (uint32_t s = 0; s < ASH_SIDES; s++) {
         const float turn = 2 * PI_F * ((float)s + 0.8f * hash_unit(key + 20 + s)) / ASH_SIDES, c = cosf(turn);
         const float far = mixf(0.55f, 1, hash_unit(key + 30 + s)) * (0.6f + 0.4f * fabsf(c));
@@ -81,14 +79,12 @@ static float leaf_depth(const Leaf *leaf) {
     return depth - 0.45f * bites * (1 - minf(depth, 1)) + 0.07f * noise2(7 * x, 7 * y, key >> 16 & 255);
 }
 
-/// Its height at a place, in units of its size: bent across, and creased.
-static float leaf_height(const Leaf *leaf, float x, float y) {
-    const uint32_t key = leaf->key;
-    const float bent = 0.16f + 0.5f * hash_unit(key + 9), line = 0.9f * (hash_unit(key + 10) - 0.5f), off = y - line;
+float scrap_height(float x, float y, uint32_t key) {
+    const float bent = 0.16f + 0.5f * hash_unit(key + 9), off = y - 0.9f * (hash_unit(key + 10) - 0.5f);
     const float twist = 0.5f * (hash_unit(key + 11) - 0.5f) * x * off;
-    const float folds = fabsf(noise2(1.7f * x, 1.7f * y, key >> 3 & 255)),
-                fine = noise2(4.3f * x, 4.3f * y, key >> 7 & 255);
-    return clampf(0.03f + bent * off * off + twist + 0.20f * folds + 0.05f * fine, 0.01f, ASH_FLAT);
+    const float folds = fabsf(noise2(1.7f * x, 1.7f * y, key >> 3 & 255));
+    const float fine = noise2(4.3f * x, 4.3f * y, key >> 7 & 255);
+    return clampf(0.03f + bent * off * off + twist + 0.20f * folds + 0.05f * fine, 0.01f, SCRAP_FLAT);
 }
 
 /// Whether a leaf of its size is seen, 0 to 1.
@@ -108,9 +104,9 @@ static void leaf_over(const Leaf *leaf, Float3 position, float albedo, const flo
 /// The albedo of a leaf at a point of it, and its tilt as it is seen. `view`: m aside for a metre up.
 static float leaf_look(const Leaf *leaf, float depth, const float view[2], float footprint, float tilt[2]) {
     const uint32_t key = leaf->key;
-    const float e = 0.06f, h = leaf_height(leaf, leaf->x, leaf->y);
-    const float along = (leaf_height(leaf, leaf->x + e, leaf->y) - h) / e,
-                across = (leaf_height(leaf, leaf->x, leaf->y + e) - h) / e;
+    const float e = 0.06f, h = scrap_height(leaf->x, leaf->y, leaf->key);
+    const float along = (scrap_height(leaf->x + e, leaf->y, leaf->key) - h) / e,
+                across = (scrap_height(leaf->x, leaf->y + e, leaf->key) - h) / e;
     const float slope[2] = {leaf->turn[0] * along - leaf->turn[1] * across,
                             leaf->turn[1] * along + leaf->turn[0] * across};
     const float faces = 1 - slope[0] * view[0] - slope[1] * view[1], steep = hypotf(slope[0], slope[1]);
@@ -141,24 +137,25 @@ void ash_look(const Preview *preview, Float3 position, float footprint, Ash *ash
         if (visible(ash_kinds[kind].largest, footprint) <= 0) continue;
         const Leaf below = leaf_find(seed, kind, position.x, position.y);
         if (below.key) {
-            const float high = leaf_height(&below, below.x, below.y), soft = 0.34f + 0.9f * high;
-            const float dark = leaf_shown(&below, footprint) * mixf(0.9f, 0.6f, high / ASH_FLAT);
-            leaf_over(&below, position, 0, (const float[2]){0, 0}, dark * stepf(-soft, 0.1f, leaf_depth(&below)), ash);
+            const float high = scrap_height(below.x, below.y, below.key), soft = 0.34f + 0.9f * high;
+            const float dark = leaf_shown(&below, footprint) * mixf(0.9f, 0.6f, high / SCRAP_FLAT);
+            leaf_over(&below, position, 0, (const float[2]){0, 0},
+                      dark * stepf(-soft, 0.1f, scrap_depth(below.x, below.y, below.key)), ash);
         }
 
         // down the ray of sight
         const int steps = kind < 2 ? ASH_STEPS : 1;
-        const float top = ASH_FLAT * ash_kinds[kind].largest;
+        const float top = SCRAP_FLAT * ash_kinds[kind].largest;
         float above = 0, last = top;
         uint32_t key = 0;
         for (int k = 0; k <= steps; k++) {
             const float z = top * (1 - (float)k / (float)steps);
             Leaf leaf = leaf_find(seed, kind, position.x + z * view[0], position.y + z * view[1]);
-            const float over = leaf.key ? z - leaf.size * leaf_height(&leaf, leaf.x, leaf.y) : 0;
+            const float over = leaf.key ? z - leaf.size * scrap_height(leaf.x, leaf.y, leaf.key) : 0;
             if (leaf.key && leaf.key == key && over * above < 0) {
                 const float met = mixf(z, last, over / (over - above));
                 leaf = leaf_find(seed, kind, position.x + met * view[0], position.y + met * view[1]);
-                const float soft = 0.6f * footprint / leaf.size, depth = leaf_depth(&leaf);
+                const float soft = 0.6f * footprint / leaf.size, depth = scrap_depth(leaf.x, leaf.y, leaf.key);
                 const float cover =
                     leaf.key == key ? leaf_shown(&leaf, footprint) * stepf(-soft, soft + 0.03f, depth) : 0;
                 float tilt[2];
@@ -169,4 +166,16 @@ void ash_look(const Preview *preview, Float3 position, float footprint, Ash *ash
             key = leaf.key, above = over, last = z;
         }
     }
+}
+
+void ash_lay(const Preview *preview, const Ash *ash, Point *point) {
+    if (!(ash->cover > 0)) return;
+    const float x = point->position.x + ash->from[0] / ash->cover, y = point->position.y + ash->from[1] / ash->cover;
+    const float lies = preview->def.ground_stain * stepf(0.03f, 0.2f, stain_at(preview, x, y)),
+                left = 1 - lies * ash->cover;
+    point->albedo = float3_mad(float3_scale(point->albedo, left), float3(1, 1, 0.98f), lies * ash->albedo);
+    point->mirror *= left;
+    point->gloss *= left;
+    const Float3 tilt = float3(ash->tilt[0], ash->tilt[1], 0);
+    point->normal = float3_unit_or(float3_mad(point->normal, tilt, lies), point->geometric);
 }

@@ -163,19 +163,6 @@ static void ground_stain(const Preview *preview, Point *point) {
     point->gloss *= 1 - 0.8f * soot;
 }
 
-/// Lays ash on the ground where its leaves have come down.
-static void ground_ash(const Preview *preview, const Ash *ash, Point *point) {
-    if (!(ash->cover > 0)) return;
-    const float x = point->position.x + ash->from[0] / ash->cover, y = point->position.y + ash->from[1] / ash->cover;
-    const float lies = preview->def.ground_stain * stepf(0.03f, 0.2f, stain_at(preview, x, y)),
-                left = 1 - lies * ash->cover;
-    point->albedo = float3_mad(float3_scale(point->albedo, left), float3(1, 1, 0.98f), lies * ash->albedo);
-    point->mirror *= left;
-    point->gloss *= left;
-    const Float3 tilt = float3(ash->tilt[0], ash->tilt[1], 0);
-    point->normal = float3_unit_or(float3_mad(point->normal, tilt, lies), point->geometric);
-}
-
 void ground_shade(const Preview *preview, float distance, const Table *table, Point *point) {
     float side = point->view.z >= 0 ? 1.0f : -1.0f;
     point->footprint = footprint(preview, distance, maxf(fabsf(point->view.z), 0.02f));
@@ -189,5 +176,5 @@ void ground_shade(const Preview *preview, float distance, const Table *table, Po
     point->mirror = table->polish * preview->def.ground_gloss;
     if (!preview->stain.grids[0]) return;
     ground_stain(preview, point);
-    ground_ash(preview, &table->ash, point);
+    ash_lay(preview, &table->ash, point);
 }

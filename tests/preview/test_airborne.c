@@ -215,6 +215,31 @@ TEST(flakes_are_dark) {
     assert_true(hidden > 120 && light < 0.035f * hidden); // 0.047
 }
 
+/// Flakes are bent and creased, so that their parts take the light as they lie; flat ones were smudges. How much the light of
+/// what they hide varies between neighbouring pixels, over its mean.
+TEST(flakes_have_a_form) {
+    enum { FRAMES = 48, APART = 6 };
+    static float fire[W * H][4];
+    static Burning paper;
+    PreviewDef def = embers_make(&paper);
+    def.sparks = 0, def.flakes = 30, def.shutter = 0, def.camera.fov = 0.02f;
+    def.camera.eye[2] = def.camera.target[2] = 0.04f;
+    PreviewLayers layers = {.fire = fire};
+    Preview *preview = preview_open(&def);
+    float light = 0, differs = 0;
+    int pixels = 0;
+    for (int k = 0; k < FRAMES; k++) {
+        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
+        for (int i = 0; i < W * (H - 10) - APART; i++) {
+            if (fire[i][3] < 0.9f || fire[i + APART][3] < 0.9f) continue;
+            light += fire[i][2], differs += fabsf(fire[i][2] - fire[i + APART][2]), pixels++;
+        }
+    }
+    preview_destroy(preview);
+    print_message("flakes: light differs by %.2f of its mean (%d pixels)\n", (double)(differs / light), pixels);
+    assert_true(pixels > 100 && differs > 0.4f * light); // 0.31
+}
+
 /// Of many sparks most are faint, and few give most of the light. Sparks that were alike looked like dashes.
 TEST(sparks_differ) {
     enum { FRAMES = 24 };
