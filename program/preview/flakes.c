@@ -203,7 +203,7 @@ static Flake flake_make(const Preview *preview, const EmberSite *site, uint32_t 
                    .turn = 2 * PI_F * r[10],
                    .spin = 5 * (r[11] - 0.5f),
                    .life = FLAKE_LIFE * (0.5f + 0.5f * r[12]),
-                   .hot = 780 + 260 * r[13],
+                   .hot = 750 + 250 * r[13] * r[13],
                    .size = size,
                    .narrow = 0.45f + 0.5f * r[4],
                    .ash = ash,

@@ -214,6 +214,7 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 #define LEAF_STARVES 0.2f ///< how much less of it is alive below a flame
 #define LEAF_FRONT 1.1f   ///< alive along the front of char that feeds a flame; above 1 it has no gaps
 #define LEAF_DULL 1.7f
+#define LEAF_SCATTERS 0.4f ///< how much coals differ where little is alive
 #define LEAF_COOLER 150.0f ///< K, how much cooler it is between coals
 #define LEAF_BRIGHT 1.4f
 #define LEAF_DIM 150.0f      ///< K, how much cooler a coal's sides are
@@ -323,7 +324,10 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     alive = maxf(alive, LEAF_FRONT * starved * expf(-inward * inward));
 
     const float coals = 0.45f * patch + 0.42f * bent->medium + 0.55f * fibre + 0.35f * bent->fine;
-    const float lit = clampf(LEAF_SPREAD * alive + coals - 0.56f, 0, 1), hot = lit * lit * (1.6f - 0.6f * lit);
+    const float gathers =
+        mixf(LEAF_SCATTERS, 1, stepf(0.05f, 0.5f, alive)); // no coals by themselves: they were glitter
+    const float lit = clampf(LEAF_SPREAD * alive + gathers * coals - 0.56f, 0, 1),
+                hot = lit * lit * (1.6f - 0.6f * lit);
     const float temperature = ember_temperature(state->temperature) - STARVED_COOLER * starved;
     Float3 red = blackbody_glow(preview->blackbody, ember_seen(temperature - LEAF_COOLER * (1.5f - alive)));
     Float3 bright = blackbody_glow(preview->blackbody, ember_seen(temperature + mixf(-LEAF_DIM, LEAF_CORE, hot)));

@@ -36,6 +36,7 @@ enum { SPARKS_A_SLOT = 6 }; ///< that a site may throw in a slot
 #define BUSY_RATE 2.1f          ///< 1/s, at which embers that crackle throw many and then none
 #define BUSY_WIDE 0.03f         ///< m from embers that crackle to others that do not
 #define BUSY 13.0f              ///< times as many, at most
+#define BUSY_LEAST 0.15f        ///< and those of others
 #define SPARKS_A_METRE 3600.0f  ///< 1/(m s), of sites that glow along a few cm
 #define SPARKS_CROWD 0.25f      ///< m of glowing line above which sparks become rarer
 
@@ -191,7 +192,7 @@ void sparks_draw(Preview *preview) {
             const float crackle = noise3(float3(sites[i].position.x / BUSY_WIDE, sites[i].position.y / BUSY_WIDE,
                                                 BUSY_RATE * SLOT * (float)slot),
                                          71);
-            const float busy = BUSY * stepf(0.2f, 0.75f, crackle);
+            const float busy = BUSY_LEAST + BUSY * stepf(0.2f, 0.75f, crackle);
             const float chance =
                 rate * (1 + 1.2f * around.flaming) * sites[i].length * SLOT * (burst ? 20 : busy) / SPARKS_A_SLOT;
             for (uint32_t k = 0; k < SPARKS_A_SLOT; k++) {

@@ -17,6 +17,7 @@ const float LEAF_SPREAD = 1.35;
 const float LEAF_STARVES = 0.2;
 const float LEAF_FRONT = 1.1;
 const float LEAF_DULL = 1.7;
+const float LEAF_SCATTERS = 0.4;
 const float LEAF_COOLER = 150.0;
 const float LEAF_BRIGHT = 1.4;
 const float LEAF_DIM = 150.0;
@@ -240,7 +241,8 @@ vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float inward = (bent.burn - STARVED_BORDER) / (max(state.gradient, 20.0) * 2.0 * EMBER_WIDTH);
     alive = max(alive, LEAF_FRONT * starved * exp(-inward * inward));
     float coals = 0.45 * patch_ + 0.42 * bent.medium + 0.55 * fibre + 0.35 * bent.fine;
-    float lit = clamp(LEAF_SPREAD * alive + coals - 0.56, 0.0, 1.0), hot = lit * lit * (1.6 - 0.6 * lit);
+    float gathers = mix(LEAF_SCATTERS, 1.0, stepf(0.05, 0.5, alive));
+    float lit = clamp(LEAF_SPREAD * alive + gathers * coals - 0.56, 0.0, 1.0), hot = lit * lit * (1.6 - 0.6 * lit);
     float temperature = ember_temperature(state.temperature) - STARVED_COOLER * starved;
     vec3 red = blackbody_glow(ember_seen(temperature - LEAF_COOLER * (1.5 - alive)));
     vec3 bright = blackbody_glow(ember_seen(temperature + mix(-LEAF_DIM, LEAF_CORE, hot)));
