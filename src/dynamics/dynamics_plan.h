@@ -183,7 +183,7 @@ static inline bool patch_is_in_strand(const DynamicsPlan *plan, const Shell *she
     return node[0] == 4 * ends[0] && node[STRAND_LANES] == 4 * ends[1];
 }
 /// Projects a colour's patches one by one.
-void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, DynamicsState *dynamics);
+void patch_project(DynamicsPlan *plan, SingeColour colour, const StrandJob *job);
 /// The forces of the step's substeps of h seconds, in plan->patches.pull.
 void patch_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h);
 

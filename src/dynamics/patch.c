@@ -108,24 +108,25 @@ void patch_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *sta
     }
 }
 
-void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, DynamicsState *dynamics) {
-    const float softness = 1 + 0.5f * plan->settings.solver.regularisation[colour];
+void patch_project(DynamicsPlan *plan, SingeColour colour, const StrandJob *job) {
+    const float softness = 1 + 0.5f * job->regularisation;
     for (uint32_t k = 0; k < plan->patches.count[colour]; k++) {
         Patch *patch = &plan->patches.items[colour][k];
-        Float4 a = float4_load(dynamics->position[patch->a]), b = float4_load(dynamics->position[patch->b]), d = b - a;
+        Float4 a = float4_load(job->position + 4 * (size_t)patch->a),
+               b = float4_load(job->position + 4 * (size_t)patch->b), d = b - a;
         float weights = a[3] + b[3], target = patch->length * patch->length;
         if (!(patch->weight > 0 && weights > 0)) continue;
 
         float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], e = (square - target) * 0.5f;
         if (square < target * 0.17157288f) e = -patch->length * sqrtf(square); // crushed, as in strand_kernel.h
         float beyond = float_max(e - square * 0.01f, 0);
-        float stiff = patch->compliance * inverse_h2;
+        float stiff = patch->compliance * job->inverse_h2;
         float diagonal = weights * (softness * square + beyond * STRAND_YIELD) + stiff * square;
         float mu = patch->weight * e / float_max(diagonal, 1e-20f);
         patch->pull += mu;
         d[3] = 0;
-        float4_store(dynamics->position[patch->a], a + a[3] * mu * d);
-        float4_store(dynamics->position[patch->b], b - b[3] * mu * d);
+        float4_store(job->position + 4 * (size_t)patch->a, a + a[3] * mu * d);
+        float4_store(job->position + 4 * (size_t)patch->b, b - b[3] * mu * d);
     }
 }
 

@@ -226,21 +226,26 @@ static void project_range(void *task, int begin, int end) {
     atomic_fetch_and(&strands->taken, ~((uint64_t)1 << room));
 }
 
-/// One of `count` projections of a colour, which share what its compliances give.
+/// One of `count` projections of a colour, which share what its compliances give. Sheets that tear share the regularisation,
+/// too: what cannot be satisfied, as an edge that is straight between two pins, is pulled in each projection, and the
+/// line force there would grow with their number.
 static void strands_project_colour(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h, int count,
                                    DynamicsState *dynamics, DynamicsCounters *counters) {
     Strands *strands = &plan->strands;
     const StrandSet *set = &strands->sets[colour], *braces = NULL;
+    const int shares = plan->patches.capacity > 0 ? count : 1;
     const float given = strands->started ? 1 - plan->settings.solver.start : 1; // of forces; the start has the rest
-    const float inverse_h2 = (float)count / (h * h * given);
+    Project project = {.job = {.position = dynamics->position[0],
+                               .regularisation = plan->settings.solver.regularisation[colour] * (float)shares,
+                               .inverse_h2 = (float)count / (h * h * given)},
+                       .strands = strands};
     if (colour == SINGE_GREEN && plan->braces) braces = &plan->braces->set;
     for (const StrandSet *next = set; next; next = next == set ? braces : NULL) {
-        Project project = {
-            {next, dynamics->position[0], plan->settings.solver.regularisation[colour], inverse_h2}, strands, 0};
+        project.job.set = next;
         strand_families(next, pool, project_range, &project, &project.first_group);
     }
 
-    patch_project(plan, colour, inverse_h2, dynamics);
+    patch_project(plan, colour, &project.job);
     counters->strands += set->strand_count;
     counters->springs += plan->spring_count[colour];
     counters->flops += (double)STRAND_FLOPS * plan->spring_count[colour];
@@ -264,10 +269,10 @@ static SingeResult strands_project(DynamicsPlan *plan, const Substep *substep) {
 
     // Times that the last colour is projected after the others, as its families pull each other's strands off their lengths:
     // twice halves the strain, for a tenth of a substep's work. Where one vertex carries a sheet, two edges have its load,
-    // and take longest. Sheets that may tear have one: by the forces of several a cold one would.
+    // and take longest.
     enum { TWICE = 2, HUNG_BY_ONE = 5 };
-    int times = shell->spare_count > 0 ? 1 : TWICE;
-    for (uint32_t s = 0; s < shell->sheet_count && solver->attachments && times > 1; s++) {
+    int times = TWICE;
+    for (uint32_t s = 0; s < shell->sheet_count && solver->attachments; s++) {
         const uint32_t *source = plan->attachments.source[s];
         if (source[0] != SHELL_NONE && source[1] == SHELL_NONE) times = HUNG_BY_ONE;
     }
