@@ -17,7 +17,7 @@
 
 enum {
     FLAKES_A_SLOT = 3,  ///< that a site may lose in a slot
-    ACROSS_LIMIT = 28,  ///< points along a side of its square
+    ACROSS_LIMIT = 40,  ///< points along a side of its square
     MOMENT_LIMIT = 28,  ///< while the shutter is open
     LANDING_STEPS = 12, ///< of halving
 };
@@ -33,7 +33,7 @@ enum {
 #define FLAKE_DEPTH 3.2f      ///< optical depth across: 0.96 of what is behind is hidden
 #define FLAKE_AIR_DENSITY 1.2f
 #define FLAKE_COLD 600.0f ///< K: nothing of it glows
-#define FLAKE_BENT 1.7f   ///< times as a scrap that lies
+#define FLAKE_BENT 1.4f   ///< times as a scrap that lies
 
 /// What reaches a flake along the axes, and against them: what an albedo of 1 reflects that faces so.
 typedef struct FlakeLight {
@@ -96,7 +96,7 @@ static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *l
     const float pixel = preview->camera.pixel * depth, wide = 2 * flake->size / pixel;
     const int across = (int)clampf(ceilf(1.2f * wide), 3, ACROSS_LIMIT);
     const float spacing = wide / (float)across, blur = camera_blur(&preview->camera, depth);
-    const float radius = maxf(maxf(0.8f * spacing, blur), 1.6f * apart);
+    const float least = maxf(blur, 1.6f * apart); // pixels, of a dot
     const float cover = FLAKE_DEPTH * share * flake->narrow * spacing * spacing;
     const float heat = FLAKE_COLD + (flake->hot - FLAKE_COLD) * expf(-3.2f * age / flake->life);
 
@@ -104,8 +104,8 @@ static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *l
         for (int i = 0; i < across; i++) {
             const uint32_t seed = flake->seed;
             const uint32_t dither = hash_u32(seed ^ (uint32_t)(i + across * j) ^ (uint32_t)(age * 65536) * 0x8da6b343u);
-            const float u = 2 * ((float)i + hash_unit(dither)) / (float)across - 1;
-            const float v = 2 * ((float)j + hash_unit(dither + 1)) / (float)across - 1;
+            const float u = 2 * ((float)i + 0.25f + 0.5f * hash_unit(dither)) / (float)across - 1;
+            const float v = 2 * ((float)j + 0.25f + 0.5f * hash_unit(dither + 1)) / (float)across - 1;
             const float inside = scrap_depth(u, v, seed);
             if (inside <= 0) continue;
 
@@ -115,6 +115,8 @@ static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *l
                                     (flake_height(u, v + e, seed) - high) / e};
             Float3 normal = float3_mad(plate.normal, plate.along, -slope[0] / flake->size);
             normal = float3_mad(normal, plate.across, -slope[1] / (flake->size * flake->narrow * flake->narrow));
+            const float stretched = float3_length(normal); // of what is seen, and so from dot to dot
+            const float radius = maxf(1.25f * spacing * sqrtf(stretched), least), hides = cover * minf(stretched, 2.5f);
             normal = float3_unit_or(normal, plate.normal);
             const float facing = float3_dot(normal, to), seen = 0.07f + 0.93f * fabsf(facing);
             if (facing < 0) normal = float3_scale(normal, -1);
@@ -134,7 +136,7 @@ static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *l
             Float3 point = float3_mad(float3_mad(plate.centre, plate.along, u), plate.across, v);
             point = float3_mad(point, plate.normal, flake->size * high);
             if (!airborne_project(preview, point, at, &depth)) return;
-            airborne_dot(preview, at, radius, float3_scale(light, seen * cover), seen * cover);
+            airborne_dot(preview, at, radius, float3_scale(light, seen * hides), seen * hides);
         }
 }
 
