@@ -19,9 +19,9 @@ enum { SPARKS_A_SLOT = 6 }; ///< that a site may throw in a slot
 #define LIFE 1.05f          ///< s, the longest
 #define LAG 0.09f           ///< s
 #define CURL 0.0016f        ///< m, the widest
-#define EDDY 0.034f         ///< m from one eddy of the plume to the next
-#define EDDY_RISE 0.28f     ///< m/s: sparks pass them
-#define EDDY_WIDE 0.009f    ///< m, by which they carry a spark aside, at most
+#define SWIRL 0.034f        ///< m from one eddy of the plume to the next
+#define SWIRL_RISE 0.28f    ///< m/s: sparks pass them
+#define SWIRL_WIDE 0.009f   ///< m, by which they carry a spark aside, at most
 #define TAIL_COLD 0.22f     ///< by which share what it leaves behind is colder
 #define SPARK_COLD 900.0f   ///< K
 #define COOLING 3.8f
@@ -62,8 +62,8 @@ static Float3 spark_at(const Spark *spark, float age) {
     p.y += aside * (sinf(spark->turn[1] + 6.1f * age) - sinf(spark->turn[1]));
 
     // eddies rise more slowly than sparks, which so pass through them: their ways are arcs, and neighbours' ways are alike
-    const float rise = maxf(p.z - spark->from.z, 0), winds = spark->winds * rise / (rise + 0.5f * EDDY);
-    const float passed = 2 * PI_F * (rise - EDDY_RISE * age) / EDDY;
+    const float rise = maxf(p.z - spark->from.z, 0), winds = spark->winds * rise / (rise + 0.5f * SWIRL);
+    const float passed = 2 * PI_F * (rise - SWIRL_RISE * age) / SWIRL;
     p.x += winds * sinf(spark->eddy[0] + passed);
     p.y += winds * sinf(spark->eddy[1] + 0.8f * passed);
 
@@ -160,7 +160,7 @@ static Spark spark_make(const EmberSite *site, const Around *around, uint32_t ke
                    .shows = 0.12f + 1.1f * r[9] * r[9],
                    .comet = r[5],
                    .eddy = {site->position.x / BUSY_WIDE + 1.3f * r[6], site->position.y / BUSY_WIDE + 1.3f * r[7]},
-                   .winds = EDDY_WIDE * r[2] * r[9]};
+                   .winds = SWIRL_WIDE * r[2] * r[9]};
 
     // the air leans as the eddies of the moment do; large crumbs fall through it
     spark.air = float3(leans * (r[8] - 0.5f), leans * (r[9] - 0.5f),

@@ -241,8 +241,10 @@ vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float inward = (bent.burn - STARVED_BORDER) / (max(state.gradient, 20.0) * 2.0 * EMBER_WIDTH);
     alive = max(alive, LEAF_FRONT * starved * exp(-inward * inward));
     float coals = 0.45 * patch_ + 0.42 * bent.medium + 0.55 * fibre + 0.35 * bent.fine;
-    float gathers = mix(LEAF_SCATTERS, 1.0, stepf(0.05, 0.5, alive));
-    float lit = clamp(LEAF_SPREAD * alive + gathers * coals - 0.56, 0.0, 1.0), hot = lit * lit * (1.6 - 0.6 * lit);
+    float gathers =
+        mix(LEAF_SCATTERS, 1.0, stepf(0.05, 0.5, alive));
+    float lit = clamp(LEAF_SPREAD * alive + gathers * coals - 0.56, 0.0, 1.0),
+                hot = lit * lit * (1.6 - 0.6 * lit);
     float temperature = ember_temperature(state.temperature) - STARVED_COOLER * starved;
     vec3 red = blackbody_glow(ember_seen(temperature - LEAF_COOLER * (1.5 - alive)));
     vec3 bright = blackbody_glow(ember_seen(temperature + mix(-LEAF_DIM, LEAF_CORE, hot)));
@@ -321,7 +323,7 @@ const float BASE_SPEED = 0.25;
 const float BUOYANCY = 2.0;
 const float RISE_MOST = 0.55;
 const float EDDY_RATE = 8.0;
-const float EDDY_WIDE = 0.009;
+const float EDDY_WIDE = 0.0135;
 const float EDDY_FINE = 0.0065;
 const float FINE_OFTEN = 2.2;
 const float EDDY_THREAD = 0.01;
