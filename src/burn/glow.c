@@ -64,6 +64,7 @@ static float glow_supply(const BurnJob *job, uint32_t i) {
     bool edge = false;
 
     if (shell_is_corner(shell, i)) {
+        // a neighbour across a side at the vertex is in its fan, too
         for (uint32_t f = shell->fan_first[i]; f < shell->fan_first[i + 1]; f++) {
             uint32_t cell = shell->fan[f], centre = shell_centre(shell, cell);
             const bool gone = glow_is_gone(job, cell);
@@ -73,9 +74,9 @@ static float glow_supply(const BurnJob *job, uint32_t i) {
 
             int k = 0;
             while (shell->cells[cell][k] != i) k++;
-            edge = glow_is_gone(job, shell_neighbour(shell, cell, k)) ||
-                   glow_is_gone(job, shell_neighbour(shell, cell, (k + 3) & 3));
-            if (!edge) ash = float_max(ash, ashes[centre]);
+            const uint32_t *green = shell->cell_springs[cell].green;
+            edge = green[k] == SHELL_NONE || green[(k + 3) & 3] == SHELL_NONE;
+            ash = float_max(ash, ashes[centre]);
         }
     } else {
         uint32_t cell = i - shell->vertex_count;

@@ -95,13 +95,36 @@ static bool air_is_elsewhere(const BurnAirNear *near, const Float4Mask middle[3]
 /// Takes the nodes about the middle of lane k into `near`, with new ones where `adds`. What the table has no place for
 /// is not there: there is as much air as in a front.
 static void air_go(BurnAir *air, BurnAirNear *near, const Float4Mask middle[3], int k, bool adds) {
-    for (int d = 0; d < 3; d++) near->middle[d] = middle[d][k];
-    near->known = true;
-    memset(near->demand, 0, sizeof near->demand);
+    static const uint32_t low[3] = {0x1249249, 0x1c0e07, 0x1ff}; // bits of the nine nodes at -1 along an axis
+    int stride = 1, axis = 0, by = 0, axes = 0;
+    for (int d = 0, step = 1; d < 3; d++, step *= 3) {
+        const int along = middle[d][k] - near->middle[d];
+        near->middle[d] = middle[d][k];
+        if (along == 0) continue;
+        axis = d;
+        stride = step;
+        by = along;
+        axes++;
+    }
 
-    for (int n = 0; n < 27; n++) {
+    // mostly one node farther along an axis than those before: then only nine are new
+    uint32_t fresh = (1u << 27) - 1;
+    if (near->known && axes == 1 && (by == 1 || by == -1)) {
+        const int to = by < 0 ? stride : 0, from = stride - to;
+        fresh = by < 0 ? low[axis] : low[axis] << 2 * stride;
+        memmove(near->slot + to, near->slot + from, (size_t)(27 - stride) * sizeof *near->slot);
+        if (axis > 0)
+            memmove(near->demand + to / 3, near->demand + from / 3, sizeof(Float4) * (size_t)(9 - stride / 3));
+        for (int row = 0; axis == 0 && row < 9; row++) {
+            const Float4 q = near->demand[row];
+            near->demand[row] = by < 0 ? FLOAT4_SHUFFLE(q, q, 3, 0, 1, 3) : FLOAT4_SHUFFLE(q, q, 1, 2, 3, 3);
+        }
+    }
+
+    near->known = true;
+    for (; fresh; fresh &= fresh - 1) {
+        const int n = __builtin_ctz(fresh), offset[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
         uint64_t node = 0;
-        const int offset[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
         for (int d = 0; d < 3; d++)
             node |= (uint64_t)((uint32_t)(near->middle[d] + offset[d] + (1 << 20)) & 0x1fffff) << 21 * d;
 
@@ -109,7 +132,7 @@ static void air_go(BurnAir *air, BurnAirNear *near, const Float4Mask middle[3], 
         if (adds && slot < air->count) air->node[slot] = node;
         const bool found = slot < air->count && air->node[slot] == node;
         near->slot[n] = found ? slot : air->count;
-        if (found) near->demand[n / 3][n % 3] = air->demand[slot];
+        near->demand[n / 3][n % 3] = found ? air->demand[slot] : 0;
     }
 }
 

@@ -69,6 +69,7 @@ void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour 
     const float *mass = state->burn->mass, *length = state->burn->spring_length[colour];
     const uint32_t first = springs->strand_first[strand], end = springs->strand_first[strand + 1];
     const float side = colour == SINGE_YELLOW ? 0.70710678f : 1; // of a cell, over the spring
+    const uint8_t *seen = (const uint8_t *)set->seen;
     size_t slot = set->strand_slot[strand] + (size_t)(from - first) * STRAND_LANES;
     bool bends = false;
 
@@ -83,7 +84,8 @@ void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour 
             if (springs->ends[before][1] != b || end - first < 3) continue;
         }
 
-        // only unburnt mesh has a limit
+        // only unburnt mesh has a limit, which stays where neither spring has changed
+        if (seen[k] != PREPARE_STALE && seen[before] != PREPARE_STALE) continue;
         const uint32_t a = springs->ends[before][0];
         bool fresh = mass[a] > BEND_FRESH && mass[b] > BEND_FRESH && mass[c] > BEND_FRESH;
         bool whole = set->weight[slot] > 0 && set->weight[slot_before] > 0; // neither burnt nor torn

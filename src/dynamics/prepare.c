@@ -22,10 +22,10 @@ typedef struct Prepare {
     DynamicsState *dynamics;   ///< its positions get the inverse mass
 } Prepare;
 
-/// Marks the run of a spring, if it is in a strand, to be prepared again. Several threads may mark one.
+/// Marks a spring, if it is in a strand, to be prepared again. Several threads may mark one.
 static inline void prepare_mark(StrandSet *set, uint32_t spring) {
-    const uint32_t run = spring / PREPARE_RUN;
-    if (run < set->run_count) atomic_store_explicit(&set->stale[run], 1, memory_order_relaxed);
+    if (spring < set->run_count * PREPARE_RUN)
+        atomic_store_explicit(&set->seen[spring], PREPARE_STALE, memory_order_relaxed);
 }
 
 /// Normals of cells; springs at what lost mass get other weights and lengths.
@@ -43,7 +43,7 @@ static void prepare_cells(void *task, int begin, int end) {
 
         bool burns = burn_rate[shell_centre(shell, c)] > 0;
         for (int i = 0; i < 4; i++) burns |= burn_rate[corner[i]] > 0;
-        if (!burns || !sets[SINGE_RED].stale) continue;
+        if (!burns || !sets[SINGE_RED].seen) continue;
         const CellSprings *springs = &shell->cell_springs[c];
         for (int i = 0; i < 4; i++) {
             prepare_mark(&sets[SINGE_RED], springs->red[i]);

@@ -15,6 +15,8 @@
 #include <stdatomic.h>
 
 enum { STRAND_LANES = 16, STRAND_KEEP = 3, PREPARE_RUN = 16 };
+/// In StrandSet.seen: weight, length or limit of the spring change in this step. No spring has these flags.
+enum { PREPARE_STALE = 0x80 };
 _Static_assert(STRAND_LANES % 16 == 0, "the widest kernel has 16 lanes");
 
 /// y of the constraint in strand_kernel.h.
@@ -44,22 +46,22 @@ typedef struct StrandSet {
     uint32_t *strand_group; ///< [strands]
     uint32_t *strand_slot;  ///< [strands] slot of the strand's first spring; spring k lies k rows further
     uint32_t *node;         ///< [row_count STRAND_LANES] four times the particle's number
-    uint32_t *contiguous; ///< [row_count] node of column 0 where those of the other columns follow, or STRAND_GATHERED
-    float *target;        ///< [row_count STRAND_LANES] m2, squares of target lengths
-    float *weight;        ///< [row_count STRAND_LANES] half of W of eq 19, with char; 0 where there is no spring
-    float *compliance;    ///< [row_count STRAND_LANES] m/N
-    float *bend_limit;    ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
-    float bend_share;     ///< of a bend beyond its limit that a substep removes
-    _Atomic bool bends;   ///< some limit is, or has been, finite
-    float *pull;          ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: not needed
-    uint32_t run_count;   ///< of springs: PREPARE_RUN each, in the springs' order
-    _Atomic uint8_t *stale; ///< [run_count] 1: weights, lengths or limits of the run change in this step
-    uint32_t *run_strand;   ///< [run_count] the strand of the run's first spring
-    uint8_t *creased;       ///< [run_count] 1: a crease had changed a length of the run
-    uint8_t *seen;          ///< [run_count PREPARE_RUN] the springs' flags that the weights are for
-    bool rings;             ///< some strands are rings
-    float compliance_all;   ///< m/N, that of every spring; negative where they differ
-    void *block;            ///< memory of the five arrays
+    uint32_t *contiguous;  ///< [row_count] node of column 0 where those of the other columns follow, or STRAND_GATHERED
+    float *target;         ///< [row_count STRAND_LANES] m2, squares of target lengths
+    float *weight;         ///< [row_count STRAND_LANES] half of W of eq 19, with char; 0 where there is no spring
+    float *compliance;     ///< [row_count STRAND_LANES] m/N
+    float *bend_limit;     ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
+    float bend_share;      ///< of a bend beyond its limit that a substep removes
+    _Atomic bool bends;    ///< some limit is, or has been, finite
+    float *pull;           ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: not needed
+    uint32_t run_count;    ///< of springs: PREPARE_RUN each, in the springs' order
+    uint8_t *stale;        ///< [run_count] 1: some of the run's springs change in this step
+    uint32_t *run_strand;  ///< [run_count] the strand of the run's first spring
+    uint8_t *creased;      ///< [run_count] 1: a crease had changed a length of the run
+    _Atomic uint8_t *seen; ///< [run_count PREPARE_RUN] the springs' flags that the weights are for, or PREPARE_STALE
+    bool rings;            ///< some strands are rings
+    float compliance_all;  ///< m/N, that of every spring; negative where they differ
+    void *block;           ///< memory of the five arrays
 } StrandSet;
 
 static inline uint32_t strand_lane(uint32_t width, uint32_t column) {

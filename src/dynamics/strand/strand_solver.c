@@ -95,14 +95,11 @@ static uint32_t run_end(const SpringSet *springs, uint32_t r) {
     return (r + 1) * PREPARE_RUN < all ? (r + 1) * PREPARE_RUN : all;
 }
 
-/// Whether a run has a spring whose weight or length is another one now; `flags` and `crease` begin at the run.
-static inline bool run_changed(const StrandSet *set, uint32_t r, const uint8_t *flags, const float *crease,
-                               uint32_t count) {
+/// Whether a run has, or had, a crease; `crease` begins at the run.
+static inline bool run_creased(const StrandSet *set, uint32_t r, const float *crease, uint32_t count) {
     bool creased = set->creased[r];
     for (uint32_t k = 0; crease && k < count; k++) creased |= crease[k] != 0;
-    const uint8_t *seen = set->seen + (size_t)r * PREPARE_RUN;
-    return creased || atomic_load_explicit(&set->stale[r], memory_order_relaxed) ||
-           (count == PREPARE_RUN ? memcmp(flags, seen, PREPARE_RUN) : memcmp(flags, seen, count)) != 0;
+    return creased;
 }
 
 /// Weights and lengths of runs into the lanes; a crease changes lengths of green springs.
@@ -116,27 +113,35 @@ static void prepare_runs(void *task, int begin, int end) {
     const float *soft = job->plan->soft;
     const float *crease = job->colour == SINGE_GREEN && job->plan->hinges ? job->dynamics->crease : NULL;
     const bool torn = job->shell->split_count > 0;
+    const uint32_t *strand_first = springs->strand_first, *strand_slot = set->strand_slot;
+    const uint32_t(*ends)[2] = (const uint32_t(*)[2])springs->ends;
+    float *to_weight = set->weight, *to_target = set->target;
+    uint8_t *seen = (uint8_t *)set->seen; // nobody marks any more
 
     for (uint32_t r = (uint32_t)begin; r < (uint32_t)end; r++) {
         const uint32_t first = r * PREPARE_RUN, last = run_end(springs, r), count = last - first;
         if (count == 0) continue;
-        if (!job->all && !run_changed(set, r, flags + first, crease ? crease + first : NULL, count)) continue;
+        const bool all = job->all || run_creased(set, r, crease ? crease + first : NULL, count);
+        if (!all && (count == PREPARE_RUN ? memcmp(flags + first, seen + first, PREPARE_RUN)
+                                          : memcmp(flags + first, seen + first, count)) == 0)
+            continue;
 
-        atomic_store_explicit(&set->stale[r], 1, memory_order_relaxed);
-        memcpy(set->seen + first, flags + first, count);
+        set->stale[r] = 1;
         set->creased[r] = 0;
         uint32_t s = set->run_strand[r];
         for (uint32_t k = first; k < last; k++) {
-            while (k >= springs->strand_first[s + 1]) s++;
-            const size_t slot = set->strand_slot[s] + (size_t)(k - springs->strand_first[s]) * STRAND_LANES;
-            uint32_t a = springs->ends[k][0], b = springs->ends[k][1];
+            if (!all && seen[k] == flags[k]) continue;
+            seen[k] = PREPARE_STALE;
+            while (k >= strand_first[s + 1]) s++;
+            const size_t slot = strand_slot[s] + (size_t)(k - strand_first[s]) * STRAND_LANES;
+            uint32_t a = ends[k][0], b = ends[k][1];
             bool here = flags[k] & SINGE_ALIVE;
             if (torn) here = here && patch_is_in_strand(job->plan, job->shell, job->colour, k, slot);
-            set->weight[slot] = here ? 0.5f * dynamics_weight(material, soft, a, b) : 0;
-            set->target[slot] = target[k] * target[k];
+            to_weight[slot] = here ? 0.5f * dynamics_weight(material, soft, a, b) : 0;
+            to_target[slot] = target[k] * target[k];
             if (!crease || crease[k] == 0) continue;
             const float length = target[k] * crease_factor(job->plan, job->shell, job->state, job->dynamics, k);
-            set->target[slot] = length * length;
+            to_target[slot] = length * length;
             set->creased[r] = 1;
         }
     }
@@ -151,8 +156,7 @@ static void prepare_limits(void *task, int begin, int end) {
     for (uint32_t r = (uint32_t)begin; r < (uint32_t)end; r++) {
         const uint32_t first = r * PREPARE_RUN;
         uint32_t last = run_end(springs, r);
-        bool stale = job->all || set->rings || atomic_load_explicit(&set->stale[r], memory_order_relaxed);
-        bool before = r > 0 && atomic_load_explicit(&set->stale[r - 1], memory_order_relaxed);
+        const bool stale = set->rings || set->stale[r], before = r > 0 && set->stale[r - 1];
         if (first == last || !(stale || before)) continue;
         if (!stale) last = first + 1;
         uint32_t s = set->run_strand[r];
@@ -177,9 +181,18 @@ static void strands_prepare(DynamicsPlan *plan, const Shell *shell, const StateI
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         job.colour = (SingeColour)colour;
         StrandSet *set = &plan->strands.sets[colour];
+        const SpringSet *springs = &shell->springs[colour];
         pool_for(pool, (int)set->run_count, POOL_BLOCK / PREPARE_RUN, prepare_runs, &job);
         if (set->bend_limit) pool_for(pool, (int)set->run_count, POOL_BLOCK / PREPARE_RUN, prepare_limits, &job);
-        memset((void *)set->stale, 0, set->run_count);
+
+        // what has been prepared is no longer stale
+        uint8_t *stale = set->stale;
+        while ((stale = memchr(stale, 1, set->run_count - (size_t)(stale - set->stale)))) {
+            const uint32_t r = (uint32_t)(stale - set->stale), first = r * PREPARE_RUN;
+            memcpy((uint8_t *)set->seen + first, state->ablate->spring_flags[colour] + first,
+                   run_end(springs, r) - first);
+            *stale++ = 0;
+        }
     }
 
     patch_prepare(plan, shell, state);
