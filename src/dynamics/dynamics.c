@@ -246,7 +246,7 @@ static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepC
     // internal friction, order of the layers, creases
     dynamics_smooth(plan, shell, ablate, pool, h, dynamics);
     dynamics_order(plan, shell, ablate, pool, dynamics);
-    plan->strands_written = true;
+    plan->written = true;
     dynamics_crease(plan, shell, state, pool, h, dynamics);
     return dynamics_check(plan, pool, dynamics, error);
 }

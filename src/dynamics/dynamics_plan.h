@@ -107,7 +107,7 @@ struct DynamicsPlan {
     Braces *braces;  ///< NULL unless bending is isotropic
     Paper *paper;    ///< of the paper's methods
     Patches patches;
-    bool strands_written; ///< their weights and targets, in a step that succeeded
+    bool written; ///< what dynamics_prepare writes, in a step that succeeded
     Attachments attachments;
     CollisionPlan *collision; ///< NULL without contact of sheets
     Hinge *hinges;            ///< [green springs], or NULL without creases

@@ -46,7 +46,7 @@ bool patch_follow(DynamicsPlan *plan, const Shell *shell) {
     if (shell->spare_count == 0) return false;
 
     // a step that was undone may have dropped springs that are alive again
-    if (patches->split_count == shell->split_count && plan->strands_written) return false;
+    if (patches->split_count == shell->split_count && plan->written) return false;
 
     patches->split_count = shell->split_count;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {

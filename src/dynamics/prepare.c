@@ -20,6 +20,7 @@ typedef struct Prepare {
     const SingeWindDef *wind;
     const SourceList *sources; ///< that move air; or NULL
     DynamicsState *dynamics;   ///< its positions get the inverse mass
+    bool known;                ///< what the last step has left holds for particles that have lost no mass since
 } Prepare;
 
 /// Marks a spring, if it is in a strand, to be prepared again. Several threads may mark one.
@@ -62,22 +63,26 @@ static void prepare_particles(void *task, int begin, int end) {
     const Matter *matter = &shell->matter;
     const Float3 mean = float3_load(job->wind->velocity);
     const bool gusts = job->wind->gust > 0;
+    const float *burn_rate = state->burn->burn_rate;
     bool held = false;
 
     for (int i = begin; i < end; i++) {
-        // inverse mass; weight, which falls with char
-        bool alive = state->ablate->particle_flags[i] & SINGE_ALIVE;
-        float left = state->burn->mass[i];
-        float mass = matter->mass[i] * (left > PREPARE_MASS_MIN ? left : PREPARE_MASS_MIN);
-        plan->inverse_mass[i] = alive && !job->dynamics->pinned[i] && mass > 0 ? 1 / mass : 0;
+        // inverse mass; weight, which falls with char; drag. Most particles move freely and do not burn
+        const bool alive = state->ablate->particle_flags[i] & SINGE_ALIVE, free = alive && !job->dynamics->pinned[i];
+        const float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
+        if (!(free && job->known && plan->inverse_mass[i] > 0 && burn_rate[i] == 0)) {
+            const float left = state->burn->mass[i];
+            const float mass = matter->mass[i] * (left > PREPARE_MASS_MIN ? left : PREPARE_MASS_MIN);
+            plan->inverse_mass[i] = free && mass > 0 ? 1 / mass : 0;
+            const float progress = shell_burn_progress(left, field_at(matter->mass_min, (uint32_t)i));
+            plan->soft[i] = 1 + (field_at(matter->char_weight, (uint32_t)i) - 1) * progress;
+            plan->normal[i][3] = 0.25f * drag * matter->area[i] / mass;
+        }
         job->dynamics->position[i][3] = plan->inverse_mass[i];
-        float progress = shell_burn_progress(state->burn->mass[i], field_at(matter->mass_min, (uint32_t)i));
-        plan->soft[i] = 1 + (field_at(matter->char_weight, (uint32_t)i) - 1) * progress;
         if (!alive) continue;
         held |= plan->inverse_mass[i] == 0;
 
-        // drag, and what it needs: normal and air
-        float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
+        // what drag needs: normal and air
         const float damping = field_at(matter->damping, (uint32_t)i);
         if (drag == 0) {
             plan->normal[i][3] = 0;
@@ -94,8 +99,7 @@ static void prepare_particles(void *task, int begin, int end) {
                     normal += float4_load(plan->cell_normal[shell->fan[k]]);
         const float length = sqrtf(float4_dot(normal, normal));
         if (length > 0) normal = normal * (1 / length);
-        normal[3] = 0.25f * drag * matter->area[i] / mass;
-        float4_store(plan->normal[i], normal);
+        float4_store(plan->normal[i], float4_with(normal, plan->normal[i][3]));
         Float3 wind = gusts ? wind_velocity(job->wind, float3_load(job->dynamics->position[i]), state->time) : mean;
         if (job->sources)
             wind = float3_add(wind, air_velocity(job->sources, float3_load(job->dynamics->position[i]), state->time));
@@ -108,10 +112,12 @@ static void prepare_particles(void *task, int begin, int end) {
 
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, const SingeWindDef *wind,
                       const SourceList *sources, Pool *pool, DynamicsState *dynamics) {
-    Prepare job = {plan, shell, state, wind, air_of(sources, state->time), dynamics};
+    const bool known = plan->written && plan->patches.split_count == shell->split_count;
+    Prepare job = {plan, shell, state, wind, air_of(sources, state->time), dynamics, known};
     memset(plan->height_wait, 0, height_wait_count(shell));
     plan->held = false;
     pool_for(pool, (int)shell->cell_count, POOL_GRAIN, prepare_cells, &job);
     pool_for(pool, (int)shell->particle_count, POOL_GRAIN, prepare_particles, &job);
     if (plan->solver->prepare) plan->solver->prepare(plan, shell, state, pool, dynamics);
+    plan->written = false; // till the step is done: one that is undone has left what belongs to other masses
 }

@@ -174,10 +174,9 @@ static void strands_prepare(DynamicsPlan *plan, const Shell *shell, const StateI
     bool torn = patch_follow(plan, shell);
 
     // otherwise the values of an earlier step are still right, but for the springs of what burns (prepare.c)
-    job.all = !plan->strands_written || torn;
+    job.all = !plan->written || torn;
     if (plan->braces && (job.all || plan->creased || state->burn->mass_burnt > 0))
         braces_prepare(plan->braces, plan, shell, state, pool, dynamics);
-    plan->strands_written = false; // till the step is done: one that is undone may have written other weights
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         job.colour = (SingeColour)colour;
         StrandSet *set = &plan->strands.sets[colour];
