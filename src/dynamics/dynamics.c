@@ -51,7 +51,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     plan->solver = solvers[solver->method];
     const bool done =
         NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->normal, plan->particle_count) &&
-        NEW(memory, plan->air, plan->particle_count) && NEW(memory, plan->predicted, plan->particle_count) &&
+        NEW(memory, plan->air, plan->particle_count + 4) && NEW(memory, plan->predicted, plan->particle_count) &&
         (solver->start == 0 ||
          (NEW(memory, plan->start, plan->particle_count) && NEW(memory, plan->given, plan->particle_count))) &&
         NEW(memory, plan->soft, plan->particle_count) && NEW(memory, plan->cell_normal, plan->cell_count) &&
@@ -79,7 +79,7 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) 
     collision_plan_free(memory, plan->collision);
     FREE(memory, plan->inverse_mass, plan->particle_count);
     FREE(memory, plan->normal, plan->particle_count);
-    FREE(memory, plan->air, plan->particle_count);
+    FREE(memory, plan->air, plan->particle_count + 4);
     FREE(memory, plan->predicted, plan->particle_count);
     if (plan->start) FREE(memory, plan->start, plan->particle_count);
     if (plan->given) FREE(memory, plan->given, plan->particle_count);

@@ -97,7 +97,8 @@ struct DynamicsPlan {
     float *inverse_mass;   ///< 1/kg; 0 if pinned or gone
     _Atomic bool held;     ///< some that are not gone have 0
     float (*normal)[4];    ///< unit; fourth: 1/m, k of the quadratic drag, dv/dt = -k |v_n| v_n
-    float (*air)[4];       ///< m/s, the wind there; fourth: 1/s, damping
+    float (*air)[4];       ///< m/s, the wind there; fourth: 1/s, damping. Of particle i & air_mask
+    uint32_t air_mask;     ///< UINT32_MAX, or 0: the same everywhere, in the first four
     float (*predicted)[4]; ///< m, x~ of eq 9
     float (*start)[4];     ///< m, s of move.c; NULL: none
     float (*given)[4];     ///< m, g of move.c; NULL without a start

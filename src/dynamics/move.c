@@ -66,6 +66,7 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
                             .predicted = plan->predicted[0],
                             .normal = plan->normal[0],
                             .air = plan->air[0],
+                            .air_mask = plan->air_mask ? SIZE_MAX : 0,
                             .kept = dynamics_keeps_start(plan, between->collider_count),
                             .h = h,
                             .inverse_h = 1 / h,

@@ -10,7 +10,8 @@ typedef struct MoveLanes {
     float *velocity;     ///< m/s; fourth: 0
     float *predicted;    ///< m
     const float *normal; ///< unit; fourth: 1/m, k of the quadratic drag
-    const float *air;    ///< m/s; fourth: 1/s, damping
+    const float *air;    ///< m/s; fourth: 1/s, damping. Of number i & air_mask
+    size_t air_mask;     ///< 0: the same for all, as many as a vector holds
     float *start;        ///< m, what the next prediction adds; not used where `share` is 0
     float *given;        ///< m, what the last projection has added to its start
     float share;         ///< of what this projection has added, for the next start, ...

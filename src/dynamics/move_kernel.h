@@ -29,11 +29,11 @@ static inline void move_lanes(const MoveLanes *job, size_t i, bool closes, bool 
     // eq 8 and 9: forces and prediction of the next one
     if (opens) {
         Lanes keep = lanes_all(job->keep);
-        if (damps) keep = one / (one + h * lanes_fourths(lanes_load(job->air + i)));
+        if (damps) keep = one / (one + h * lanes_fourths(lanes_load(job->air + (i & job->air_mask))));
         velocity = (velocity + lanes_quadruple(job->fall)) * keep;
         if (drags) {
             const Lanes normal = lanes_load(job->normal + i), drag = lanes_fourths(normal);
-            const Lanes slip = lanes_sums((velocity - lanes_load(job->air + i)) * normal);
+            const Lanes slip = lanes_sums((velocity - lanes_load(job->air + (i & job->air_mask))) * normal);
             const Lanes k = h * drag * lanes_abs(slip);
             const Lanes slower = lanes_with_fourth(velocity - slip * k / (one + k) * normal, velocity);
             velocity = lanes_where_less(zero, drag, slower, velocity);
@@ -70,7 +70,8 @@ static inline void move_dragged(const MoveLanes *job, size_t first) {
             lanes_load(job->velocity + i) + (point[e] - lanes_load(job->predicted + i)) * lanes_all(job->inverse_h);
         velocity[e] = (closed + lanes_quadruple(job->fall)) * lanes_all(job->keep);
         normal[e] = lanes_load(job->normal + i);
-        const Lanes slip = lanes_with_fourth((velocity[e] - lanes_load(job->air + i)) * normal[e], normal[e]);
+        const Lanes slip =
+            lanes_with_fourth((velocity[e] - lanes_load(job->air + (i & job->air_mask))) * normal[e], normal[e]);
         FLOAT4S_SET(slips, e, slip);
     }
 

@@ -110,8 +110,9 @@ void dynamics_fly(DynamicsPlan *plan, const Shell *shell, const AblateState *abl
         plate->area += area;
         plate->drag += 0.5f * plan->settings.air_density * field_at(shell->matter.drag, i) * area;
         plate->centre = float3_mad(plate->centre, at, area);
-        plate->motion =
-            float3_mad(plate->motion, float3_sub(float3_load(dynamics->velocity[i]), float3_load(plan->air[i])), area);
+        plate->motion = float3_mad(
+            plate->motion, float3_sub(float3_load(dynamics->velocity[i]), float3_load(plan->air[i & plan->air_mask])),
+            area);
         plate->normal = float3_mad(plate->normal, float3_load(plan->normal[i]), area);
     }
 

@@ -100,6 +100,7 @@ static void prepare_particles(void *task, int begin, int end) {
         const float length = sqrtf(float4_dot(normal, normal));
         if (length > 0) normal = normal * (1 / length);
         float4_store(plan->normal[i], float4_with(normal, plan->normal[i][3]));
+        if (!plan->air_mask) continue;
         Float3 wind = gusts ? wind_velocity(job->wind, float3_load(job->dynamics->position[i]), state->time) : mean;
         if (job->sources)
             wind = float3_add(wind, air_velocity(job->sources, float3_load(job->dynamics->position[i]), state->time));
@@ -114,6 +115,16 @@ void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *
                       const SourceList *sources, Pool *pool, DynamicsState *dynamics) {
     const bool known = plan->written && plan->patches.split_count == shell->split_count;
     Prepare job = {plan, shell, state, wind, air_of(sources, state->time), dynamics, known};
+
+    // still air, or an even wind
+    const Field damping = shell->matter.damping, drag = shell->matter.drag;
+    const bool even = !(wind->gust > 0) && !job.sources && !state->gas->awake && damping.mask == 0 && drag.mask == 0 &&
+                      plan->settings.air_density * field_at(drag, 0) != 0;
+    plan->air_mask = even ? 0 : UINT32_MAX;
+    for (int i = 0; even && i < 4; i++)
+        float4_store(plan->air[i],
+                     (Float4){wind->velocity[0], wind->velocity[1], wind->velocity[2], field_at(damping, 0)});
+
     memset(plan->height_wait, 0, height_wait_count(shell));
     plan->held = false;
     pool_for(pool, (int)shell->cell_count, POOL_GRAIN, prepare_cells, &job);
