@@ -239,7 +239,7 @@ static void ask_lamps(const Preview *preview, Block *block, const float wanted[L
                       int sample) {
     const PreviewScene *scene = &preview->scene;
     const EmberLights *l = &scene->lights;
-    const float golden = 0.61803399f, dither = hash_unit(preview->def.seed ^ 0x5bd1e995u);
+    const float part = sample_half((uint32_t)sample), dither = hash_unit(preview->def.seed ^ 0x5bd1e995u);
     float open[LANES] = {0};
 
     for (int i = 0; i < LANES; i++) {
@@ -248,7 +248,7 @@ static void ask_lamps(const Preview *preview, Block *block, const float wanted[L
         if (wanted[i] <= 0) continue;
 
         float random = dither + 0.75487767f * (float)block->x[i] + 0.56984029f * (float)block->y[i], square[2], far;
-        random += golden * (float)sample;
+        random += part;
         int lamp;
         const Point *point = &block->point[i];
         Float3 to;

@@ -70,6 +70,12 @@ void sample_lens(uint32_t index, uint32_t key, float out[2]) {
 
 float sample_time(uint32_t index, uint32_t key) { return fraction(hash_unit(key) + 0.61803399f * (float)index); }
 
+float sample_half(uint32_t index) {
+    float out = 0, half = 0.5f;
+    for (; index; index /= 2, half *= 0.5f) out += index % 2 ? half : 0;
+    return out;
+}
+
 void sample_pixel(int x, int y, uint32_t seed, float out[2]) {
     float px = (float)(x + (int)(seed & 63)), py = (float)(y + (int)(seed >> 6 & 63));
     out[0] = fraction(52.9829189f * fraction(0.06711056f * px + 0.00583715f * py));

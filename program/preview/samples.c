@@ -45,6 +45,9 @@ static void layers_write(const Preview *preview, size_t pixel, const LayerSum *s
 
 void block_add_light(const Preview *preview, Block *block, const int *active, int sample, const int *ask) {
     float through[LANES], known[LANES];
+    bool other[LANES] = {false};
+    Float3 before[LIT_KINDS][LANES];
+    memcpy(before, block->lit, sizeof before);
     for (int i = 0; i < LANES; i++) {
         through[i] = known[i] = 0;
         if (!active[i]) continue;
@@ -78,9 +81,10 @@ void block_add_light(const Preview *preview, Block *block, const int *active, in
 
         LayerSum *sum = &block->layer[i];
         const float depth = point->distance * float3_dot(block->direction[i], preview->camera.forward);
-        if (sum->samples++)
-            sum->mixed = sum->mixed || point->sheet != sum->sheet || fabsf(depth - sum->depth) > 0.02f * depth;
-        else {
+        if (sum->samples++) {
+            other[i] = point->sheet != sum->sheet || fabsf(depth - sum->depth) > 0.02f * depth;
+            sum->mixed = sum->mixed || other[i];
+        } else {
             sum->depth = depth;
             sum->sheet = point->sheet;
             sum->piece = point->piece;
@@ -119,7 +123,11 @@ void block_add_light(const Preview *preview, Block *block, const int *active, in
     for (int i = 0; i < LANES; i++) {
         if (!active[i]) continue;
         float l = through[i] * float3_luminance(block->point[i].glow) - known[i];
-        for (int k = 0; k < LIT_KINDS; k++) l += float3_luminance(block->lit[k][i]);
+        for (int k = 0; k < LIT_KINDS; k++) {
+            l += float3_luminance(block->lit[k][i]);
+            const Float3 added = float3_sub(block->lit[k][i], before[k][i]);
+            if (other[i]) block->lit_other[k][i] = float3_add(block->lit_other[k][i], added);
+        }
         float shown = l / (1 + l);
         block->low[i] = minf(block->low[i], shown);
         block->high[i] = maxf(block->high[i], shown);
@@ -256,6 +264,7 @@ void block_draw(Preview *preview, Block *block) {
     memset(block->settled, 0, sizeof block->settled);
     block->spread = 0;
     memset(block->lit, 0, sizeof block->lit);
+    memset(block->lit_other, 0, sizeof block->lit_other);
     memset(block->lit_seen, 0, sizeof block->lit_seen);
     memset(block->lit_asked, 0, sizeof block->lit_asked);
 

@@ -7,16 +7,21 @@
 
 #include "preview/block.h"
 
+enum { EDGE_REACH = 3 }; ///< pixels around one that shows several faces, in which it looks for each alone
+
 void seen_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples, bool mixed) {
     const Point *point = &block->point[lane];
-    Lit lit = {.normal = point->geometric,
-               .distance = mixed ? -1 : point->distance,
-               .blur = block->spread,
-               .sheet = point->sheet};
+    Lit lit = {.normal = point->geometric, .distance = point->distance, .blur = block->spread, .sheet = point->sheet};
+    if (mixed) {
+        const LayerSum *sum = &block->layer[lane];
+        lit.distance = -sum->depth / float3_dot(block->direction[lane], preview->camera.forward);
+        lit.sheet = sum->sheet;
+    }
     const float count = (float)samples, mean = block->shown[lane] / count;
     lit.noise = samples > 1 ? maxf(block->squares[lane] / count - mean * mean, 0) / (count - 1) : 0;
     for (int k = 0; k < LIT_KINDS; k++) {
         lit.light[k] = float3_scale(block->lit[k][lane], 1 / (float)samples);
+        lit.other[k] = float3_scale(block->lit_other[k][lane], 1 / (float)samples);
         float asked = block->lit_asked[k][lane];
         lit.seen[k] = asked > 0 ? block->lit_seen[k][lane] / asked : -1;
     }
@@ -68,6 +73,38 @@ void seen_smooth(Preview *preview, Block *block) {
     }
 }
 
+/// The light of a pixel that shows several faces. Of sky and lamps, which have the softest shadows, each face takes its share
+/// from pixels around that show it alone: from the few rays of one pixel, bright edges had teeth.
+static Float3 light_of_faces(const Preview *preview, const Lit *lit, int x, int y) {
+    enum { FIRST, OTHER, FACES };
+    const int w = preview->def.width, h = preview->def.height;
+    float sum[FACES][LIT_KINDS] = {{0}}, total[FACES][LIT_KINDS] = {{0}};
+    for (int j = -EDGE_REACH; j <= EDGE_REACH; j++)
+        for (int i = -EDGE_REACH; i <= EDGE_REACH; i++) {
+            if (x + i < 0 || x + i >= w || y + j < 0 || y + j >= h) continue;
+            const ptrdiff_t at = (ptrdiff_t)j * w + i;
+            const Lit *near = lit + at;
+            if (near->distance < 0) continue;
+            const float apart = fabsf(near->distance + lit->distance), weight = 1 / (float)(1 + i * i + j * j);
+            const int face = near->sheet == lit->sheet && apart < 0.02f * near->distance ? FIRST : OTHER;
+            const float *seen = preview->seen[y * w + x + at];
+            for (int k = LIT_SKY; k < LIT_KINDS; k++) {
+                if (seen[k] < 0) continue;
+                sum[face][k] += weight * seen[k];
+                total[face][k] += weight;
+            }
+        }
+
+    Float3 colour = {0, 0, 0};
+    for (int k = 0; k < LIT_KINDS; k++) {
+        const Float3 light[FACES] = {float3_sub(lit->light[k], lit->other[k]), lit->other[k]};
+        const float own = lit->seen[k] < 0 ? 1 : lit->seen[k];
+        for (int face = 0; face < FACES; face++)
+            colour = float3_mad(colour, light[face], total[face][k] > 0 ? sum[face][k] / total[face][k] : own);
+    }
+    return colour;
+}
+
 void seen_finish(Preview *preview, Block *block) {
     int w = preview->def.width, h = preview->def.height, reach[LIT_KINDS];
     find_reach(preview, reach);
@@ -77,11 +114,12 @@ void seen_finish(Preview *preview, Block *block) {
         size_t pixel = (size_t)y * (size_t)w + (size_t)x;
         Lit *lit = &preview->lit[pixel];
         float seen[LIT_KINDS];
-        if (lit->distance < 0)
-            for (int k = 0; k < LIT_KINDS; k++) seen[k] = lit->seen[k];
-        else smooth_line(lit, &preview->seen[pixel], sizeof *preview->seen, w, y, h - 1 - y, reach, seen);
         Float3 colour = preview->picture[pixel];
-        for (int k = 0; k < LIT_KINDS; k++) colour = float3_mad(colour, lit->light[k], seen[k] < 0 ? 1 : seen[k]);
+        if (lit->distance < 0) colour = float3_add(colour, light_of_faces(preview, lit, x, y));
+        else {
+            smooth_line(lit, &preview->seen[pixel], sizeof *preview->seen, w, y, h - 1 - y, reach, seen);
+            for (int k = 0; k < LIT_KINDS; k++) colour = float3_mad(colour, lit->light[k], seen[k] < 0 ? 1 : seen[k]);
+        }
         preview->picture[pixel] = colour;
 
         // of light before occlusion nothing more is needed

@@ -458,6 +458,80 @@ TEST(the_shadow_of_a_flame_has_no_grain_in_a_still) {
     assert_true(mean > 0.001f && grain < 0.015f);
 }
 
+/// Two quads of two sheets.
+typedef struct Pair {
+    float position[8][3], normal[8][3], uv[8][2], rest[8][3], temperature[8], peak[8], burn[8], rate[8];
+    int32_t sheet[8];
+    uint32_t triangles[4][3];
+} Pair;
+
+static void pair_set(Pair *pair, int which, const Float4 *quad) {
+    for (int i = 0, v = 4 * which; i < 4; i++, v++) {
+        memcpy(pair->position[v], quad->position[i], sizeof pair->position[v]);
+        memcpy(pair->normal[v], quad->normal[i], sizeof pair->normal[v]);
+        memcpy(pair->uv[v], quad->uv[i], sizeof pair->uv[v]),
+            memcpy(pair->rest[v], quad->rest[i], sizeof pair->rest[v]);
+        pair->temperature[v] = pair->peak[v] = 293, pair->sheet[v] = which;
+    }
+    for (int t = 0; t < 2; t++)
+        for (int c = 0; c < 3; c++) pair->triangles[2 * which + t][c] = quad->triangles[t][c] + 4 * (uint32_t)which;
+}
+
+/// The edge of paper before what is dark is straight where a wide lamp is half hidden: a pixel of several faces took the
+/// shadow from its own few rays, and the edge had teeth. Pixels, by which the edge leaves the line of its neighbours, the root
+/// mean square, by how much light rows of pixels have across the edge; paper that has no shadow tells what is due to
+/// the samples of the edge itself.
+TEST(the_edge_of_lit_paper_has_no_teeth) {
+    static float beauty[W * H][3];
+    static Pair pair;
+    enum { ALONE, SHADOWED, CASES };
+    float teeth[CASES];
+    for (int kind = ALONE; kind < CASES; kind++) {
+        PreviewDef def = above();
+        def.samples = 64, def.lamp_radius = 0.05f;
+        const float lamp[3] = {0.3f, 0, 0.35f};
+        memcpy(def.lamp_position, lamp, sizeof lamp);
+        for (int c = 0; c < 3; c++) {
+            def.sun_colour[c] = def.sky_colour[c] = def.ground_colour[c] = def.background[c] = 0;
+            def.lamp_colour[c] = 0.2f;
+        }
+        quad_make(&q, 0.06f, 0.05f);
+        for (int i = 0; i < 4; i++) q.position[i][0] += 0.04f * q.position[i][1]; // its edge crosses pixels
+        pair_set(&pair, 0, &q);
+        quad_make(&q, 0.03f, 0.2f);
+        for (int i = 0; i < 4; i++) q.position[i][0] += kind == SHADOWED ? 0.2f : 5;
+        pair_set(&pair, 1, &q);
+        const SingeSurface surface = {.vertex_count = 8,
+                                      .triangle_count = 4,
+                                      .position = pair.position,
+                                      .normal = pair.normal,
+                                      .uv = pair.uv,
+                                      .rest_position = pair.rest,
+                                      .temperature = pair.temperature,
+                                      .temperature_peak = pair.peak,
+                                      .burn = pair.burn,
+                                      .burn_rate = pair.rate,
+                                      .sheet = pair.sheet,
+                                      .triangles = pair.triangles};
+        see(&def, &surface, NULL, beauty);
+
+        enum { FIRST = H / 2 - 8, ROWS = 17, EDGE = 60 }; // the edge is within 5 pixels of it
+        float row[ROWS] = {0}, squares = 0, paper = 0;
+        for (int y = 0; y < ROWS; y++) {
+            for (int x = EDGE - 5; x < EDGE + 5; x++) row[y] += beauty[(FIRST + y) * W + x][1];
+            paper += beauty[(FIRST + y) * W + EDGE - 5][1] / ROWS;
+        }
+        for (int y = 1; y + 1 < ROWS; y++) {
+            const float bent = (row[y - 1] - 2 * row[y] + row[y + 1]) / paper;
+            squares += bent * bent / (ROWS - 2);
+        }
+        teeth[kind] = sqrtf(squares);
+        print_message("edge of paper, %s: paper %.3f, teeth of %.3f pixels\n", kind ? "half in shadow" : "lit",
+                      (double)paper, (double)teeth[kind]);
+    }
+    assert_true(teeth[ALONE] < 0.06f && teeth[SHADOWED] < 0.12f); // 0.28 by rays of its own
+}
+
 /// Water darkens a sheet, a coloured one more, and what paper holds in a room does not. Bars: damp 5 %, soaked another
 /// 10 %; without the water there is no difference.
 TEST(wet_sheets_are_darker) {
