@@ -70,6 +70,11 @@ static EmberSite *site_of(EmberSite sites[SITE_LIMIT], uint32_t key) {
     return NULL;
 }
 
+Float3 ember_across(uint32_t key) {
+    const float turn = 2 * PI_F * hash_unit(key);
+    return float3(cosf(turn), sinf(turn), 0);
+}
+
 void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]) {
     const PreviewScene *scene = &preview->scene;
     EmberSite add, *site;
@@ -85,9 +90,9 @@ void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]
         site->position = float3_mad(site->position, add.position, add.weight);
     }
 
-    float nearest[SITE_LIMIT];
+    float nearest[SITE_LIMIT], furthest[SITE_LIMIT][2];
     for (int i = 0; i < SITE_LIMIT; i++) {
-        nearest[i] = INFINITY;
+        nearest[i] = furthest[i][0] = furthest[i][1] = INFINITY;
         if (!(sites[i].weight > 0)) continue;
         sites[i].position = float3_scale(sites[i].position, 1 / sites[i].weight);
         sites[i].level /= sites[i].weight;
@@ -95,9 +100,13 @@ void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]
     for (uint32_t t = 0; t < scene->triangle_count; t++) {
         if (!ember_of(scene, t, size, &add) || !(site = site_of(sites, add.key))) continue;
         const float glow = add.length * LEAF_WIDTH / (add.smoulder + 1e-9f);
-        const float distance =
-            float3_length(float3_sub(add.position, site->position)) + 0.4f * size * (1 - stepf(0, 0.5f, glow));
+        const Float3 off = float3_sub(add.position, site->position);
+        const float dull = 0.4f * size * (1 - stepf(0, 0.5f, glow)), distance = float3_length(off) + dull;
         if (distance < nearest[site - sites]) nearest[site - sites] = distance, site->ember = add.position;
+        const float along = float3_dot(off, ember_across(site->key)), beyond[2] = {along + dull, dull - along};
+        for (int k = 0; k < 2; k++)
+            if (beyond[k] < furthest[site - sites][k])
+                furthest[site - sites][k] = beyond[k], site->ends[k] = add.position;
     }
 }
 

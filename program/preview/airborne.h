@@ -21,6 +21,7 @@ typedef struct EmberSite {
     float weight;    ///< of `position`, a mean
     Float3 position; ///< m
     Float3 ember;    ///< m, of these the nearest to it
+    Float3 ends[2];  ///< m, and the two that are furthest apart along a direction of the site
 } EmberSite;
 
 /// What is drawn over the picture at a pixel: light, and the depth of the smoke.
@@ -30,6 +31,7 @@ typedef struct Veil {
 } Veil;
 
 /// Gathers the embers in cells of `size` (m).
+Float3 ember_across(uint32_t key);
 void ember_sites(const Preview *preview, float size, EmberSite sites[SITE_LIMIT]);
 
 /// The light that smoke at p scatters towards the eye, per optical depth, of the key light more the more it comes from

@@ -6,7 +6,8 @@
 //     p(a) = p0 + z h(a) + (N1(s), N2(s), N3(s)) g(a),   g = 0 up to the age LAMINAR, then growing:
 //
 // a thread sways little for some centimetres, then buckles, and rolls where what left later overtakes what left before. A
-// wisp is a ribbon of THREADS of these, as narrow as its ember below, dense in its middle and thin at its sides. Their
+// wisp is a ribbon of THREADS of these, dense in its middle and thin at its sides, that leaves up to a centimetre of its rim
+// in streams, which pulse each for itself, narrow while it rises, and spread unlike each other. Their
 // swings differ more and more, so it breaks into veils: where one turns its edge or folds there is a bright thin line beside
 // a soft fill. It is bent across, so that it has a width from every side. Each thread is a row of soft dots. As much smoke
 // passes each height, but for what condenses near the ember and is lost at last: where a wisp is wider it is fainter.
@@ -20,6 +21,7 @@ enum {
     FEWER = 4,   ///< of which one is drawn where all are within a few pixels
     KNOTS = 150, ///< of a thread, between which it is straight
     SIGHTS = 3,  ///< times SIGHT_POINTS places of a thread where it is known whether it is seen; most are low
+    FADES = 5,   ///< of these, over which it fades to each side of what hides it
     LIGHTS = 12, ///< places of a wisp where its light is known
 };
 #define WISP_CELL 0.025f  ///< m, of the sites
@@ -28,16 +30,21 @@ enum {
 #define SPEEDING 0.13f    ///< m/s2
 #define RIBBON 0.0006f    ///< m, half of its width at the ember
 #define LAMINAR 0.19f     ///< s, in the mean
-#define SWAY 0.009f       ///< m, by which it does before it buckles
+#define SWAY 0.006f       ///< m, by which it does before it buckles
 #define CURL 0.036f       ///< m, by which curls move it at most
 #define CURLING 0.19f     ///< s after it has buckled, by which half of that
-#define BURNT_SOON 0.25f  ///< s, of smoke that is not seen
+#define EDDY 0.010f       ///< m, by which small eddies move threads then
+#define RIM 0.005f        ///< m of it to each side at most, from which a wisp comes
+#define CLUMPED 0.5f      ///< of its width along the rim, by which threads keep together there
+#define NARROWS 0.4f      ///< of that width, what is left of it
+#define JOINED 0.8f       ///< s, when
+#define BURNT_SOON 0.30f  ///< s, of smoke that is not seen
 #define BURNT_LATE 0.8f   ///< that is seen wholly
 #define THREAD 0.0005f    ///< m, radius at the ember
-#define WISP_DEPTH 13e-3f ///< m, optical depth across a wisp times its width
-#define FRESH 0.40f       ///< of that at the ember: most vapours have not condensed
+#define WISP_DEPTH 19e-3f ///< m, optical depth across a wisp times its width
+#define FRESH 0.55f       ///< of that at the ember: most vapours have not condensed
 #define STRONG 1.2f       ///< by which strong wisps are weakened, or they would be white cords
-#define AMID 0.45f        ///< light of a wisp that is amid flames, which burn most of it; of a third it is whole
+#define AMID 0.55f        ///< light of a wisp that is amid flames, which burn most of it; of a third it is whole
 #define FLAME_FAINT 0.08f ///< of a cell whose flame burns smoke
 #define AHEAD 0.5f        ///< of what it takes from the light behind it, that goes on nearly straight is not missed
 #define SMOKING 10.0f     ///< sites of which half smoke
@@ -46,6 +53,7 @@ enum {
 typedef struct Wisp {
     Float3 path[KNOTS + 1]; ///< m, where the air carries what leaves the ember
     Float3 across;
+    Float3 from[2]; ///< m from the first of the path, where its first and its last thread leave the rim
     float strength, now;
     float laminar; ///< s
     float burnt;   ///< s, age at which it comes to a flame
@@ -60,37 +68,34 @@ static inline float swing(const Wisp *wisp, float moment, float often, float pla
     return n + 0.4f * noise2(2.3f * moment * often, 1.1f * place + 7, wisp->seed + which);
 }
 
-/// The drift of the gas per m of rise at p along x and y, linear between cells, and the flame of the cell there.
-static void gas_at(const Fire *fire, Float3 p, float drift[2], float *flame) {
-    int low[3];
-    float f[3], at[3];
-    float3_store(at, float3_scale(float3_sub(p, fire->origin), 1 / fire->cell));
-    drift[0] = drift[1] = *flame = 0;
-    for (int c = 0; c < 3; c++) {
-        low[c] = noise_floor(at[c], &f[c]);
-        if (low[c] < 0 || low[c] > fire->size[c] - 2) return;
-    }
-    for (int k = 0; k < 8; k++) {
-        size_t cell = 0;
-        float share = 1;
-        for (int c = 2; c >= 0; c--) {
-            const int next = k >> c & 1;
-            cell = cell * (size_t)fire->size[c] + (size_t)(low[c] + next);
-            share *= next ? f[c] : 1 - f[c];
-        }
-        for (int c = 0; c < 2; c++) drift[c] += share * fire->source[cell][c];
-        *flame = maxf(*flame, fire->cells[cell].flame);
-    }
-}
-
-/// Follows the air from an ember: smoke rises by itself, drifts with the gas, and burns in flames.
+/// Follows the air from an ember: smoke rises by itself, drifts with the gas as that does per m of rise, linear between cells,
+/// and burns in flames.
 static void wisp_follow(const Fire *fire, Wisp *wisp) {
     const float step = WISP_LIFE / KNOTS;
     wisp->burnt = WISP_LIFE;
     for (int k = 0; k < KNOTS; k++) {
-        float drift[2] = {0, 0}, flame = 0;
         const float rise = (RISE + 2 * SPEEDING * step * ((float)k + 0.5f)) * step;
-        if (fire->size[0] && fire->visible) gas_at(fire, wisp->path[k], drift, &flame);
+        float f[3], at[3], drift[2] = {0, 0}, flame = 0;
+        int low[3];
+        bool within = fire->size[0] && fire->visible;
+        float3_store(at, float3_scale(float3_sub(wisp->path[k], fire->origin), 1 / fire->cell));
+        for (int c = 0; c < 3 && within; c++) {
+            low[c] = noise_floor(at[c], &f[c]);
+            within = low[c] >= 0 && low[c] <= fire->size[c] - 2;
+        }
+
+        for (int corner = 0; corner < 8 && within; corner++) {
+            size_t cell = 0;
+            float share = 1;
+            for (int c = 2; c >= 0; c--) {
+                const int next = corner >> c & 1;
+                cell = cell * (size_t)fire->size[c] + (size_t)(low[c] + next);
+                share *= next ? f[c] : 1 - f[c];
+            }
+            for (int c = 0; c < 2; c++) drift[c] += share * fire->source[cell][c];
+            flame = maxf(flame, fire->cells[cell].flame);
+        }
+
         if (flame > FLAME_FAINT) wisp->burnt = minf(wisp->burnt, step * (float)k);
         wisp->path[k + 1] = float3_add(wisp->path[k], float3(rise * drift[0], rise * drift[1], rise));
     }
@@ -106,7 +111,7 @@ static float wisp_half(const Wisp *wisp, float age) {
 static Float3 wisp_at(const Wisp *wisp, float age, float place) {
     const float moment = wisp->now - age, loose = maxf(age - wisp->laminar, 0);
     const float curled = loose * loose / (CURLING * CURLING), roll = CURL * curled / (1 + curled);
-    const float bend = SWAY * stepf(0, 0.3f, age) + 0.11f * loose * loose / (0.08f + loose);
+    const float bend = SWAY * stepf(-0.05f, 0.3f, age) + 0.11f * loose * loose / (0.08f + loose);
     const float turn = 3 * age + 1.8f * noise2(moment * 1.3f, 3, wisp->seed), c = cosf(turn), s = sinf(turn);
     const float half = wisp_half(wisp, age), drift = 0.045f * age;
     const float side = half * place, deep = 0.7f * half * noise2(1.3f * place + 5, 2.1f * moment, wisp->seed + 31);
@@ -117,10 +122,16 @@ static Float3 wisp_at(const Wisp *wisp, float age, float place) {
     p.x += u * wisp->across.x - v * wisp->across.y + drift * noise2(1.7f * moment, 0, wisp->seed + 21);
     p.y += u * wisp->across.y + v * wisp->across.x + drift * noise2(1.7f * moment, 0, wisp->seed + 22);
 
+    const float rim = place + CLUMPED * noise2(2.3f * place, 0.6f * moment, wisp->seed + 32);
+    p = float3_mad(p, wisp->from[rim > 0], fabsf(rim) * mixf(1, NARROWS, stepf(0, JOINED, age)));
+
     // threads part as it curls: what is beside in the ribbon is then elsewhere in the eddy
-    const float parts = place * (0.35f + 1.1f * minf(loose / 0.4f, 1));
-    p.x += bend * swing(wisp, moment, 3.4f, 0.5f * parts, 11) + roll * swing(wisp, moment, 10, parts, 13);
-    p.y += bend * swing(wisp, moment, 3.4f, 0.5f * parts, 12) + roll * swing(wisp, moment, 10, parts, 14);
+    const float parts = place * (0.3f + 1.9f * stepf(0.0f, 0.55f, loose)), eddy = EDDY * stepf(0.08f, 0.5f, loose);
+    p.x += eddy * noise2(23 * moment, 2.6f * parts, wisp->seed + 15);
+    p.y += eddy * noise2(23 * moment, 2.6f * parts, wisp->seed + 16);
+    p.z += eddy * noise2(23 * moment, 2.6f * parts, wisp->seed + 17);
+    p.x += bend * swing(wisp, moment, 3.4f, parts, 11) + roll * swing(wisp, moment, 10, parts, 13);
+    p.y += bend * swing(wisp, moment, 3.4f, parts, 12) + roll * swing(wisp, moment, 10, parts, 14);
     p.z += 0.6f * bend * swing(wisp, moment + 0.07f, 3.4f, 0.5f * parts, 11);
     p.z += roll * swing(wisp, moment + 0.025f, 10, parts, 13);
     return p;
@@ -143,15 +154,27 @@ static int place_of(float age, int count, float *part) {
 /// `first`: of FEWER.
 static void thread_draw(Preview *preview, const Wisp *wisp, float place, bool first) {
     Float3 knots[KNOTS + 1], points[SIGHT_POINTS];
-    float seen[SIGHTS * SIGHT_POINTS], at[2], depth;
+    float seen[SIGHTS * SIGHT_POINTS], sharp[SIGHTS * SIGHT_POINTS], at[2], depth;
     for (int k = 0; k <= KNOTS; k++) knots[k] = wisp_at(wisp, WISP_LIFE * (float)k / KNOTS, place);
     for (int k = 0; k < SIGHTS; k++) {
         for (int i = 0; i < SIGHT_POINTS; i++)
             points[i] = wisp_at(wisp, age_of(k * SIGHT_POINTS + i, SIGHTS * SIGHT_POINTS), place);
-        airborne_sight(preview, points, SIGHT_POINTS, seen + k * SIGHT_POINTS);
+        airborne_sight(preview, points, SIGHT_POINTS, sharp + k * SIGHT_POINTS);
+    }
+
+    // it fades towards where it passes behind what is seen, as it may drift through a sheet there
+    for (int k = 0; k < SIGHTS * SIGHT_POINTS; k++) {
+        const int from = k < FADES ? 0 : k - FADES;
+        const int last = k + FADES < SIGHTS * SIGHT_POINTS ? k + FADES : SIGHTS * SIGHT_POINTS - 1;
+        float sum = 0;
+        for (int i = from; i <= last; i++) sum += sharp[i];
+        seen[k] = sharp[k] * maxf(2 * sum / (float)(last - from + 1) - 1, 0);
     }
 
     const float edge = 1.75f * expf(-2.2f * place * place); // the mean is 1
+    const float rim = maxf(float3_length(wisp->from[0]), float3_length(wisp->from[1]));
+    const float starts = 0.02f + 0.10f * hash_unit(hash_u32(wisp->seed + 1) + (uint32_t)(THREADS * (place + 1)));
+    const float mist = hash_unit(hash_u32(wisp->seed) + (uint32_t)(THREADS * (place + 1))), spread = mist * mist;
     for (float age = 0.002f; age < WISP_LIFE;) {
         const float x = age * (KNOTS / WISP_LIFE);
         const int knot = (int)minf(x, KNOTS - 1);
@@ -165,21 +188,26 @@ static void thread_draw(Preview *preview, const Wisp *wisp, float place, bool fi
 
         // steps of half of a dot; what rises faster is thinner
         const float pixel = preview->camera.pixel * depth, fast = RISE + 2 * SPEEDING * age;
-        const float loose = maxf(age - wisp->laminar, 0), wide = THREAD + 0.0016f * age + 0.0030f * loose * loose;
+        const float loose = maxf(age - wisp->laminar, 0),
+                    wide =
+                        THREAD + 0.03f * rim + 0.0016f * age + (0.0030f + 0.026f * spread) * loose * minf(2 * loose, 1);
         const float radius = maxf(wide / pixel + camera_blur(&preview->camera, depth), 1.1f);
         const float way = float3_length(float3_sub(knots[knot + 1], knots[knot])) * (KNOTS / WISP_LIFE);
         const float step = minf(0.45f * radius * pixel / maxf(way, RISE), 0.02f), left = 1 - age / WISP_LIFE;
 
         // where it is narrow one thread stands for several
-        const float apart = stepf(2, 6, wisp_half(wisp, age) / (pixel * radius));
+        const float half = wisp_half(wisp, age) + rim * mixf(1, NARROWS, stepf(0, JOINED, age));
+        const float apart = stepf(2, 6, half / (pixel * radius));
         const float stands = mixf(first ? FEWER : 0, 1, apart);
         const float moment = wisp->now - age;
-        const float puff = exp2f(1.3f * swing(wisp, moment, 5, 0.3f * place, 17)),
-                    strand = noise2(2.2f * moment, 3.5f * place, wisp->seed + 18);
-        float dense =
-            WISP_DEPTH * wisp->strength * edge * left * sqrtf(left) * puff * (1 + 0.6f * strand) * open * stands;
-        dense *= 1 - stepf(wisp->burnt - 0.15f, wisp->burnt, age);
-        dense *= stepf(0, 0.05f, age) * mixf(FRESH, 1, stepf(0, 0.7f, age)) * RISE / fast;
+        const float puff = 1.4f * swing(wisp, moment, 5, 2.2f * place, 18) +
+                           1.3f * noise2(1.7f * moment, 2.7f * place, wisp->seed + 19);
+        const float strand =
+            1.5f * noise2(2 * moment, 4 * place + noise2(1.9f * moment, 0, wisp->seed + 21), wisp->seed + 20);
+        float dense = 0.75f * WISP_DEPTH * wisp->strength * edge * left * sqrtf(left) * exp2f(puff + strand);
+        dense *= open * stands;
+        if (wisp->burnt < WISP_LIFE) dense *= 1 - stepf(0.15f * wisp->burnt, wisp->burnt, age);
+        dense *= stepf(0, starts, age) * mixf(FRESH, 1, stepf(0, 0.7f, age)) * RISE / fast;
         dense *= fast * step / (pixel * pixel * THREADS);
         if (dense > 0) airborne_dot(preview, at, radius, float3_scale(light, dense), AHEAD * dense);
         age += step;
@@ -209,14 +237,18 @@ void wisps_draw(Preview *preview) {
     for (int i = 0; i < SITE_LIMIT; i++) {
         if (strength[i] <= 0) continue;
         const uint32_t key = sites[i].key;
-        const float turn = 2 * PI_F * hash_unit(key), live = 0.5f + 0.5f * noise2(0.7f * now, 0, key);
+        const float live = 0.5f + 0.5f * noise2(0.7f * now, 0, key);
         Wisp wisp = {.path = {sites[i].ember},
-                     .across = float3(cosf(turn), sinf(turn), 0),
+                     .across = ember_across(key),
                      .strength = preview->def.wisps * strength[i] * stepf(still, still + 0.3f, live),
                      .now = now,
                      .laminar = LAMINAR * (0.8f + 0.7f * hash_unit(key + 1) + 0.25f * noise2(0.9f * now, 9, key)),
                      .wide = exp2f(1.3f * hash_unit(key + 2) - 0.3f),
                      .seed = key & 0xffff};
+        for (int k = 0; k < 2; k++) {
+            const Float3 rim = float3_sub(sites[i].ends[k], sites[i].ember);
+            wisp.from[k] = float3_scale(rim, RIM / maxf(float3_length(rim), RIM));
+        }
         wisp.strength /= 1 + STRONG * wisp.strength;
         if (wisp.strength <= 0.01f) continue;
         wisp_follow(&preview->fire, &wisp);
@@ -226,7 +258,7 @@ void wisps_draw(Preview *preview) {
             if (k <= LIGHTS / 2) lit = maxf(lit, float3_luminance(wisp.light[k]));
         }
         const float amid = stepf(AMID / 3, AMID, lit);
-        wisp.strength *= 1 - 0.85f * amid;
+        wisp.strength *= 1 - 0.75f * amid;
         wisp.laminar *= 1 - 0.7f * amid; // fires stir the air around them
         for (int k = 0; k < THREADS; k++)
             thread_draw(preview, &wisp, 2 * ((float)k + 0.5f) / THREADS - 1, k % FEWER == FEWER / 2);
