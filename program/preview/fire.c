@@ -41,6 +41,9 @@
 #define SMOKE_HOT 650.0f   ///< K: what is hotter is none yet
 #define SMOKE_FOLLOWS 0.4f ///< m of the air's way from a flame, over which smoke that comes from it falls by e
 #define SMOKE_BESIDE 0.8f  ///< of what comes from a flame, what cells beside that have
+#define SMOKE_TIP 0.03f    ///< of a fire's brightest cell, what is a flame for smoke that is beside it and below
+#define SMOKE_TIPS 0.09f   ///< m below and beside it, by which that matters less by e
+#define SMOKE_BELOW 0.9f   ///< of its light that smoke does not show there: it would be a pale blob with no root
 #define SMOKE_ADRIFT 0.25f ///< of smoke that comes from no flame, what is seen as long as there are flames
 #define SMOKE_FLAME 0.3f   ///< flame from which on it is full for smoke
 #define SMOKE_LEAVES 0.25f ///< of the gas's height, from the top down, in which smoke fades: there the gas is cut
@@ -530,10 +533,28 @@ void fire_light_smoke(Preview *preview) {
     const float behind = maxf(float3_dot(preview->sun, preview->camera.forward), 0);
     Float3 sky = float3_add(sky_ambient(&preview->sky, float3(0, 0, 1)), sky_ambient(&preview->sky, float3(0, 0, -1)));
     fire->daylight = float3_mad(float3_scale(sky, 0.5f), preview->sun_light, 0.28f + 0.3f * behind * behind);
+
+    // from what is drawn of flames (flame_lamps.c) downwards and aside, layer by layer: where flames are above
+    const float tips = expf(-fire->cell / SMOKE_TIPS);
+    float most = 0;
+    for (size_t i = 0; i < fire->cell_capacity; i++) most = maxf(most, fire->cells[i].glow);
+    for (int z = fire->size[2] - 1; z >= 0; z--)
+        for (int y = 0; y < fire->size[1]; y++)
+            for (int x = 0; x < fire->size[0]; x++) {
+                FireCell *cell = &fire->cells[fire_at(fire, x, y, z)];
+                const bool inside = x && y && x < fire->size[0] - 1 && y < fire->size[1] - 1 && z < fire->size[2] - 1;
+                const FireCell *up = &fire->cells[fire_at(fire, x, y, inside ? z + 1 : z)];
+                const int row = fire->size[0];
+                float above = 0;
+                if (inside)
+                    above = maxf(up[0].glow, maxf(maxf(up[-1].glow, up[1].glow), maxf(up[-row].glow, up[row].glow)));
+                cell->glow = cell->glow > SMOKE_TIP * most ? 1 : tips * above;
+            }
     for (int z = 0; z < fire->size[2]; z++)
         for (int y = 0; y < fire->size[1]; y++)
             for (int x = 0; x < fire->size[0]; x++) {
                 FireCell *cell = &fire->cells[fire_at(fire, x, y, z)];
+                const float over = cell->glow;
                 cell->glow = 0;
                 if (cell->smoke <= 0.4f * SMOKE_THIN) continue; // it may be seen in the cells beside it
                 Float3 p = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);
@@ -543,6 +564,7 @@ void fire_light_smoke(Preview *preview) {
                     // scattered equally in all directions: a quarter of the reflection of white paper
                     cell->glow += 0.25f * lights->strength[0][k] / (float3_dot(to, to) + lights->softness[k] + 4e-4f);
                 }
+                cell->glow *= 1 - SMOKE_BELOW * stepf(0.25f, 0.8f, over);
             }
 }
 

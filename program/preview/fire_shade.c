@@ -91,6 +91,8 @@
 #define SMOKE_THINS 2.0f    ///< by which its middle is thinner there
 #define SMOKE_CALM 0.5f     ///< of what eddies move, they do there
 #define SMOKE_FINE 0.65f    ///< of folds, the share of small eddies at the fire
+#define SMOKE_EVEN 0.35f    ///< of a fold's density, what lies between the threads in it
+#define SMOKE_THREADS 1.5f  ///< of it, what they add
 #define SMOKE_COARSE 0.45f  ///< and far from it
 #define SMOKE_DARK 0.4f     ///< light of flames, of which fresh smoke, which is brown, swallows half
 #define SMOKE_SLOW 0.4f     ///< m/s, at which wide eddies rise
@@ -444,6 +446,7 @@ Smoke fire_smoke_at(const Fire *fire, Float3 p) {
     smoke.light = float3_mad(float3_scale(fire->daylight, 0.33f - 0.2f * down), glow, 1.8f + 1.5f * down);
     smoke.dense = SMOKE_SEEN_AS * cell.smoke * stepf(SMOKE_THIN, SMOKE_FULL, cell.smoke) *
                   stepf(-0.35f, 0.35f, wide.d + SMOKE_FILLS * cell.smoke) * (1 - stepf(0.05f, 0.4f, cell.flame));
+    smoke.dense *= SMOKE_EVEN + SMOKE_THREADS * maxf(1 - 2.2f * fabsf(curl.d), 0);
     smoke.fold = fold;
     smoke.old = 1 - near;
     return smoke;

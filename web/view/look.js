@@ -351,6 +351,8 @@ const float SMOKE_WIDENS = 1.0;
 const float SMOKE_THINS = 2.0;
 const float SMOKE_CALM = 0.5;
 const float SMOKE_FINE = 0.65;
+const float SMOKE_EVEN = 0.35;
+const float SMOKE_THREADS = 1.5;
 const float SMOKE_COARSE = 0.45;
 const float SMOKE_DARK = 0.4;
 const float SMOKE_SLOW = 0.4;
@@ -509,6 +511,7 @@ Smoke fire_smoke_at(vec3 p) {
     smoke.light = float3_mad(float3_scale(fireDaylight, 0.33 - 0.2 * down), glow, 1.8 + 1.5 * down);
     smoke.dense = SMOKE_SEEN_AS * cell.smoke * stepf(SMOKE_THIN, SMOKE_FULL, cell.smoke) *
                   stepf(-0.35, 0.35, wide.d + SMOKE_FILLS * cell.smoke) * (1.0 - stepf(0.05, 0.4, cell.flame));
+    smoke.dense *= SMOKE_EVEN + SMOKE_THREADS * max(1.0 - 2.2 * abs(curl.d), 0.0);
     smoke.fold = fold;
     smoke.old = 1.0 - near;
     return smoke;
