@@ -7,7 +7,7 @@ set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 
 library='shell world heat burn ablate tear gas surface collision reference dynamics sim'
-files='formats common/allocator.h common/curves.h common/store.h common/printable.h common/float3.h mesh/polygons.h'
+files='formats common/allocator.h common/curves.h common/order.h common/store.h common/printable.h common/float3.h mesh/polygons.h'
 program="$files mesh/to_quads.h preview/preview.h scene analysis"
 rules="
 include/singe

@@ -8,6 +8,7 @@
 #include "bench/hung_sheet.h"
 #include "cli/text.h"
 #include "common/float3.h"
+#include "common/order.h"
 
 // ---- scenes
 
@@ -274,12 +275,6 @@ typedef struct Edge {
     uint32_t low, high;
 } Edge;
 
-static int edge_order(const void *a, const void *b) {
-    const Edge *p = a, *q = b;
-    if (p->low != q->low) return p->low < q->low ? -1 : 1;
-    return (p->high > q->high) - (p->high < q->high);
-}
-
 double shape_border(const SingeSurface *surface) {
     const size_t count = 3 * (size_t)surface->triangle_count;
     float(*rest)[3] = surface->rest_position;
@@ -297,9 +292,9 @@ double shape_border(const SingeSurface *surface) {
         area += 0.5 * sqrt(dot3(twice, twice));
     }
 
-    if (edges) qsort(edges, count, sizeof *edges, edge_order);
+    if (edges) qsort(edges, count, sizeof *edges, order_by_two);
     for (size_t i = 0, j; edges && i < count; i = j) {
-        for (j = i + 1; j < count && edge_order(&edges[i], &edges[j]) == 0;) j++;
+        for (j = i + 1; j < count && order_by_two(&edges[i], &edges[j]) == 0;) j++;
         if (j == i + 1) length += distance_of(rest[edges[i].low], rest[edges[i].high]);
     }
     free(edges);

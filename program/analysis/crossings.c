@@ -1,5 +1,6 @@
 // Crossing triangles: the exact test of two, the cases in which they only touch, and the tree that finds near ones.
 #include "analysis/crossings.h"
+#include "common/order.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -470,12 +471,6 @@ static bool tree_pairs(BoxTree *tree, CrossingList *list) {
     return true;
 }
 
-static int by_numbers(const void *a, const void *b) {
-    const uint32_t *x = a, *y = b;
-    const int k = x[0] == y[0];
-    return (x[k] > y[k]) - (x[k] < y[k]);
-}
-
 bool crossings_find(const float (*position)[3], const uint32_t (*triangles)[3], uint32_t count, CrossingList *list) {
     *list = (CrossingList){0};
     if (count == 0) return true;
@@ -485,7 +480,7 @@ bool crossings_find(const float (*position)[3], const uint32_t (*triangles)[3], 
                 hinges_find(position, triangles, count, touching->pairs, &touching->count);
     for (size_t i = 0; i < touching->count && good; i++)
         good = list_add(list, touching->pairs[i][0], touching->pairs[i][1]);
-    if (list->count) qsort(list->pairs, list->count, sizeof *list->pairs, by_numbers);
+    if (list->count) qsort(list->pairs, list->count, sizeof *list->pairs, order_by_two);
     crossings_free(touching);
     free(tree.order);
     free(tree.boxes);

@@ -11,6 +11,7 @@
 #include "analysis/crossings.h"
 #include "analysis/exact.h"
 #include "common/float3.h"
+#include "common/order.h"
 
 enum { REPORTED = 3 };
 /// Reach of an initial crossing around its triangle, in longest sides of the triangle at rest: parts that cross slide,
@@ -99,11 +100,6 @@ static InitialTriangle entry_of(const CacheFrame *frame, uint32_t triangle) {
     return entry;
 }
 
-static int by_x(const void *a, const void *b) {
-    const InitialTriangle *p = a, *q = b;
-    return (p->at[0] > q->at[0]) - (p->at[0] < q->at[0]);
-}
-
 void initial_free(Initial *initial) {
     free(initial->triangles);
     *initial = (Initial){0};
@@ -181,7 +177,7 @@ static bool check_crossings(const CacheFrame *frame, const uint32_t *sound, uint
             initial->reach = fmaxf(initial->reach, initial->triangles[i].reach);
         }
 
-        if (good) qsort(initial->triangles, initial->count, sizeof *initial->triangles, by_x);
+        if (good) qsort(initial->triangles, initial->count, sizeof *initial->triangles, order_by_float);
     }
 
     for (size_t i = 0; i < list.count; i++) add_crossing(frame, list.pairs[i][0], list.pairs[i][1], findings);
@@ -205,13 +201,6 @@ typedef struct Triple {
     uint32_t vertex[3], triangle; ///< vertices ascending
 } Triple;
 
-static int by_vertices(const void *a, const void *b) {
-    const Triple *x = a, *y = b;
-    for (int k = 0; k < 3; k++)
-        if (x->vertex[k] != y->vertex[k]) return x->vertex[k] < y->vertex[k] ? -1 : 1;
-    return (x->triangle > y->triangle) - (x->triangle < y->triangle);
-}
-
 static bool check_duplicates(const CacheFrame *frame, const uint32_t *sound, uint32_t count, Findings *findings) {
     Triple *triples = malloc(((size_t)count + 1) * sizeof *triples);
     if (!triples) return false;
@@ -229,7 +218,7 @@ static bool check_duplicates(const CacheFrame *frame, const uint32_t *sound, uin
         }
     }
 
-    qsort(triples, count, sizeof *triples, by_vertices);
+    qsort(triples, count, sizeof *triples, order_by_four);
     for (uint32_t i = 1; i < count; i++) {
         const Triple *one = &triples[i - 1], *other = &triples[i];
         if (one->vertex[0] == other->vertex[0] && one->vertex[1] == other->vertex[1] &&
@@ -248,13 +237,6 @@ typedef struct Side {
     uint32_t low, high, triangle, opposite; ///< vertices of the edge, and the triangle's third
     bool forward;                           ///< the triangle runs from low to high
 } Side;
-
-static int by_edge(const void *a, const void *b) {
-    const Side *x = a, *y = b;
-    if (x->low != y->low) return x->low < y->low ? -1 : 1;
-    if (x->high != y->high) return x->high < y->high ? -1 : 1;
-    return (x->triangle > y->triangle) - (x->triangle < y->triangle);
-}
 
 /// Cosine between the normals of the triangles of an edge, both with the winding of the first.
 static double findings_bend(float (*const at)[3], const Side *one, const Side *other) {
@@ -300,7 +282,7 @@ static bool check_edges(const CacheFrame *frame, const uint32_t *sound, uint32_t
         sides[i] = (Side){forward ? from : to, forward ? to : from, triangle, opposite, forward};
     }
 
-    qsort(sides, side_count, sizeof *sides, by_edge);
+    qsort(sides, side_count, sizeof *sides, order_by_three);
     for (size_t i = 0, end; i < side_count; i = end) {
         for (end = i + 1; end < side_count && sides[end].low == sides[i].low && sides[end].high == sides[i].high;)
             end++;

@@ -1,4 +1,5 @@
 #include "analysis/numbers.h"
+#include "common/order.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -10,14 +11,9 @@ double numbers_mean(const double *numbers, int count) {
     return count ? sum / count : NAN;
 }
 
-static int numbers_ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 double numbers_median(double *numbers, int count) {
     if (count == 0) return NAN;
-    qsort(numbers, (size_t)count, sizeof *numbers, numbers_ascending);
+    qsort(numbers, (size_t)count, sizeof *numbers, order_by_double);
     return 0.5 * (numbers[(count - 1) / 2] + numbers[count / 2]);
 }
 

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "common/float3.h"
+#include "common/order.h"
 
 const double rim_band_limits[RIM_BANDS + 1] = {0, 1e-3, 2e-3, 4e-3, 7e-3, 11e-3, 20e-3, 40e-3};
 
@@ -72,12 +73,6 @@ static int corner_by_position(const void *a, const void *b) {
     return 0;
 }
 
-static int by_ends(const void *a, const void *b) {
-    const Edge *x = a, *y = b;
-    if (x->low != y->low) return x->low < y->low ? -1 : 1;
-    return (x->high > y->high) - (x->high < y->high);
-}
-
 /// The edges of the piece that are open and burnt. *edges is to be freed; NULL when out of memory.
 static Edge *find_edges(const SingeSurface *surface, int32_t piece, size_t *count) {
     Edge *edges = malloc((3 * (size_t)surface->triangle_count + 1) * sizeof *edges);
@@ -116,12 +111,12 @@ static Edge *find_edges(const SingeSurface *surface, int32_t piece, size_t *coun
     }
 
     free(number);
-    qsort(edges, all, sizeof *edges, by_ends);
+    qsort(edges, all, sizeof *edges, order_by_two);
 
     *count = 0;
     for (size_t i = 0, end; i < all; i = end) {
         const float *burn = surface->burn;
-        for (end = i + 1; end < all && by_ends(&edges[i], &edges[end]) == 0;) end++;
+        for (end = i + 1; end < all && order_by_two(&edges[i], &edges[end]) == 0;) end++;
         if (end == i + 1 && burn[edges[i].from] > burnt_min && burn[edges[i].to] > burnt_min)
             edges[(*count)++] = edges[i];
     }
@@ -329,11 +324,6 @@ typedef struct PieceArea {
     double area;
 } PieceArea;
 
-static int by_id(const void *a, const void *b) {
-    int32_t x = ((const PieceArea *)a)->id, y = ((const PieceArea *)b)->id;
-    return (x > y) - (x < y);
-}
-
 /// False when out of memory. A surface of no triangles has no piece, and no rim.
 static bool find_largest(const SingeSurface *surface, int32_t *id) {
     PieceArea *areas = malloc(((size_t)surface->triangle_count + 1) * sizeof *areas);
@@ -344,7 +334,7 @@ static bool find_largest(const SingeSurface *surface, int32_t *id) {
         areas[f] = (PieceArea){surface->piece[t[0]], area_of(surface->rest_position, t)};
     }
 
-    qsort(areas, surface->triangle_count, sizeof *areas, by_id);
+    qsort(areas, surface->triangle_count, sizeof *areas, order_by_int);
 
     double largest = -1, area = 0;
     for (uint32_t f = 0; f < surface->triangle_count; f++) {

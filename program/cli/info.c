@@ -11,6 +11,7 @@
 #include "cli/text.h"
 #include "common/printable.h"
 #include "common/store.h"
+#include "common/order.h"
 #include "formats/formats.h"
 #include "scene/values.h"
 
@@ -63,11 +64,6 @@ static void take_file(void *context, int frame, uint64_t size, bool shared) {
     if (store_grow((SingeAllocator){0}, &kind->frames, &kind->capacity, kind->count + 1, sizeof *kind->frames))
         kind->frames[kind->count++] = frame;
     else kind->no_memory = true;
-}
-
-static int by_number(const void *a, const void *b) {
-    const int one = *(const int *)a, other = *(const int *)b;
-    return (one > other) - (one < other);
 }
 
 /// "1 to 60, 80, 96" of sorted numbers.
@@ -126,7 +122,7 @@ int command_info(int argc, char **argv) {
         if (kind.no_memory) result = error.code = SINGE_ERROR_MEMORY;
 
         if (!result && kind.count) {
-            qsort(kind.frames, kind.count, sizeof *kind.frames, by_number);
+            qsort(kind.frames, kind.count, sizeof *kind.frames, order_by_int);
             printf("%-13s ", folder_kind(k));
             print_ranges(kind.frames, kind.count);
             printf(": %.1f MB\n", 1e-6 * kind.bytes);

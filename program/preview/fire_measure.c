@@ -15,6 +15,7 @@
 // of FOOT_LEAN.
 
 #include "preview/internal.h"
+#include "common/order.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -64,11 +65,6 @@ static void glow_walk(const GlowPicture *picture, int x, int y, float dx, float 
     }
 }
 
-static int glow_ascending(const void *a, const void *b) {
-    const float *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layers, double *width, SingeError *error) {
     GlowPicture picture = {.layers = layers, .camera = camera_make(def), .width = def->width, .height = def->height};
     size_t count = (size_t)def->width * (size_t)def->height, lit = 0;
@@ -85,7 +81,7 @@ SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layer
         return SINGE_OK;
     }
 
-    qsort(values, lit, sizeof *values, glow_ascending);
+    qsort(values, lit, sizeof *values, order_by_float);
     picture.min = 0.1f * values[lit - 1 - lit / 100];
 
     lit = 0;
@@ -107,7 +103,7 @@ SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layer
         values[lit++] = min;
     }
 
-    qsort(values, lit, sizeof *values, glow_ascending);
+    qsort(values, lit, sizeof *values, order_by_float);
     *width = (double)values[lit / 2];
     free(values);
     return SINGE_OK;
@@ -275,7 +271,7 @@ SingeResult preview_flame_feet(const PreviewDef *def, const PreviewLayers *layer
     if (room) {
         find_feet(&picture, rgb);
         feet->astray = find_astray(&picture, rgb);
-        qsort(picture.far, (size_t)picture.count, sizeof *picture.far, glow_ascending);
+        qsort(picture.far, (size_t)picture.count, sizeof *picture.far, order_by_float);
         if (picture.count && picture.fuel_count) {
             feet->median = (double)picture.far[picture.count / 2];
             feet->most = (double)picture.far[9 * picture.count / 10];

@@ -6,6 +6,7 @@
 #include "common/curves.h"
 #include "common/float3.h"
 #include "common/store.h"
+#include "common/order.h"
 #include "scene/assets.h"
 #include "scene/scene.h"
 #include "scene/space.h"
@@ -82,15 +83,6 @@ static void mark_held(const ScenePin *pin, const Mesh *mesh, uint32_t *parent) {
         if (parent[v] == HELD) parent[v] = v;
 }
 
-/// By the part, then by the ends.
-static int by_part(const void *a, const void *b) {
-    const Side *s = a, *t = b;
-    const uint32_t one[] = {s->root, s->ends[0], s->ends[1]}, other[] = {t->root, t->ends[0], t->ends[1]};
-    for (int k = 0; k < 3; k++)
-        if (one[k] != other[k]) return one[k] < other[k] ? -1 : 1;
-    return 0;
-}
-
 /// Joins the parts that cells join, and lists the held sides of the sheet's edge, those of a part together. NULL without
 /// memory.
 static Side *find_sides(const Mesh *mesh, uint32_t *parent, uint32_t *count) {
@@ -118,15 +110,15 @@ static Side *find_sides(const Mesh *mesh, uint32_t *parent, uint32_t *count) {
         }
     }
 
-    if (used) qsort(sides, used, sizeof *sides, by_part);
+    if (used) qsort(sides, used, sizeof *sides, order_by_three);
     for (size_t i = 0, next; i < used; i = next) {
-        for (next = i + 1; next < used && by_part(&sides[i], &sides[next]) == 0;) next++;
+        for (next = i + 1; next < used && order_by_three(&sides[i], &sides[next]) == 0;) next++;
         if (next > i + 1) continue; // of two cells
         sides[kept] = sides[i];
         sides[kept++].root = root_of(parent, sides[i].ends[0]);
     }
 
-    if (kept) qsort(sides, kept, sizeof *sides, by_part);
+    if (kept) qsort(sides, kept, sizeof *sides, order_by_three);
     *count = (uint32_t)kept;
     return sides ? sides : calloc(1, sizeof *sides);
 }

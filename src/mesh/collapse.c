@@ -3,6 +3,7 @@
 // that becomes one vertex is no larger than the limit for sides. Of two vertices one of which is on an open edge, that
 // one stays; two on open edges are merged only along such an edge, so that nothing is pinched off.
 #include "common/real.h"
+#include "common/order.h"
 #include "mesh/work.h"
 
 #include <math.h>
@@ -21,17 +22,6 @@ typedef struct Shrink {
     uint8_t *open;                ///< [vertices] of a root: its set has a vertex on an open edge
     double (*low)[3], (*high)[3]; ///< [vertices] of a root: the box around its set
 } Shrink;
-
-static int by_length(const void *a, const void *b) {
-    const Short *x = a, *y = b;
-    if (x->length != y->length) return x->length < y->length ? -1 : 1;
-    return (x->half > y->half) - (x->half < y->half);
-}
-
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 static double side_length(const Work *work, uint32_t half) {
     const Faces *faces = &work->faces;
@@ -113,7 +103,7 @@ SingeResult mesh_shrink(Work *work) {
     if (work->no_memory) return SINGE_OK;
 
     for (uint32_t h = 0; h < faces->corner_count; h++) lengths[h] = side_length(work, h);
-    qsort(lengths, faces->corner_count, sizeof *lengths, by_size);
+    qsort(lengths, faces->corner_count, sizeof *lengths, order_by_double);
 
     const double min = work->smallest * lengths[faces->corner_count / 2];
     uint32_t count = 0, joined = 0;
@@ -124,7 +114,7 @@ SingeResult mesh_shrink(Work *work) {
 
     if (!count) return SINGE_OK;
 
-    qsort(list, count, sizeof *list, by_length);
+    qsort(list, count, sizeof *list, order_by_double_and_number);
 
     // their ends are merged, the shortest first
     Shrink shrink = {.work = work,

@@ -1,6 +1,7 @@
 // T-junctions: a vertex of an open edge that lies on another open edge becomes a corner of that edge's face, too, if
 // that closes the gap.
 #include "common/real.h"
+#include "common/order.h"
 #include "mesh/loops.h"
 
 #include <math.h>
@@ -25,11 +26,6 @@ typedef struct Junctions {
     OnSide found[ON_SIDE_MAX + 2];
     int count;
 } Junctions;
-
-static int junction_by_position(const void *a, const void *b) {
-    const OnSide *x = a, *y = b;
-    return (x->t > y->t) - (x->t < y->t);
-}
 
 /// Finds the vertices on the side from a to b, in their order along it.
 static void look_along(Junctions *j, uint32_t a, uint32_t b) {
@@ -70,7 +66,7 @@ static void look_along(Junctions *j, uint32_t a, uint32_t b) {
         }
     }
 
-    qsort(j->found, (size_t)j->count, sizeof *j->found, junction_by_position);
+    qsort(j->found, (size_t)j->count, sizeof *j->found, order_by_double);
 }
 
 static bool open_edge(const Junctions *j, uint32_t a, uint32_t b) {

@@ -4,6 +4,7 @@
 // An edge of more than two faces keeps some pairs of them joined (Gueziec, Taubin, Lazarus and Horn, Cutting and
 // stitching, 2001). The remaining faces get an open edge.
 #include "mesh/work.h"
+#include "common/order.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -41,12 +42,6 @@ enum { AROUND_MAX = 64 }; ///< max faces at a side; if there are more, none are 
 /// Max fold, in radians, between two faces of one sheet.
 static const double fold_max = 2.6;
 
-static int by_angle(const void *a, const void *b) {
-    const Around *x = a, *y = b;
-    if (x->angle != y->angle) return x->angle < y->angle ? -1 : 1;
-    return (x->half > y->half) - (x->half < y->half);
-}
-
 /// Joins faces that are consecutive around a side and have the same winding, the flattest first, so that no two sheets
 /// cross there.
 static void join_around(Work *work, const uint32_t *halves, uint32_t size) {
@@ -70,7 +65,7 @@ static void join_around(Work *work, const uint32_t *halves, uint32_t size) {
         around[i] = (Around){angle, halves[i], faces->corner[halves[i]] == faces->corner[halves[0]]};
     }
 
-    qsort(around, size, sizeof *around, by_angle);
+    qsort(around, size, sizeof *around, order_by_double_and_number);
 
     while (size >= 2) {
         double min = fold_max;

@@ -11,6 +11,7 @@
 #include "mesh/polygon.h"
 
 #include "common/real.h"
+#include "common/order.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -292,14 +293,9 @@ bool polygon_cut(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
 // ---- overlapping triangles
 
 typedef struct Seen {
-    double at[3][2], high; ///< along the first axis from `low` to `high`
-    double low;
+    double low, high; ///< along the first axis
+    double at[3][2];
 } Seen;
-
-static int by_low(const void *a, const void *b) {
-    const Seen *x = a, *y = b;
-    return (x->low > y->low) - (x->low < y->low);
-}
 
 /// Whether the second triangle lies beyond a side of the first, or on it.
 static bool lies_beyond(const Seen *a, const Seen *b, double rounding) {
@@ -331,7 +327,7 @@ bool polygon_overlaps(PolygonCut *cut, const double normal[3]) {
     const double rounding = 1e-7 * (high - low) * (high - low);
     bool overlaps = false;
 
-    qsort(seen, cut->count, sizeof *seen, by_low);
+    qsort(seen, cut->count, sizeof *seen, order_by_double);
     for (uint32_t i = 0; i < cut->count && !overlaps; i++)
         for (uint32_t k = i + 1; k < cut->count && seen[k].low < seen[i].high && !overlaps; k++)
             overlaps = !lies_beyond(&seen[i], &seen[k], rounding) && !lies_beyond(&seen[k], &seen[i], rounding);

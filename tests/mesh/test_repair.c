@@ -1,5 +1,6 @@
 // Welding, repairs, collapsed sides, and meshes that are refused.
 #include "sample_meshes.h"
+#include "common/order.h"
 
 static Text text;
 
@@ -200,12 +201,6 @@ typedef struct Side {
     bool up;
 } Side;
 
-static int by_ends(const void *a, const void *b) {
-    const Side *x = a, *y = b;
-    if (x->low != y->low) return x->low < y->low ? -1 : 1;
-    return (x->high > y->high) - (x->high < y->high);
-}
-
 /// Every side has one cell, or two that run along it in opposite ways. Returns the open ones.
 static uint32_t assert_manifold(const Mesh *mesh) {
     const uint32_t count = 4 * mesh->cell_count;
@@ -217,9 +212,9 @@ static uint32_t assert_manifold(const Mesh *mesh) {
         sides[i] = (Side){a < b ? a : b, a < b ? b : a, a < b};
     }
 
-    qsort(sides, count, sizeof *sides, by_ends);
+    qsort(sides, count, sizeof *sides, order_by_two);
     for (uint32_t i = 0, size; i < count; i += size) {
-        for (size = 1; i + size < count && by_ends(&sides[i], &sides[i + size]) == 0; size++) {
+        for (size = 1; i + size < count && order_by_two(&sides[i], &sides[i + size]) == 0; size++) {
         }
         assert_true(size <= 2);
         assert_true(size == 1 || sides[i].up != sides[i + 1].up);

@@ -1,5 +1,6 @@
 // Seams of the uv in the drawn surface: pictures break there, the surface does not.
 #include "sample_meshes.h"
+#include "common/order.h"
 
 enum { AROUND = 24, ALONG = 16 };
 static Text text;
@@ -105,8 +106,6 @@ typedef struct Edge {
     uint32_t low, high;
 } Edge;
 
-static int by_ends(const void *a, const void *b) { return memcmp(a, b, sizeof(Edge)); }
-
 /// The number of edges of one triangle alone, after vertices at exactly the same position are merged.
 static int open_edges(const SingeSurface *surface) {
     uint32_t vertices = surface->vertex_count, edges = 3 * surface->triangle_count;
@@ -130,10 +129,10 @@ static int open_edges(const SingeSurface *surface) {
         edge[e] = (Edge){a < b ? a : b, a < b ? b : a};
     }
 
-    qsort(edge, edges, sizeof *edge, by_ends);
+    qsort(edge, edges, sizeof *edge, order_by_two);
     int open = 0;
     for (uint32_t e = 0, size; e < edges; e += size) {
-        for (size = 1; e + size < edges && by_ends(&edge[e], &edge[e + size]) == 0; size++) {
+        for (size = 1; e + size < edges && order_by_two(&edge[e], &edge[e + size]) == 0; size++) {
         }
         open += size == 1;
     }

@@ -1,6 +1,7 @@
 // Flame and smoke in the picture: where they are, their shape, how they move.
 
 #include "burning.h"
+#include "common/order.h"
 #include "synthetic.h"
 #include "synthetic_gas.h"
 #include "support/support.h"
@@ -345,11 +346,6 @@ TEST(a_foot_is_one_dim_clear_sheet) {
     assert_true(most[0] < 0.4f * most[1]);
 }
 
-static int ascending(const void *a, const void *b) {
-    const float *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 /// Tongues join as they rise: 4 to 5 cm up what hides a tenth is wider than single tongues. And some are much taller than
 /// others: of squares of 16 mm, over moments.
 TEST(tongues_join_and_differ_in_height) {
@@ -369,7 +365,7 @@ TEST(tongues_join_and_differ_in_height) {
             }
     }
 
-    qsort(heights, COUNT, sizeof *heights, ascending);
+    qsort(heights, COUNT, sizeof *heights, order_by_float);
     const float low = heights[COUNT / 10], high = heights[COUNT * 9 / 10];
     print_message("of ten tongues one ends at %.0f mm, one at %.0f mm; flames are %.1f mm wide\n", (double)low,
                   (double)high, (double)(wide / flames));

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "support/test.h"
+#include "common/order.h"
 
 #include "sample_shells.h"
 
@@ -76,11 +77,6 @@ TEST(rectangles_match_lengths_by_hand) {
     mesh_release(&mesh);
 }
 
-static int compare(const void *a, const void *b) {
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 // The median by histograms is the median by sorting.
 TEST(the_median_cell_size_is_exact) {
     for (uint32_t seed = 1; seed < 6; seed++) {
@@ -94,7 +90,7 @@ TEST(the_median_cell_size_is_exact) {
         assert_non_null(sorted);
         for (uint32_t s = 0; s < blue->count; s++) sorted[s] = blue->rest[s];
 
-        qsort(sorted, blue->count, sizeof *sorted, compare);
+        qsort(sorted, blue->count, sizeof *sorted, order_by_float);
         assert_true(shell.sheets[0].cell_size == sorted[blue->count / 2]);
         free(sorted);
         shell_free(&memory, &shell);

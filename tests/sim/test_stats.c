@@ -1,5 +1,6 @@
 // The numbers: ledgers over a whole burning run, and each statistic against the view.
 #include "common/random.h"
+#include "common/order.h"
 #include "scenes.h"
 
 #include <math.h>
@@ -192,11 +193,6 @@ TEST(combustion_is_eta_times_mass) {
     singe_sim_destroy(sim);
 }
 
-static int ascending(const void *a, const void *b) {
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 TEST(statistics_match_the_view) {
     TestScene scene = scene_make(NULL, 12);
     const float mass_loss = scene_quick_material().mass_loss.value;
@@ -220,7 +216,7 @@ TEST(statistics_match_the_view) {
             sum += (double)strain[n++];
         }
 
-        qsort(strain, n, sizeof *strain, ascending);
+        qsort(strain, n, sizeof *strain, order_by_float);
         assert_true(fabs(stats.strain_mean - sum / n) < 1e-6);
         assert_true(fabs(stats.strain_max - (double)strain[n - 1]) < 1e-6);
         assert_true(fabs(stats.strain_p99 - (double)strain[(size_t)(0.99 * (n - 1))]) < 1e-6);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ablate/burning_sheet.h"
+#include "common/order.h"
 
 /// Twice the area along z.
 static inline double doubled_area(const SingeSurface *s, uint32_t t) {
@@ -26,11 +27,6 @@ typedef struct Edge {
     uint32_t a, b;
 } Edge;
 
-static inline int compare_edges(const void *x, const void *y) {
-    const Edge *p = x, *q = y;
-    return p->a != q->a ? (p->a < q->a ? -1 : 1) : p->b != q->b ? (p->b < q->b ? -1 : 1) : 0;
-}
-
 /// The edges of all triangles as they are walked, sorted; 3 a triangle. To be freed.
 static inline Edge *drawn_edges(const SingeSurface *s) {
     size_t count = 3 * (size_t)s->triangle_count;
@@ -41,6 +37,6 @@ static inline Edge *drawn_edges(const SingeSurface *s) {
             assert_true(edges[3 * t + i].a != edges[3 * t + i].b && edges[3 * t + i].a < s->vertex_count);
         }
 
-    qsort(edges, count, sizeof *edges, compare_edges);
+    qsort(edges, count, sizeof *edges, order_by_two);
     return edges;
 }

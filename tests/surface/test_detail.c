@@ -47,9 +47,8 @@ static void expect_no_cracks(const SingeSurface *s) {
     Edge *edges = drawn_edges(s);
     for (size_t k = 0; k < count; k++) {
         Edge back = {edges[k].b, edges[k].a};
-        assert_true(k == 0 || compare_edges(&edges[k - 1], &edges[k]) != 0);
-        if (!bsearch(&back, edges, count, sizeof *edges, compare_edges))
-            assert_false(covered_behind(s, back.b, back.a));
+        assert_true(k == 0 || order_by_two(&edges[k - 1], &edges[k]) != 0);
+        if (!bsearch(&back, edges, count, sizeof *edges, order_by_two)) assert_false(covered_behind(s, back.b, back.a));
     }
 
     free(edges);

@@ -23,7 +23,7 @@ static void add_directions(const SingeSurface *s, double length[DIRECTIONS]) {
     for (size_t k = 0; k < count; k++) {
         Edge back = {edges[k].b, edges[k].a};
         const float *p = s->rest_position[back.a], *q = s->rest_position[back.b];
-        if (bsearch(&back, edges, count, sizeof *edges, compare_edges)) continue;
+        if (bsearch(&back, edges, count, sizeof *edges, order_by_two)) continue;
         if (on_border(p, q, 0, 0.1f) || on_border(p, q, 1, 0.1f)) continue;
         double x = (double)q[0] - (double)p[0], y = (double)q[1] - (double)p[1];
         int bin = (int)floor(atan2(y, x) * DIRECTIONS / 3.14159265358979 + 0.5); // the axes in the middle of theirs

@@ -282,8 +282,8 @@ TEST(meshes_burn_with_their_sheet) {
     for (size_t k = 0; k < count; k++) {
         Edge back = {edges[k].b, edges[k].a};
         const float *p = s->position[edges[k].a];
-        assert_true(k == 0 || compare_edges(&edges[k - 1], &edges[k]) != 0);
-        if (bsearch(&back, edges, count, sizeof *edges, compare_edges)) continue;
+        assert_true(k == 0 || order_by_two(&edges[k - 1], &edges[k]) != 0);
+        if (bsearch(&back, edges, count, sizeof *edges, order_by_two)) continue;
         if (fminf(p[0], p[1]) < 1e-6f || fmaxf(p[0], p[1]) > side - 1e-6f) continue;
         float nearest = 1;
         for (uint32_t v = 0; v < sheet.vertex_count; v++)

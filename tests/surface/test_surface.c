@@ -148,8 +148,8 @@ static void expect_no_cracks(const SingeSurface *s, float width, float height) {
     Edge *edges = drawn_edges(s);
     for (size_t k = 0; k < count; k++) {
         Edge back = {edges[k].b, edges[k].a};
-        assert_true(k == 0 || compare_edges(&edges[k - 1], &edges[k]) != 0);
-        bool shared = bsearch(&back, edges, count, sizeof *edges, compare_edges) != NULL;
+        assert_true(k == 0 || order_by_two(&edges[k - 1], &edges[k]) != 0);
+        bool shared = bsearch(&back, edges, count, sizeof *edges, order_by_two) != NULL;
         assert_int_equal(shared, !on_boundary(s, back.a, back.b, width, height));
     }
 
@@ -200,7 +200,7 @@ TEST(levels_near_zero_leave_no_cracks) {
         Edge *edges = drawn_edges(s);
         for (size_t k = 0; k < count; k++) {
             assert_true(edges[k].a != edges[k].b);
-            assert_true(k == 0 || compare_edges(&edges[k - 1], &edges[k]) != 0);
+            assert_true(k == 0 || order_by_two(&edges[k - 1], &edges[k]) != 0);
         }
 
         assert_true(area_of(s) > 0); // no triangle is without area

@@ -1,5 +1,6 @@
 // Sheets that tear: where, into what, and that nothing is lost by it.
 #include "common/real.h"
+#include "common/order.h"
 #include "sim/sim_internal.h"
 #include "support/support.h"
 #include "tear/tear_plan.h"
@@ -67,12 +68,6 @@ typedef struct Edge {
     uint32_t low, high;
 } Edge;
 
-static int by_ends(const void *a, const void *b) {
-    const Edge *e = a, *f = b;
-    if (e->low != f->low) return e->low < f->low ? -1 : 1;
-    return e->high < f->high ? -1 : e->high > f->high;
-}
-
 /// No edge has more than two triangles, none is a spike, and vertices are where their uv and their input say.
 static void check_surface(SingeSim *sim) {
     SingeSurface surface = {0};
@@ -93,8 +88,8 @@ static void check_surface(SingeSim *sim) {
 
             assert_true(sqrtf(square) < 2.5f * side);
         }
-    qsort(edges, count, sizeof *edges, by_ends);
-    for (size_t e = 2; e < count; e++) assert_true(by_ends(&edges[e], &edges[e - 2]) != 0);
+    qsort(edges, count, sizeof *edges, order_by_two);
+    for (size_t e = 2; e < count; e++) assert_true(order_by_two(&edges[e], &edges[e - 2]) != 0);
     for (uint32_t v = 0; v < surface.vertex_count; v++) {
         int32_t source = surface.source_vertex[v];
         if (source < 0) continue;
