@@ -66,22 +66,6 @@ static const CommandValue values[] = {
 
 const CommandTable command_table = {commands, values, COMMAND_COUNT, sizeof values / sizeof *values};
 
-static void main_help(void) {
-    printf("singe %s burns cloth and paper.\n\nusage: singe COMMAND [options]\n", singe_version());
-
-    const char *group = "";
-    for (int i = 0; i < COMMAND_COUNT && commands[i].group; i++) {
-        if (strcmp(group, commands[i].group) != 0) printf("\n%s:\n", commands[i].group);
-        group = commands[i].group;
-        printf("  %-13s %s\n", commands[i].name, commands[i].summary);
-    }
-
-    printf("\n  singe COMMAND --help   the command's options\n"
-           "  singe help COMMAND     the same\n"
-           "  singe --version        the version\n\n"
-           "Exit codes: 0 success, 1 the run failed or was interrupted, 2 bad input.\n");
-}
-
 int main(int argc, char **argv) {
 #ifdef __GLIBC__
     // keep the memory of a frame's files for the next frame: by default glibc returns it to the system, and each of its
@@ -100,7 +84,20 @@ int main(int argc, char **argv) {
         return console_finish(help ? commands[i].run(1, (char **)ask) : commands[i].run(argc - 2, argv + 2));
     }
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {
-        main_help();
+        printf("singe %s burns cloth and paper.\n\nusage: singe COMMAND [options]\n", singe_version());
+
+        const char *group = "";
+        for (int i = 0; i < COMMAND_COUNT && commands[i].group; i++) {
+            if (strcmp(group, commands[i].group) != 0) printf("\n%s:\n", commands[i].group);
+            group = commands[i].group;
+            printf("  %-13s %s\n", commands[i].name, commands[i].summary);
+        }
+
+        printf("\n  singe COMMAND --help   the command's options\n"
+               "  singe help COMMAND     the same\n"
+               "  singe --version        the version\n\n"
+               "Exit codes: 0 success, 1 the run failed or was interrupted, 2 bad input.\n");
+
         return console_finish(EXIT_GOOD);
     }
 

@@ -113,32 +113,6 @@ LabGrid lab_grid(int across, int along, float cell) {
     return grid;
 }
 
-/// Drops cells, and vertices without cells.
-static void cut_grid(Mesh *mesh, bool (*inside)(double x, double y)) {
-    uint32_t cells = 0, vertices = 0, *number = calloc(mesh->vertex_count, sizeof *number);
-    for (uint32_t c = 0; c < mesh->cell_count && number; c++) {
-        uint32_t *corner = mesh->cells + 4 * (size_t)c;
-        const float *p = mesh->positions + 3 * (size_t)corner[0], *q = mesh->positions + 3 * (size_t)corner[2];
-        if (!inside((double)(p[0] + q[0]) / 2, (double)(p[1] + q[1]) / 2)) continue;
-        for (int k = 0; k < 4; k++) number[mesh->cells[4 * (size_t)cells + (size_t)k] = corner[k]] = 1;
-        cells++;
-    }
-
-    for (uint32_t v = 0; v < mesh->vertex_count && number; v++) {
-        if (!number[v]) continue;
-        memmove(mesh->positions + 3 * (size_t)vertices, mesh->positions + 3 * (size_t)v, 3 * sizeof(float));
-        memmove(mesh->uv + 2 * (size_t)vertices, mesh->uv + 2 * (size_t)v, 2 * sizeof(float));
-        number[v] = vertices++;
-    }
-
-    for (size_t i = 0; i < 4 * (size_t)cells; i++) mesh->cells[i] = number[mesh->cells[i]];
-    if (number) {
-        mesh->cell_count = cells;
-        mesh->vertex_count = vertices;
-    }
-    free(number);
-}
-
 /// Adds the grid's mesh with its attributes.
 static SingeResult add_grid(const LabGrid *grid, SingeSim *sim, SingeError *error) {
     SingeSheetDef sheet = singe_default_sheet();
@@ -156,7 +130,32 @@ static SingeResult add_grid(const LabGrid *grid, SingeSim *sim, SingeError *erro
         field[v] = grid->field ? (float)grid->field(grid->context, (double)p[0], (double)p[1]) : 0;
     }
 
-    if (grid->inside) cut_grid(&mesh, grid->inside);
+    // drops cells, and vertices without cells
+    if (grid->inside) {
+        uint32_t cells = 0, vertices = 0, *number = calloc(mesh.vertex_count, sizeof *number);
+        for (uint32_t c = 0; c < mesh.cell_count && number; c++) {
+            uint32_t *corner = mesh.cells + 4 * (size_t)c;
+            const float *p = mesh.positions + 3 * (size_t)corner[0], *q = mesh.positions + 3 * (size_t)corner[2];
+            if (!grid->inside((double)(p[0] + q[0]) / 2, (double)(p[1] + q[1]) / 2)) continue;
+            for (int k = 0; k < 4; k++) number[mesh.cells[4 * (size_t)cells + (size_t)k] = corner[k]] = 1;
+            cells++;
+        }
+
+        for (uint32_t v = 0; v < mesh.vertex_count && number; v++) {
+            if (!number[v]) continue;
+            memmove(mesh.positions + 3 * (size_t)vertices, mesh.positions + 3 * (size_t)v, 3 * sizeof(float));
+            memmove(mesh.uv + 2 * (size_t)vertices, mesh.uv + 2 * (size_t)v, 2 * sizeof(float));
+            number[v] = vertices++;
+        }
+
+        for (size_t i = 0; i < 4 * (size_t)cells; i++) mesh.cells[i] = number[mesh.cells[i]];
+        if (number) {
+            mesh.cell_count = cells;
+            mesh.vertex_count = vertices;
+        }
+        free(number);
+    }
+
     const SingeAttribute attributes[] = {{"field", field}, {"mass", grid->mass ? grid->mass : field}};
 
     sheet.material = grid->material;

@@ -280,33 +280,6 @@ static double points_distance(const RimPoints *points, const double position[3],
     return found ? sqrt(square) : (double)INFINITY;
 }
 
-/// The rim's normal at each point, from `near` of all points within `reach` in m.
-static void points_normals(RimPoints *points, double reach) {
-    for (size_t p = 0; p < points->count; p++) {
-        double *normal = points->normal[p];
-        int low[3], high[3], at[3];
-        for (int k = 0; k < 3; k++) {
-            low[k] = cell_along(points, points->position[p][k] - reach, k);
-            high[k] = cell_along(points, points->position[p][k] + reach, k);
-            if (low[k] < 0) low[k] = 0;
-            if (high[k] >= points->size[k]) high[k] = points->size[k] - 1;
-        }
-
-        for (at[2] = low[2]; at[2] <= high[2]; at[2]++)
-            for (at[1] = low[1]; at[1] <= high[1]; at[1]++)
-                for (at[0] = low[0]; at[0] <= high[0]; at[0]++) {
-                    const uint32_t *first = &points->first[cell_at(points, at)];
-                    for (uint32_t i = first[0]; i < first[1]; i++) {
-                        double d[3];
-                        sub3(points->position[points->order[i]], points->position[p], d);
-                        if (dot3(d, d) > reach * reach) continue;
-                        for (int k = 0; k < 3; k++) normal[k] += points->near[points->order[i]][k];
-                    }
-                }
-        unit3(normal);
-    }
-}
-
 // ---- the largest piece
 
 typedef struct Piece {
@@ -471,8 +444,33 @@ bool rim_add(const SingeSurface *surface, Rim *rim) {
     for (uint32_t f = 0; good && work.points.count && f < surface->triangle_count; f++)
         if (is_of(&work.piece, f)) good = take_triangle(&work, surface->triangles[f]);
 
-    // curl, once the rim's normals are known
-    if (good) points_normals(&work.points, normal_reach);
+    // the rim's normal at each point, from `near` of all points within `normal_reach`
+    RimPoints *points = &work.points;
+    for (size_t p = 0; good && p < points->count; p++) {
+        double *normal = points->normal[p];
+        int low[3], high[3], at[3];
+        for (int k = 0; k < 3; k++) {
+            low[k] = cell_along(points, points->position[p][k] - normal_reach, k);
+            high[k] = cell_along(points, points->position[p][k] + normal_reach, k);
+            if (low[k] < 0) low[k] = 0;
+            if (high[k] >= points->size[k]) high[k] = points->size[k] - 1;
+        }
+
+        for (at[2] = low[2]; at[2] <= high[2]; at[2]++)
+            for (at[1] = low[1]; at[1] <= high[1]; at[1]++)
+                for (at[0] = low[0]; at[0] <= high[0]; at[0]++) {
+                    const uint32_t *first = &points->first[cell_at(points, at)];
+                    for (uint32_t i = first[0]; i < first[1]; i++) {
+                        double d[3];
+                        sub3(points->position[points->order[i]], points->position[p], d);
+                        if (dot3(d, d) > normal_reach * normal_reach) continue;
+                        for (int k = 0; k < 3; k++) normal[k] += points->near[points->order[i]][k];
+                    }
+                }
+        unit3(normal);
+    }
+
+    // curl
     for (size_t i = 0; good && i < work.inland_count; i++) {
         const Inland *inland = &work.inland[i];
         const double *normal = work.points.normal[inland->nearest];

@@ -152,39 +152,6 @@ static double strip_front(const Strip *strip, const SingeView *view) {
     return (double)view->rest_position[i][0];
 }
 
-static void strip_read(const Strip *strip, double pace, StripResult *result) {
-    SingeView view = singe_sim_view(strip->sim);
-    result->thickening = (double)singe_sim_stats(strip->sim).thickening;
-
-    // the least-squares line through positions and times of ignition between the gates
-    double n = 0, x1 = 0, t1 = 0, xt = 0, tt = 0;
-    for (uint32_t v = 0; v < view.vertex_count; v++) {
-        double x = (double)view.rest_position[v][0], t = (double)view.time_ignited[v];
-        if (x < strip->first || x > strip->last || t < 0) continue;
-        n++;
-        x1 += x;
-        t1 += t;
-        xt += x * t;
-        tt += t * t;
-    }
-
-    const double speed = (n * xt - x1 * t1) / (n * tt - t1 * t1);
-    result->speed = strip_front(strip, &view) > strip->last ? speed / pace : 0;
-
-    double area = 0, mass = 0;
-    result->hottest = 0;
-    for (uint32_t i = 0; i < view.particle_count; i++) {
-        double x = (double)view.rest_position[i][0];
-        if (x < strip->first || x > strip->last) continue;
-        result->hottest = fmax(result->hottest, (double)view.temperature_peak[i]);
-        if (x > (strip->first + strip->last) / 2) continue; // long burnt
-        area += (double)view.area[i];
-        mass += (double)view.area[i] * (double)view.mass[i];
-    }
-
-    result->residue = mass / area;
-}
-
 static uint64_t strip_work(const Strip *strip) {
     const SingeTimers timers = singe_sim_timers(strip->sim);
     return timers.steps + timers.heat_iterations;
@@ -206,7 +173,37 @@ static SingeResult strip_run(Strip *strip, const StripSetup *setup, StripResult 
         }
     }
 
-    strip_read(strip, (double)setup->pace, result);
+    SingeView view = singe_sim_view(strip->sim);
+    result->thickening = (double)singe_sim_stats(strip->sim).thickening;
+
+    // the least-squares line through positions and times of ignition between the gates
+    double n = 0, x1 = 0, t1 = 0, xt = 0, tt = 0;
+    for (uint32_t v = 0; v < view.vertex_count; v++) {
+        double x = (double)view.rest_position[v][0], t = (double)view.time_ignited[v];
+        if (x < strip->first || x > strip->last || t < 0) continue;
+        n++;
+        x1 += x;
+        t1 += t;
+        xt += x * t;
+        tt += t * t;
+    }
+
+    const double speed = (n * xt - x1 * t1) / (n * tt - t1 * t1);
+    result->speed = strip_front(strip, &view) > strip->last ? speed / (double)setup->pace : 0;
+
+    double area = 0, mass = 0;
+    result->hottest = 0;
+    for (uint32_t i = 0; i < view.particle_count; i++) {
+        double x = (double)view.rest_position[i][0];
+        if (x < strip->first || x > strip->last) continue;
+        result->hottest = fmax(result->hottest, (double)view.temperature_peak[i]);
+        if (x > (strip->first + strip->last) / 2) continue; // long burnt
+        area += (double)view.area[i];
+        mass += (double)view.area[i] * (double)view.mass[i];
+    }
+
+    result->residue = mass / area;
+
     result->work = strip_work(strip);
     result->end = reached > strip->last ? STRIP_THROUGH : result->work < setup->work_max ? STRIP_OUT : STRIP_CUT;
     return SINGE_OK;

@@ -280,40 +280,6 @@ static void neighbours(uint32_t fine, int detail, uint32_t size, uint32_t pair[2
     *share = low - (float)pair[0];
 }
 
-/// Fills the fine gas's velocity, between the coarse cells' centres, and its temperature.
-static void refine(const SingeGas *coarse, int detail, Gas *fine) {
-    const uint32_t *n = fine->view.size;
-    uint32_t x[2], y[2], z[2];
-    float s[3];
-    size_t i = 0;
-
-    for (uint32_t c = 0; c < n[2]; c++)
-        for (uint32_t b = 0; b < n[1]; b++)
-            for (uint32_t a = 0; a < n[0]; a++, i++) {
-                neighbours(a, detail, coarse->size[0], x, &s[0]);
-                neighbours(b, detail, coarse->size[1], y, &s[1]);
-                neighbours(c, detail, coarse->size[2], z, &s[2]);
-                float moved[3] = {0, 0, 0};
-                for (int k = 0; k < 8; k++) {
-                    const size_t from = gas_index(coarse, x[k & 1], y[k >> 1 & 1], z[k >> 2]);
-                    const float weight =
-                        (k & 1 ? s[0] : 1 - s[0]) * (k >> 1 & 1 ? s[1] : 1 - s[1]) * (k >> 2 ? s[2] : 1 - s[2]);
-                    for (int d = 0; d < 3; d++) moved[d] += weight * coarse->velocity[from][d];
-                }
-
-                for (int d = 0; d < 3; d++) fine->velocity[i][d] = moved[d];
-            }
-
-    const size_t count = gas_cells(&fine->view);
-    for (i = 0; i < count; i++) {
-        fine->temperature[i] = fine->flame_share[i] > 0 ? BRIGHTEST * sqrtf(sqrtf(fine->flame_share[i])) : 0;
-
-        // practically clear air: half a metre of it hides a quarter of a percent. Most warm blocks become empty
-        if (fine->extinction[i] >= 0.005f || fine->flame_share[i] >= 1e-4f) continue;
-        fine->extinction[i] = fine->flame_share[i] = fine->temperature[i] = 0;
-    }
-}
-
 SingeResult gas_detail_shape(const SingeGas *coarse, int detail, SingeGas *fine, SingeError *error) {
     *fine = *coarse;
     fine->cell = coarse->cell / (float)detail;
@@ -339,7 +305,38 @@ SingeResult gas_detail_write_frame(const char *path, const Frame *frame, Picture
                                fine.flame_share, error);
 
     if (!result) {
-        refine(coarse, detail, &fine);
+        // the fine gas's velocity, between the coarse cells' centres, and its temperature
+        const uint32_t *n = fine.view.size;
+        uint32_t x[2], y[2], z[2];
+        float s[3];
+        size_t i = 0;
+
+        for (uint32_t c = 0; c < n[2]; c++)
+            for (uint32_t b = 0; b < n[1]; b++)
+                for (uint32_t a = 0; a < n[0]; a++, i++) {
+                    neighbours(a, detail, coarse->size[0], x, &s[0]);
+                    neighbours(b, detail, coarse->size[1], y, &s[1]);
+                    neighbours(c, detail, coarse->size[2], z, &s[2]);
+                    float moved[3] = {0, 0, 0};
+                    for (int k = 0; k < 8; k++) {
+                        const size_t from = gas_index(coarse, x[k & 1], y[k >> 1 & 1], z[k >> 2]);
+                        const float weight =
+                            (k & 1 ? s[0] : 1 - s[0]) * (k >> 1 & 1 ? s[1] : 1 - s[1]) * (k >> 2 ? s[2] : 1 - s[2]);
+                        for (int d = 0; d < 3; d++) moved[d] += weight * coarse->velocity[from][d];
+                    }
+
+                    for (int d = 0; d < 3; d++) fine.velocity[i][d] = moved[d];
+                }
+
+        const size_t count = gas_cells(&fine.view);
+        for (i = 0; i < count; i++) {
+            fine.temperature[i] = fine.flame_share[i] > 0 ? BRIGHTEST * sqrtf(sqrtf(fine.flame_share[i])) : 0;
+
+            // practically clear air: half a metre of it hides a quarter of a percent. Most warm blocks become empty
+            if (fine.extinction[i] >= 0.005f || fine.flame_share[i] >= 1e-4f) continue;
+            fine.extinction[i] = fine.flame_share[i] = fine.temperature[i] = 0;
+        }
+
         gas_decode(&fine);
         result = vdb_write_fine(path, &fine, frame->time, error);
     }

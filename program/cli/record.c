@@ -54,58 +54,56 @@ static void write_numbers(FILE *file, const Record *record) {
     fprintf(file, ", \"memory\": %zu},\n", c->memory);
 }
 
-static void write_all(FILE *file, const Record *record, const Job *job) {
-    const Scene *scene = job->scene;
-    fputs("{\n  \"program\": \"singe\",\n", file);
-    member(file, "version", singe_version());
-    member(file, "result", record->result);
-
-    if (record->error.code) {
-        fputs("  \"error\": {\"code\": ", file);
-        text_json_string(file, singe_result_name(record->error.code));
-        fputs(", \"stage\": ", file);
-        text_json_string(file, record->error.stage);
-        fprintf(file, ", \"element\": %" PRId64 ", \"message\": ", record->error.element);
-        text_json_string(file, record->error.message);
-        fputs("},\n", file);
-    } else {
-        fputs("  \"error\": null,\n", file);
-    }
-
-    member(file, "started", record->started);
-
-    // the folder is absolute, so that `singe render` finds the scene's files from anywhere
-    const char *slash = strrchr(record->scene_path, '/');
-    const int length = slash ? (int)(slash - record->scene_path) + (slash == record->scene_path) : 0;
-    char *folder = slash ? text_format("%.*s", length, record->scene_path) : text_format(".");
-    char *whole = realpath(folder, NULL);
-
-    member(file, "scene_file", record->scene_path);
-    member(file, "scene_folder", whole ? whole : folder);
-    free(whole);
-    free(folder);
-
-    member(file, "name", scene->name);
-    fprintf(file, "  \"frames\": %d,\n  \"frames_done\": %d,\n  \"resumed_from\": %d,\n  \"fps\": ", scene->frames,
-            record->frames_done, record->resumed_from);
-    text_json_number(file, (double)scene->fps);
-    fprintf(file, ",\n  \"steps_per_frame\": %d,\n  \"seed\": %" PRIu64 ",\n  \"threads\": %d,\n", scene->steps,
-            scene->sim.seed, job->hooks.thread_count);
-    fprintf(file, "  \"preview\": %s,\n  \"video\": %s,\n", record->preview ? "true" : "false",
-            record->video ? "true" : "false");
-
-    write_numbers(file, record);
-    fputs("  \"scene\": ", file);
-    scene_dump(scene, SCENE_JSON, 2, file);
-    if (record->from) fprintf(file, ",\n  \"from\": %s", record->from);
-    fputs("\n}\n", file);
-}
-
 SingeResult record_write(const Record *record, const char *path, const Job *job, SingeError *error) {
     char *text = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
-    if (file) write_all(file, record, job);
+    if (file) {
+        const Scene *scene = job->scene;
+        fputs("{\n  \"program\": \"singe\",\n", file);
+        member(file, "version", singe_version());
+        member(file, "result", record->result);
+
+        if (record->error.code) {
+            fputs("  \"error\": {\"code\": ", file);
+            text_json_string(file, singe_result_name(record->error.code));
+            fputs(", \"stage\": ", file);
+            text_json_string(file, record->error.stage);
+            fprintf(file, ", \"element\": %" PRId64 ", \"message\": ", record->error.element);
+            text_json_string(file, record->error.message);
+            fputs("},\n", file);
+        } else {
+            fputs("  \"error\": null,\n", file);
+        }
+
+        member(file, "started", record->started);
+
+        // the folder is absolute, so that `singe render` finds the scene's files from anywhere
+        const char *slash = strrchr(record->scene_path, '/');
+        const int length = slash ? (int)(slash - record->scene_path) + (slash == record->scene_path) : 0;
+        char *folder = slash ? text_format("%.*s", length, record->scene_path) : text_format(".");
+        char *whole = realpath(folder, NULL);
+
+        member(file, "scene_file", record->scene_path);
+        member(file, "scene_folder", whole ? whole : folder);
+        free(whole);
+        free(folder);
+
+        member(file, "name", scene->name);
+        fprintf(file, "  \"frames\": %d,\n  \"frames_done\": %d,\n  \"resumed_from\": %d,\n  \"fps\": ", scene->frames,
+                record->frames_done, record->resumed_from);
+        text_json_number(file, (double)scene->fps);
+        fprintf(file, ",\n  \"steps_per_frame\": %d,\n  \"seed\": %" PRIu64 ",\n  \"threads\": %d,\n", scene->steps,
+                scene->sim.seed, job->hooks.thread_count);
+        fprintf(file, "  \"preview\": %s,\n  \"video\": %s,\n", record->preview ? "true" : "false",
+                record->video ? "true" : "false");
+
+        write_numbers(file, record);
+        fputs("  \"scene\": ", file);
+        scene_dump(scene, SCENE_JSON, 2, file);
+        if (record->from) fprintf(file, ",\n  \"from\": %s", record->from);
+        fputs("\n}\n", file);
+    }
 
     SingeResult result = SINGE_ERROR_MEMORY;
     if (text_stream_end(file, &text)) result = file_write(path, text, size, error);

@@ -99,25 +99,6 @@ static uint32_t picture_of(const OutputScene *scene, uint32_t sheet, uint32_t *b
     return sheet;
 }
 
-/// Adds the files of the pictures to the data, each once.
-static SingeResult put_pictures(GlbFile *f, const char *path, SingeError *error) {
-    f->first_picture = f->view_count;
-    for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
-        Bytes bytes;
-        uint32_t before;
-        if (!f->scene->sheets[i].picture || picture_of(f->scene, i, &before) != i) continue;
-
-        TRY(output_picture_read(path, f->scene->sheets[i].picture, &bytes, error));
-        sink_text(&f->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}", f->view_count++ ? "," : "",
-                  f->data.size, bytes.size);
-        sink_bytes(&f->data, bytes.data, bytes.size);
-        sink_align(&f->data, 4);
-        bytes_free(&bytes);
-    }
-
-    return SINGE_OK;
-}
-
 /// Begins the list of the sheets' pictures. Returns how many there are.
 static uint32_t put_images(GlbFile *f, const char *up) {
     uint32_t pictures = 0;
@@ -205,7 +186,20 @@ static void put_scene(GlbFile *f, const char *up, const char *extras) {
 /// The header and the two chunks; the data are multiples of 4 bytes anyway.
 SingeResult glb_finish(GlbFile *f, const char *up, const char *extras, const char *path, SingeError *error) {
     if (f->pictures_inside && f->mesh_count) {
-        TRY(put_pictures(f, path, error));
+        // the files of the pictures follow the data, each once
+        f->first_picture = f->view_count;
+        for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
+            Bytes bytes;
+            uint32_t before;
+            if (!f->scene->sheets[i].picture || picture_of(f->scene, i, &before) != i) continue;
+
+            TRY(output_picture_read(path, f->scene->sheets[i].picture, &bytes, error));
+            sink_text(&f->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}", f->view_count++ ? "," : "",
+                      f->data.size, bytes.size);
+            sink_bytes(&f->data, bytes.data, bytes.size);
+            sink_align(&f->data, 4);
+            bytes_free(&bytes);
+        }
     }
     put_scene(f, up, extras);
     if (f->data.size + f->text.size > UINT32_MAX / 2)
@@ -303,14 +297,6 @@ static void list_corners(GlbMeshes *w, SheetPart *part) {
     }
 
     part->count = count;
-}
-
-/// The grid of positions: a 32,768th of the mesh's longest side, or finer.
-static int grid_of(const SingeSurface *s) {
-    float box[6] = {0}, side = 0;
-    for (uint32_t i = 0; i < s->vertex_count; i++) box_grow(box, s->position[i], i == 0);
-    for (int c = 0; c < 3; c++) side = fmaxf(side, box[3 + c] - box[c]);
-    return side > 0 && isfinite(side) ? ilogbf(side) - 15 : -17;
 }
 
 /// A scalar field as an attribute: `_TEMPERATURE`.
@@ -455,7 +441,15 @@ SingeResult glb_write_single(const char *path, const OutputScene *scene, const O
         OutputFrame frame;
         result = cache->read(cache->context, i, &frame, error);
         if (result) break;
-        if (i == 1) file.grid = grid_of(frame.surface);
+
+        // the grid of positions: a 32,768th of the mesh's longest side, or finer
+        if (i == 1) {
+            const SingeSurface *s = frame.surface;
+            float box[6] = {0}, side = 0;
+            for (uint32_t v = 0; v < s->vertex_count; v++) box_grow(box, s->position[v], v == 0);
+            for (int c = 0; c < 3; c++) side = fmaxf(side, box[3 + c] - box[c]);
+            file.grid = side > 0 && isfinite(side) ? ilogbf(side) - 15 : -17;
+        }
 
         GlbMeshes meshes = {.file = &file, .surface = frame.surface, .lean = true};
         result = sheet_parts_make(&meshes.parts, frame.surface, scene->sheet_count, path, error);

@@ -268,28 +268,6 @@ static void put_grid(Writer *w, const char *name, VdbField field, const char *pa
 
 // ---- the file
 
-static SingeResult write_file(Writer *w, const char *path, double time, SingeError *error) {
-    Sink *sink = &w->sink;
-    sink->allocator = w->gas->allocator;
-    sink_u64(sink, VDB_MAGIC);
-    sink_u32(sink, VDB_VERSION);
-    sink_u32(sink, VDB_LIBRARY_MAJOR);
-    sink_u32(sink, VDB_LIBRARY_MINOR);
-    sink_bytes(sink, "\1", 1);
-    sink_bytes(sink, "00000000-0000-0000-0000-000000000000", VDB_ID); // the same gas gives the same bytes
-    sink_u32(sink, w->half ? 4 : 5);
-    put_text(sink, "creator", "Singe " SINGE_VERSION);
-    put_triple(sink, "size", w->gas->view.size);
-    put_number(sink, "time", time);
-    put_number(sink, VDB_EXTINCTION, (double)GAS_EXTINCTION);
-    if (!w->half) put_number(sink, VDB_FLAME_UNIT, (double)GAS_FLAME_UNIT);
-    sink_u32(sink, VDB_FIELDS + 1);
-
-    for (int f = 0; f < VDB_FIELDS; f++) put_grid(w, vdb_fields[f].name, (VdbField)f, "");
-    put_grid(w, "vel", VDB_VELOCITY, vdb_fields[VDB_VELOCITY].name);
-    return sink_write(sink, path, error);
-}
-
 static SingeResult write_gas(const char *path, const Gas *gas, double time, bool half, SingeError *error) {
     if (!isfinite(time))
         return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "%s: the time is not finite", short_name(path));
@@ -320,7 +298,26 @@ static SingeResult write_gas(const char *path, const Gas *gas, double time, bool
                 }
             }
 
-    SingeResult result = write_file(&writer, path, time, error);
+    // the file
+    Sink *sink = &writer.sink;
+    sink->allocator = gas->allocator;
+    sink_u64(sink, VDB_MAGIC);
+    sink_u32(sink, VDB_VERSION);
+    sink_u32(sink, VDB_LIBRARY_MAJOR);
+    sink_u32(sink, VDB_LIBRARY_MINOR);
+    sink_bytes(sink, "\1", 1);
+    sink_bytes(sink, "00000000-0000-0000-0000-000000000000", VDB_ID); // the same gas gives the same bytes
+    sink_u32(sink, half ? 4 : 5);
+    put_text(sink, "creator", "Singe " SINGE_VERSION);
+    put_triple(sink, "size", gas->view.size);
+    put_number(sink, "time", time);
+    put_number(sink, VDB_EXTINCTION, (double)GAS_EXTINCTION);
+    if (!half) put_number(sink, VDB_FLAME_UNIT, (double)GAS_FLAME_UNIT);
+    sink_u32(sink, VDB_FIELDS + 1);
+
+    for (int f = 0; f < VDB_FIELDS; f++) put_grid(&writer, vdb_fields[f].name, (VdbField)f, "");
+    put_grid(&writer, "vel", VDB_VELOCITY, vdb_fields[VDB_VELOCITY].name);
+    SingeResult result = sink_write(sink, path, error);
     store_free(gas->allocator, writer.leaves, writer.block_count, sizeof *writer.leaves);
     return result;
 }

@@ -70,33 +70,6 @@ static void mark(Preview *preview, const Rectangle *r, float blur) {
         }
 }
 
-/// The triangles of a solid, which may be long and thin; of others the cube around the sphere around them.
-static void mark_shape(Preview *preview, const PreviewShape *shape) {
-    const float around = shape_extent(shape, 0), extent = shape_extent(shape, preview->def.shutter);
-    const float moves = extent > around ? INFINITY : 0, half = shape->facets ? extent - around : extent;
-    const PreviewSolid *solid = shape->facets ? shape->solid : NULL;
-    for (uint32_t t = 0; t < (solid ? solid->triangle_count : 1); t++) {
-        Rectangle r = nowhere;
-        float blur = moves;
-        for (int k = 0; k < (solid ? 3 : 1); k++) {
-            Float3 centre = shape_centre(shape);
-            if (solid) {
-                const float *vertex = solid->vertices + 3 * (size_t)solid->triangles[3 * (size_t)t + (size_t)k];
-                centre = float3_add(float3_load(shape->position), quat_rotate(shape->rotation, float3_load(vertex)));
-            }
-            for (int corner = 0; corner < 8; corner++) {
-                Rectangle point = nowhere;
-                include(preview,
-                        float3(centre.x + (corner & 1 ? half : -half), centre.y + (corner & 2 ? half : -half),
-                               centre.z + (corner & 4 ? half : -half)),
-                        &point);
-                blur = maxf(blur, join(&point, &r));
-            }
-        }
-        mark(preview, &r, blur);
-    }
-}
-
 void mask_fill(Preview *preview) {
     const PreviewScene *scene = &preview->scene;
     bool moves = preview->def.shutter > 0;
@@ -116,7 +89,34 @@ void mask_fill(Preview *preview) {
         mark(preview, &r, blur);
     }
 
-    for (uint32_t k = 0; k < preview->shape_count; k++) mark_shape(preview, &preview->shapes[k]);
+    // the triangles of a solid, which may be long and thin; of others the cube around the sphere around them
+    for (uint32_t k = 0; k < preview->shape_count; k++) {
+        const PreviewShape *shape = &preview->shapes[k];
+        const float around = shape_extent(shape, 0), extent = shape_extent(shape, preview->def.shutter);
+        const float far = extent > around ? INFINITY : 0, half = shape->facets ? extent - around : extent;
+        const PreviewSolid *solid = shape->facets ? shape->solid : NULL;
+        for (uint32_t t = 0; t < (solid ? solid->triangle_count : 1); t++) {
+            Rectangle r = nowhere;
+            float blur = far;
+            for (int v = 0; v < (solid ? 3 : 1); v++) {
+                Float3 centre = shape_centre(shape);
+                if (solid) {
+                    const float *vertex = solid->vertices + 3 * (size_t)solid->triangles[3 * (size_t)t + (size_t)v];
+                    centre =
+                        float3_add(float3_load(shape->position), quat_rotate(shape->rotation, float3_load(vertex)));
+                }
+                for (int corner = 0; corner < 8; corner++) {
+                    Rectangle point = nowhere;
+                    include(preview,
+                            float3(centre.x + (corner & 1 ? half : -half), centre.y + (corner & 2 ? half : -half),
+                                   centre.z + (corner & 4 ? half : -half)),
+                            &point);
+                    blur = maxf(blur, join(&point, &r));
+                }
+            }
+            mark(preview, &r, blur);
+        }
+    }
 }
 
 static int mask_at(const Preview *preview, int x, int y) {

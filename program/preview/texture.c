@@ -3,24 +3,6 @@
 
 #include "preview/internal.h"
 
-static void texture_halve(const Preview *preview, const Texture *texture, int level, uint8_t *out) {
-    const uint8_t *in = texture->levels[level - 1];
-    int w = texture->width[level - 1], h = texture->height[level - 1];
-    for (int y = 0; y < texture->height[level]; y++) {
-        int y0 = 2 * y < h ? 2 * y : h - 1, y1 = y0 + 1 < h ? y0 + 1 : y0;
-        const uint8_t *row0 = in + (size_t)y0 * (size_t)w * 3, *row1 = in + (size_t)y1 * (size_t)w * 3;
-        for (int x = 0; x < texture->width[level]; x++) {
-            int x0 = 2 * x < w ? 2 * x : w - 1, x1 = x0 + 1 < w ? x0 + 1 : x0;
-            for (int c = 0; c < 3; c++) {
-                float sum = preview->linear[row0[3 * x0 + c]] + preview->linear[row0[3 * x1 + c]] +
-                            preview->linear[row1[3 * x0 + c]] + preview->linear[row1[3 * x1 + c]];
-                out[((size_t)y * (size_t)texture->width[level] + (size_t)x) * 3 + (size_t)c] =
-                    (uint8_t)(clampf(srgb_encode(0.25f * sum), 0, 1) * 255 + 0.5f);
-            }
-        }
-    }
-}
-
 static size_t level_size(const Texture *texture, int level) {
     return (size_t)texture->width[level] * (size_t)texture->height[level] * 3;
 }
@@ -42,7 +24,22 @@ SingeResult texture_create(Preview *preview, Texture *texture, const Image *imag
         if (!out) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture's smaller copies");
         texture->levels[level] = out;
         texture->count++;
-        texture_halve(preview, texture, level, out);
+
+        // each pixel is the mean of four
+        const uint8_t *in = texture->levels[level - 1];
+        for (int y = 0; y < texture->height[level]; y++) {
+            int y0 = 2 * y < h ? 2 * y : h - 1, y1 = y0 + 1 < h ? y0 + 1 : y0;
+            const uint8_t *row0 = in + (size_t)y0 * (size_t)w * 3, *row1 = in + (size_t)y1 * (size_t)w * 3;
+            for (int x = 0; x < texture->width[level]; x++) {
+                int x0 = 2 * x < w ? 2 * x : w - 1, x1 = x0 + 1 < w ? x0 + 1 : x0;
+                for (int c = 0; c < 3; c++) {
+                    float sum = preview->linear[row0[3 * x0 + c]] + preview->linear[row0[3 * x1 + c]] +
+                                preview->linear[row1[3 * x0 + c]] + preview->linear[row1[3 * x1 + c]];
+                    out[((size_t)y * (size_t)texture->width[level] + (size_t)x) * 3 + (size_t)c] =
+                        (uint8_t)(clampf(srgb_encode(0.25f * sum), 0, 1) * 255 + 0.5f);
+                }
+            }
+        }
     }
 
     return SINGE_OK;

@@ -224,26 +224,6 @@ static void put_property(Definitions *definitions, const Schema *schema, int fir
     fputs("]}", file);
 }
 
-/// Keys that maps of one kind need, or must not have.
-static void put_kind(FILE *file, const Schema *schema, int kind) {
-    fprintf(file, "{\"if\": {\"properties\": {\"kind\": {\"const\": \"%s\"}}}, \"then\": {\"required\": [\"kind\"",
-            schema->rows[0].names[kind]);
-    for (int i = 1; i < schema->row_count; i++)
-        if ((schema->rows[i].flags & ROW_REQUIRED) && (schema->rows[i].kinds & 1u << kind))
-            fprintf(file, ", \"%s\"", schema->rows[i].key);
-    fputs("], \"properties\": {", file);
-
-    for (int i = 0, count = 0; i < schema->row_count; i++) {
-        bool allowed = false;
-        for (int j = 0; j < schema->row_count; j++)
-            allowed = allowed || (strcmp(schema->rows[i].key, schema->rows[j].key) == 0 &&
-                                  row_allowed(&schema->rows[j], 1u << kind));
-        if (!allowed && is_first(schema, i)) fprintf(file, "%s\"%s\": false", count++ ? ", " : "", schema->rows[i].key);
-    }
-
-    fputs("}}}", file);
-}
-
 static void put_map(Definitions *definitions, const Schema *schema) {
     FILE *file = definitions->file;
     fputs("\"type\": \"object\", \"additionalProperties\": false, \"title\": ", file);
@@ -270,7 +250,25 @@ static void put_map(Definitions *definitions, const Schema *schema) {
     for (int kind = 0, count = 0; schema->rows[0].names[kind]; kind++) {
         if (!schema->rows[0].names[kind][0]) continue;
         fputs(count++ ? ",\n  " : "\n  ", file);
-        put_kind(file, schema, kind);
+
+        // keys that maps of one kind need, or must not have
+        fprintf(file, "{\"if\": {\"properties\": {\"kind\": {\"const\": \"%s\"}}}, \"then\": {\"required\": [\"kind\"",
+                schema->rows[0].names[kind]);
+        for (int i = 1; i < schema->row_count; i++)
+            if ((schema->rows[i].flags & ROW_REQUIRED) && (schema->rows[i].kinds & 1u << kind))
+                fprintf(file, ", \"%s\"", schema->rows[i].key);
+        fputs("], \"properties\": {", file);
+
+        for (int i = 0, refused = 0; i < schema->row_count; i++) {
+            bool allowed = false;
+            for (int j = 0; j < schema->row_count; j++)
+                allowed = allowed || (strcmp(schema->rows[i].key, schema->rows[j].key) == 0 &&
+                                      row_allowed(&schema->rows[j], 1u << kind));
+            if (!allowed && is_first(schema, i))
+                fprintf(file, "%s\"%s\": false", refused++ ? ", " : "", schema->rows[i].key);
+        }
+
+        fputs("}}}", file);
     }
 
     fputc(']', file);

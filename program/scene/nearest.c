@@ -9,8 +9,13 @@ enum { WORD_MAX = 40 };
 static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c + 'a' - 'A') : c == '-' || c == ' ' ? '_' : c; }
 static int smaller(int a, int b) { return a < b ? a : b; }
 
-static int word_distance(const char *a, const char *b) {
-    int m = (int)strlen(a), n = (int)strlen(b), d[WORD_MAX + 1][WORD_MAX + 1];
+void nearest_offer(Nearest *nearest, const char *candidate) {
+    size_t length = strlen(nearest->word), other = strlen(candidate);
+    if (!length || length > WORD_MAX || other > WORD_MAX) return;
+
+    // d[i][j]: the distance between the first i letters of a and the first j of b
+    const char *a = nearest->word, *b = candidate;
+    int m = (int)length, n = (int)other, d[WORD_MAX + 1][WORD_MAX + 1];
     for (int i = 0; i <= m; i++) d[i][0] = i;
     for (int j = 0; j <= n; j++) d[0][j] = j;
 
@@ -22,14 +27,7 @@ static int word_distance(const char *a, const char *b) {
                 d[i][j] = smaller(d[i][j], d[i - 2][j - 2] + 1);
         }
 
-    return d[m][n];
-}
-
-void nearest_offer(Nearest *nearest, const char *candidate) {
-    size_t length = strlen(nearest->word), other = strlen(candidate);
-    if (!length || length > WORD_MAX || other > WORD_MAX) return;
-    int distance = word_distance(nearest->word, candidate);
-    int max = (int)(length > other ? length : other) / 3;
+    int distance = d[m][n], max = (int)(length > other ? length : other) / 3;
     if (distance <= (max > 1 ? max : 1) && distance < (int)other && (!nearest->best || distance < nearest->distance)) {
         nearest->best = candidate;
         nearest->distance = distance;

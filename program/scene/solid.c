@@ -178,10 +178,29 @@ static size_t border_node(const SceneSolid *solid, size_t k) {
     return (rows - 1 - (k - (columns - 1))) * columns;
 }
 
-/// The library's surface, and walls down to the lowest height.
-static void draw_heights(SceneSolid *solid, const float size[2]) {
+SingeResult solid_make_heights(const SingeTexture *picture, const float size[2], const float heights[2],
+                               SceneSolid *solid, SingeError *error) {
+    size_t columns = (size_t)picture->width, rows = (size_t)picture->height, nodes = columns * rows;
+    if (columns < 2 || rows < 2)
+        return solid_fail(error, SINGE_ERROR_FORMAT, -1, "a heightfield's picture needs 2 pixels along each side");
+    if (nodes > INT32_MAX / 8)
+        return solid_fail(error, SINGE_ERROR_LIMIT, -1, "a heightfield's picture has at most 268 million pixels");
+
+    size_t border = 2 * (columns + rows) - 4;
+    solid->columns = (uint32_t)columns;
+    solid->rows = (uint32_t)rows;
+    solid->heights = malloc(nodes * sizeof *solid->heights);
+    solid->surface.vertices = malloc(3 * (nodes + border) * sizeof *solid->surface.vertices);
+    solid->surface.triangles = malloc(3 * (2 * (columns - 1) * (rows - 1) + 2 * border) * sizeof(uint32_t));
+    if (!solid->heights || !solid->surface.vertices || !solid->surface.triangles) return solid_no_memory(error);
+
+    for (size_t j = 0; j < rows; j++) // the picture's rows run from the top
+        for (size_t i = 0; i < columns; i++)
+            solid->heights[j * columns + i] =
+                heights[0] + (heights[1] - heights[0]) * picture->values[(rows - 1 - j) * columns + i];
+
+    // the library's surface, and walls down to the lowest height
     PreviewSolid *surface = &solid->surface;
-    size_t columns = solid->columns, rows = solid->rows, border = 2 * (columns + rows) - 4;
     float low = INFINITY;
     for (size_t j = 0; j < rows; j++)
         for (size_t i = 0; i < columns; i++) {
@@ -209,29 +228,6 @@ static void draw_heights(SceneSolid *solid, const float size[2]) {
         put_triangle(surface, a, below + k, below + (k + 1) % border);
         put_triangle(surface, a, below + (k + 1) % border, b);
     }
-}
-
-SingeResult solid_make_heights(const SingeTexture *picture, const float size[2], const float heights[2],
-                               SceneSolid *solid, SingeError *error) {
-    size_t columns = (size_t)picture->width, rows = (size_t)picture->height, nodes = columns * rows;
-    if (columns < 2 || rows < 2)
-        return solid_fail(error, SINGE_ERROR_FORMAT, -1, "a heightfield's picture needs 2 pixels along each side");
-    if (nodes > INT32_MAX / 8)
-        return solid_fail(error, SINGE_ERROR_LIMIT, -1, "a heightfield's picture has at most 268 million pixels");
-
-    size_t border = 2 * (columns + rows) - 4;
-    solid->columns = (uint32_t)columns;
-    solid->rows = (uint32_t)rows;
-    solid->heights = malloc(nodes * sizeof *solid->heights);
-    solid->surface.vertices = malloc(3 * (nodes + border) * sizeof *solid->surface.vertices);
-    solid->surface.triangles = malloc(3 * (2 * (columns - 1) * (rows - 1) + 2 * border) * sizeof(uint32_t));
-    if (!solid->heights || !solid->surface.vertices || !solid->surface.triangles) return solid_no_memory(error);
-
-    for (size_t j = 0; j < rows; j++) // the picture's rows run from the top
-        for (size_t i = 0; i < columns; i++)
-            solid->heights[j * columns + i] =
-                heights[0] + (heights[1] - heights[0]) * picture->values[(rows - 1 - j) * columns + i];
-    draw_heights(solid, size);
 
     return SINGE_OK;
 }

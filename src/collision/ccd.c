@@ -33,30 +33,30 @@ enum { OUTSIDE_MAX = 8, OUTSIDE_CROWD = 3, OUTSIDE_PART = 32 };
 
 // ---- how cells have moved
 
-static void measure_cell(const Ccd *ccd, uint32_t c) {
-    CollisionPlan *plan = ccd->plan;
-    const uint32_t *corner = ccd->shell->cells[c];
-    const float(*x)[4] = (const float(*)[4])ccd->dynamics->position;
-    Float4 node[5], outside[4];
-
-    for (int i = 0; i < 4; i++) {
-        Float4 foreseen = float4_load(plan->position[corner[i]]) + ccd->time * float4_load(plan->speed[corner[i]]);
-        outside[i] = float4_load(x[corner[i]]) - foreseen;
-    }
-
-    FourVectors astray = four_of(outside);
-    collision_nodes(corner, x, float4_load(x[corner[0]]), node);
-    plan->motion[c][COLLISION_DISPLACEMENT] = collision_displacement(plan, corner, x);
-    plan->motion[c][COLLISION_NORMAL] = feature_normals(node);
-    plan->is_outside[c] = float4_bits(four_dot(astray, astray) < 0.25f * plan->slack * plan->slack) != 15;
-}
-
 static void measure_range(void *task, int begin, int end) {
     const Ccd *ccd = task;
     for (int k = begin; k < end; k++) {
         const uint32_t c = ccd->changed ? ccd->plan->changed_list[k] : (uint32_t)k;
-        if (ccd_is_alive(ccd, c)) measure_cell(ccd, c);
-        else ccd->plan->is_outside[c] = 0;
+        if (!ccd_is_alive(ccd, c)) {
+            ccd->plan->is_outside[c] = 0;
+            continue;
+        }
+
+        CollisionPlan *plan = ccd->plan;
+        const uint32_t *corner = ccd->shell->cells[c];
+        const float(*x)[4] = (const float(*)[4])ccd->dynamics->position;
+        Float4 node[5], outside[4];
+
+        for (int i = 0; i < 4; i++) {
+            Float4 foreseen = float4_load(plan->position[corner[i]]) + ccd->time * float4_load(plan->speed[corner[i]]);
+            outside[i] = float4_load(x[corner[i]]) - foreseen;
+        }
+
+        FourVectors astray = four_of(outside);
+        collision_nodes(corner, x, float4_load(x[corner[0]]), node);
+        plan->motion[c][COLLISION_DISPLACEMENT] = collision_displacement(plan, corner, x);
+        plan->motion[c][COLLISION_NORMAL] = feature_normals(node);
+        plan->is_outside[c] = float4_bits(four_dot(astray, astray) < 0.25f * plan->slack * plan->slack) != 15;
     }
 }
 

@@ -112,17 +112,6 @@ static TornEdge tear_edge(Shell *shell, uint32_t cell, int side, uint32_t vertex
     return torn;
 }
 
-/// Moves cells from the fan of a vertex to that of a later one, which is empty; entries between move up.
-static void move_fan(Shell *shell, const Fan *fan, const ShellSplit *split, uint32_t to) {
-    uint32_t *first = shell->fan_first, v = split->vertex, keep = first[v], gone = 0, cells[SPLIT_FAN];
-    for (int k = 0; k < fan->count; k++)
-        if (goes(split, k)) cells[gone++] = fan->cell[k];
-        else shell->fan[keep++] = fan->cell[k];
-    memmove(shell->fan + keep, shell->fan + first[v + 1], (first[to] - first[v + 1]) * sizeof *shell->fan);
-    for (uint32_t u = v + 1; u <= to; u++) first[u] -= gone;
-    memcpy(shell->fan + first[to], cells, gone * sizeof *cells);
-}
-
 SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split) {
     Sheet *sheet = &shell->sheets[shell->matter.sheet[split->vertex]];
     uint32_t first_spare = sheet->vertex_first + sheet->vertex_count - sheet->spare_count;
@@ -169,7 +158,15 @@ SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split) 
     // fans and counts
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         shell->moved[colour] += (uint32_t)__builtin_popcount(split->cells) + 3;
-    move_fan(shell, fan, split, to);
+
+    // cells move to the fan of the new vertex, which is empty; entries between move up
+    uint32_t *first = shell->fan_first, keep = first[v], moved = 0, cells[SPLIT_FAN];
+    for (int k = 0; k < fan->count; k++)
+        if (goes(split, k)) cells[moved++] = fan->cell[k];
+        else shell->fan[keep++] = fan->cell[k];
+    memmove(shell->fan + keep, shell->fan + first[v + 1], (first[to] - first[v + 1]) * sizeof *shell->fan);
+    for (uint32_t u = v + 1; u <= to; u++) first[u] -= moved;
+    memcpy(shell->fan + first[to], cells, moved * sizeof *cells);
     shell->split_count++;
     return result;
 }

@@ -247,24 +247,6 @@ static SingeResult list_edges(Memory *memory, RenderMesh *mesh, SingeError *erro
     return ok ? SINGE_OK : no_memory(error);
 }
 
-/// Counts the edges of more than two triangles, and of two that run the same way along it.
-static SingeResult count_odd_edges(Memory *memory, RenderMesh *mesh, SingeError *error) {
-    uint32_t(*ways)[2] = NULL;
-    TRY(list_edges(memory, mesh, error));
-    const uint32_t count = mesh->edge_count;
-    if (!NEW(memory, ways, count)) return no_memory(error);
-
-    for (uint32_t t = 0; t < mesh->triangle_count; t++)
-        for (int k = 0; k < 3; k++) {
-            const uint32_t edge = mesh->triangle_edges[t][k];
-            ways[edge][mesh->triangles[t][k] == mesh->edges[edge][0]]++;
-        }
-
-    for (uint32_t e = 0; e < count; e++) mesh->odd_edges += ways[e][0] > 1 || ways[e][1] > 1;
-    FREE(memory, ways, count);
-    return SINGE_OK;
-}
-
 /// Appends the parts of a triangle. halves: the vertex in the middle of each edge, or SHELL_NONE.
 static void divide(const uint32_t at[3], const uint32_t halves[3], uint32_t (*out)[3], uint32_t *count) {
     int long_count = 0, first = 0;
@@ -373,7 +355,22 @@ static SingeResult bind(const Fine *fine, float cell, const SingeRenderMeshDef *
 static SingeResult make(Memory *memory, Pool *pool, const RenderSheet *sheet, const SingeRenderMeshDef *def,
                         RenderMesh *mesh, SingeError *error) {
     TRY(take(memory, sheet, def, mesh, error));
-    TRY(count_odd_edges(memory, mesh, error));
+
+    // edges of more than two triangles, and of two that run the same way along it
+    uint32_t(*ways)[2] = NULL;
+    TRY(list_edges(memory, mesh, error));
+    const uint32_t count = mesh->edge_count;
+    if (!NEW(memory, ways, count)) return no_memory(error);
+
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            const uint32_t edge = mesh->triangle_edges[t][k];
+            ways[edge][mesh->triangles[t][k] == mesh->edges[edge][0]]++;
+        }
+
+    for (uint32_t e = 0; e < count; e++) mesh->odd_edges += ways[e][0] > 1 || ways[e][1] > 1;
+    FREE(memory, ways, count);
+
     TRY(find_parts(memory, def->by_uv ? 0 : def->rigid, mesh, error));
 
     // the surface of the sheet at rest, before any tear

@@ -42,29 +42,6 @@ static int list_arrays(const Fine *fine, FineArray arrays[]) {
 
 enum { FINE_ARRAYS_MAX = 32 };
 
-/// The level that is smoothed. The mass of a removed particle keeps its value from when it was removed, just below
-/// m_loss. There the level keeps falling at its previous rate, so that the edge moves evenly and does not stick to
-/// particles:
-///
-///   m' <- min(m', -(1 - m_loss) (t - t_burnt)/(t_burnt - t_ignited)),   to LEVEL_GONE at most
-static void fill_levels(Fine *fine) {
-    const State *state = fine->state;
-    const BurnState *burn = &state->burn;
-    float now = (float)state->time;
-
-    for (uint32_t i = 0; i < fine->shell->particle_count; i++) {
-        float level = fine->level[i], burnt = burn->time_burnt[i];
-        if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) level = float_min(level, -1e-4f); // also in a loose piece
-        if (level < 0 && burnt >= 0) {
-            float loss = 1 - field_at(fine->shell->matter.mass_loss, i), took = burnt - burn->time_ignited[i];
-            float gone = loss * (now - burnt);
-            level = float_min(level, gone < LEVEL_GONE * took ? -gone / took : -LEVEL_GONE);
-        }
-
-        fine->raw_level[i] = level;
-    }
-}
-
 // ---- vertices
 
 // Two particles, and the mean of four for the virtual centre.
@@ -210,7 +187,26 @@ void fine_close(Fine *fine) {
 static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError *error) {
     const State *state = fine->state;
     TRY(fine_open(fine, detail, error));
-    fill_levels(fine);
+
+    // The level that is smoothed. The mass of a removed particle keeps its value from when it was removed, just below
+    // m_loss. There the level keeps falling at its previous rate, so that the edge moves evenly and does not stick to
+    // particles:
+    //
+    //   m' <- min(m', -(1 - m_loss) (t - t_burnt)/(t_burnt - t_ignited)),   to LEVEL_GONE at most
+    const BurnState *burn = &state->burn;
+    float now = (float)state->time;
+
+    for (uint32_t i = 0; i < fine->shell->particle_count; i++) {
+        float level = fine->level[i], burnt = burn->time_burnt[i];
+        if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) level = float_min(level, -1e-4f); // also in a loose piece
+        if (level < 0 && burnt >= 0) {
+            float loss = 1 - field_at(fine->shell->matter.mass_loss, i), took = burnt - burn->time_ignited[i];
+            float gone = loss * (now - burnt);
+            level = float_min(level, gone < LEVEL_GONE * took ? -gone / took : -LEVEL_GONE);
+        }
+
+        fine->raw_level[i] = level;
+    }
 
     // splines of the fields
     const float *const fields[SPLINE_COUNT] = {[SPLINE_LEVEL] = fine->raw_level,

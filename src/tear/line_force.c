@@ -127,31 +127,6 @@ static bool measure_is_far(const Measure *job, uint32_t cell, float square) {
     return square <= hinge * hinge;
 }
 
-/// Whether an edge or a diagonal of a cell is EDGE_STRETCH times as long as at rest. Roots only of those that may be.
-static bool measure_is_stretched(const Measure *job, uint32_t cell) {
-    const Shell *shell = job->shell;
-    const CellSprings *springs = &shell->cell_springs[cell];
-    const float *blue = shell->springs[SINGE_BLUE].rest, *yellow = shell->springs[SINGE_YELLOW].rest;
-    Float4 x[4];
-    for (int i = 0; i < 4; i++) x[i] = float4_load(job->state->dynamics.position[shell->cells[cell][i]]);
-
-    for (int i = 0; i < 4; i++) {
-        const Float4 d = x[(i + 1) & 3] - x[i];
-        const float rest = blue[springs->blue[i]];
-        if (float4_dot(d, d) < EDGE_DOUBTFUL * rest * rest) continue;
-        if (edge_stretch(shell, job->state, SINGE_BLUE, springs->blue[i]) > EDGE_STRETCH) return true;
-    }
-
-    for (int i = 0; i < 2; i++) {
-        const Float4 d = x[i + 2] - x[i];
-        const float rest = yellow[springs->yellow[i]];
-        if (float4_dot(d, d) < EDGE_DOUBTFUL * rest * rest) continue;
-        if (edge_stretch(shell, job->state, SINGE_YELLOW, springs->yellow[i]) > EDGE_STRETCH) return true;
-    }
-
-    return false;
-}
-
 /// Whether a tensor's norm, which no principal value exceeds, reaches the strength of a corner.
 static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
     const Shell *shell = job->shell;
@@ -177,7 +152,27 @@ static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
             if (square > hinge * hinge && !(flags[shell->fan[k]] & SINGE_ALIVE)) return true;
     }
 
-    return measure_is_stretched(job, cell);
+    // or an edge or a diagonal of the cell is EDGE_STRETCH times as long as at rest; roots only of those that may be
+    const CellSprings *springs = &shell->cell_springs[cell];
+    const float *blue = shell->springs[SINGE_BLUE].rest, *yellow = shell->springs[SINGE_YELLOW].rest;
+    Float4 x[4];
+    for (int i = 0; i < 4; i++) x[i] = float4_load(job->state->dynamics.position[shell->cells[cell][i]]);
+
+    for (int i = 0; i < 4; i++) {
+        const Float4 d = x[(i + 1) & 3] - x[i];
+        const float rest = blue[springs->blue[i]];
+        if (float4_dot(d, d) < EDGE_DOUBTFUL * rest * rest) continue;
+        if (edge_stretch(shell, job->state, SINGE_BLUE, springs->blue[i]) > EDGE_STRETCH) return true;
+    }
+
+    for (int i = 0; i < 2; i++) {
+        const Float4 d = x[i + 2] - x[i];
+        const float rest = yellow[springs->yellow[i]];
+        if (float4_dot(d, d) < EDGE_DOUBTFUL * rest * rest) continue;
+        if (edge_stretch(shell, job->state, SINGE_YELLOW, springs->yellow[i]) > EDGE_STRETCH) return true;
+    }
+
+    return false;
 }
 
 /// tensor_add on the two halves of a tensor.

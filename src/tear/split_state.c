@@ -58,25 +58,6 @@ static bool tear_edges_cross(const Shell *shell, const State *state, uint32_t on
     return false;
 }
 
-/// Separates two coincident edges of a tear, each towards its cells. If the sheet is crumpled there, these
-/// displacements may make them intersect: then along the first of 26 directions in which they do not intersect.
-static void open_tear_edges(const Shell *shell, State *state, uint32_t one, uint32_t two) {
-    enum { DIRECTIONS = 27 };
-    float *x = state->dynamics.position[one], *y = state->dynamics.position[two];
-    Float3 position = float3_load(x),
-           displacements[2] = {tear_edge_displacement(shell, state, one), tear_edge_displacement(shell, state, two)};
-    float length = TEAR_EDGE_GAP * 0.5f * (float3_length(displacements[0]) + float3_length(displacements[1]));
-
-    float3_store(x, float3_mad(position, displacements[0], TEAR_EDGE_GAP));
-    float3_store(y, float3_mad(position, displacements[1], TEAR_EDGE_GAP));
-
-    for (int k = 0; k < DIRECTIONS && tear_edges_cross(shell, state, one, two); k++) {
-        Float3 displacement = float3_unit(float3((float)(k % 3 - 1), (float)(k / 3 % 3 - 1), (float)(k / 9 - 1)));
-        float3_store(x, float3_mad(position, displacement, length));
-        float3_store(y, float3_mad(position, displacement, -length));
-    }
-}
-
 void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *split, SplitResult *result) {
     *result = split_vertex(shell, fan, split);
     uint32_t from = split->vertex, to = result->spare;
@@ -110,5 +91,21 @@ void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *sp
     for (int k = 0; k < result->torn_count; k++) count_degree(shell, state, result->torn[k].far);
     count_degree(shell, state, from);
     count_degree(shell, state, to);
-    open_tear_edges(shell, state, from, to);
+
+    // Each of two coincident edges of a tear moves towards its cells. If the sheet is crumpled there, they may then
+    // intersect: they move along the first of 26 directions in which they do not.
+    enum { DIRECTIONS = 27 };
+    float *x = state->dynamics.position[from], *y = state->dynamics.position[to];
+    Float3 position = float3_load(x),
+           displacements[2] = {tear_edge_displacement(shell, state, from), tear_edge_displacement(shell, state, to)};
+    float length = TEAR_EDGE_GAP * 0.5f * (float3_length(displacements[0]) + float3_length(displacements[1]));
+
+    float3_store(x, float3_mad(position, displacements[0], TEAR_EDGE_GAP));
+    float3_store(y, float3_mad(position, displacements[1], TEAR_EDGE_GAP));
+
+    for (int k = 0; k < DIRECTIONS && tear_edges_cross(shell, state, from, to); k++) {
+        Float3 displacement = float3_unit(float3((float)(k % 3 - 1), (float)(k / 3 % 3 - 1), (float)(k / 9 - 1)));
+        float3_store(x, float3_mad(position, displacement, length));
+        float3_store(y, float3_mad(position, displacement, -length));
+    }
 }

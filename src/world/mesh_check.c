@@ -54,27 +54,6 @@ static uint32_t *table_find(const PairTable *table, const uint32_t key[3]) {
 
 // ---- the steps
 
-static SingeResult mesh_check_numbers(uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
-                                      const uint32_t *triangles, SingeError *error) {
-    if (!vertices || !triangles) return mesh_bad(error, -1, "the mesh's vertices or triangles are missing");
-    if (triangle_count < 4) return mesh_bad(error, -1, "a closed mesh has at least 4 triangles");
-    if (triangle_count > INT32_MAX / 4 || vertex_count > INT32_MAX / 4)
-        return error_set(error, SINGE_ERROR_LIMIT, "collider", -1, "the mesh is too large");
-
-    for (size_t k = 0; k < 3 * (size_t)vertex_count; k++)
-        if (!(fabsf(vertices[k]) <= MESH_POSITION_MAX))
-            return error_set(error, SINGE_ERROR_MESH, "collider", (int64_t)(k / 3),
-                             "vertex %zu of the mesh is not finite or beyond 10 km", k / 3);
-
-    for (size_t k = 0; k < 3 * (size_t)triangle_count; k++)
-        if (triangles[k] >= vertex_count)
-            return error_set(error, SINGE_ERROR_MESH, "collider", (int64_t)(k / 3),
-                             "triangle %zu of the mesh names vertex %u, but there are %u", k / 3, triangles[k],
-                             vertex_count);
-
-    return SINGE_OK;
-}
-
 /// Writes to `first` the number of the first vertex at each vertex's position.
 static SingeResult mesh_join(Memory *memory, const MeshSolid *solid, uint32_t *first, SingeError *error) {
     PairTable table = {0};
@@ -176,7 +155,22 @@ static SingeResult mesh_link(const PairTable *edges, const uint32_t *source, Mes
 
 SingeResult mesh_solid_take(Memory *memory, uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
                             const uint32_t *triangles, MeshSolid *solid, SingeError *error) {
-    TRY(mesh_check_numbers(vertex_count, vertices, triangle_count, triangles, error));
+    if (!vertices || !triangles) return mesh_bad(error, -1, "the mesh's vertices or triangles are missing");
+    if (triangle_count < 4) return mesh_bad(error, -1, "a closed mesh has at least 4 triangles");
+    if (triangle_count > INT32_MAX / 4 || vertex_count > INT32_MAX / 4)
+        return error_set(error, SINGE_ERROR_LIMIT, "collider", -1, "the mesh is too large");
+
+    for (size_t k = 0; k < 3 * (size_t)vertex_count; k++)
+        if (!(fabsf(vertices[k]) <= MESH_POSITION_MAX))
+            return error_set(error, SINGE_ERROR_MESH, "collider", (int64_t)(k / 3),
+                             "vertex %zu of the mesh is not finite or beyond 10 km", k / 3);
+
+    for (size_t k = 0; k < 3 * (size_t)triangle_count; k++)
+        if (triangles[k] >= vertex_count)
+            return error_set(error, SINGE_ERROR_MESH, "collider", (int64_t)(k / 3),
+                             "triangle %zu of the mesh names vertex %u, but there are %u", k / 3, triangles[k],
+                             vertex_count);
+
     uint32_t *first = NULL, *source = NULL;
     PairTable edges = {0};
     solid->vertex_count = vertex_count;
