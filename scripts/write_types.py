@@ -15,8 +15,9 @@ import textwrap
 
 FOLDER = pathlib.Path(__file__).resolve().parents[1] / "include/singe"
 HEADERS = {"types.h": ("sheet", "source", "collider", "pin", "wind", "solver", "gas", "contact", "sim"),
-           "mesh.h": ("mesh", "grid"), "surface.h": ("render_mesh",)}
-TYPES = {"FLOAT": "float", "VECTOR": "float", "ORDER": "SingeColour", "INT": "int", "UINT32": "uint32_t", "UINTS": "uint32_t", "UINT64": "uint64_t", "BOOL": "bool"}
+           "mesh.h": ("mesh", "grid"), "surface.h": ("render_mesh",),
+           "research.h": ("network",)}
+TYPES = {"FLOAT": "float", "DOUBLE": "double", "VECTOR": "float", "ORDER": "SingeColour", "INT": "int", "UINT32": "uint32_t", "UINTS": "uint32_t", "UINT64": "uint64_t", "BOOL": "bool"}
 FIELDS = ("FIELD", "APART", "NEEDED", "HIDDEN", "HOOK")
 WIDTH = 120
 
@@ -43,7 +44,7 @@ def rows(text):
     text = re.sub(r"//[^\n]*", "", text)
     for name, bits in re.findall(r"^#define (SINGE_\w+) \\\n *\((.*)\)", text, re.MULTILINE):
         text = re.sub(rf"\b{name}\b", re.sub(r"1u << (\w+)", r"BIT(\1)", bits), text)  # a set of kinds
-    for match in re.finditer(r"^SINGE_(FIELD|APART|NEEDED|HIDDEN|HOOK|COUNT|OTHER|WORD|DIMENSION|PARAM|PARAM_BACK|PARAM_COLOURS|SCALAR)\(", text, re.MULTILINE):
+    for match in re.finditer(r"^SINGE_(FIELD|APART|NEEDED|HIDDEN|HOOK|COUNT|NUMBERS|OTHER|WORD|DIMENSION|PARAM|PARAM_BACK|PARAM_COLOURS|SCALAR)\(", text, re.MULTILINE):
         depth, i, quoted = 1, match.end(), False
         while depth:
             if text[i] == '"' and text[i - 1] != "\\":
@@ -95,6 +96,11 @@ def struct(name, table, units):
             lines += comment(f"{kind} {field}{size};", "; ".join(([", ".join(facts)] if facts else []) + [plain(text)]))
         if macro == "COUNT":
             lines += comment(f"uint32_t {row[0]};", plain(row[1]))
+        if macro == "NUMBERS":
+            each, count, field, dimension, found, text = row
+            size = count if each == "1" else f"{each} * {count}"
+            facts = ", ".join(part for part in (units[dimension], in_words(found)) if part)
+            lines += comment(f"const double *{field};", f"[{size}] {facts}; {plain(text)}")
         if macro == "OTHER":
             lines += comment(f"{row[0]};", plain(row[3]))
     return "\n".join([f"typedef struct {name} {{", *lines, f"}} {name};"])

@@ -17,35 +17,36 @@ extern "C" {
 typedef struct SingeNetwork SingeNetwork;
 
 /// A network. All arrays are copied.
+/// Defaults: thread_count 1, set_count 1, regularisation 1e-4, time_step 1.0 / 480, tolerance 1e-7, iterations 5000;
+/// all else 0 or NULL.
 typedef struct SingeNetworkDef {
     size_t struct_size;
-    SingeAllocator allocator;
-    SingeTasks tasks;
-    int thread_count; ///< 1 to 64; results do not depend on it
-    uint32_t particle_count;
-    const double *positions;      ///< [3 * particle_count] m
-    const double *inverse_masses; ///< [particle_count] 1/kg, >= 0, or NULL: 1 each
+    SingeAllocator allocator;     ///< zeroed: libc's
+    SingeTasks tasks;             ///< zeroed: threads of the network's own
+    int thread_count;             ///< 1 to 64; results do not depend on it
+    uint32_t particle_count;      ///< at least 1
+    const double *positions;      ///< [3 * particle_count] m, -1e9 to 1e9; needed
+    const double *inverse_masses; ///< [particle_count] 0 to 1e30; 1/kg; NULL: 1 each
     /// [particle_count] or NULL: none. A held particle takes part in the system by its inverse mass, and is put back
     /// afterwards. This differs from an inverse mass of 0, with which the system knows that it cannot move.
     const uint8_t *held;
-    uint32_t spring_count;
+    uint32_t spring_count;     ///< at least 1
     const uint32_t *ends;      ///< [2 * spring_count] two different particles each
-    const double *lengths;     ///< [spring_count] m, targets, > 0
-    const double *weights;     ///< [spring_count] W of eq 19, 0 (absent) to 1, or NULL: 1 each
-    const double *compliances; ///< [spring_count] m/N, >= 0, or NULL: 0 each
-    uint32_t set_count;        ///< at least 1
+    const double *lengths;     ///< [spring_count] m, 1e-12 to 1e9; targets; needed
+    const double *weights;     ///< [spring_count] 0 to 1; W of eq 19; 0: absent; NULL: 1 each
+    const double *compliances; ///< [spring_count] m/N, 0 to 1e9; NULL: 0 each
+    uint32_t set_count;        ///< 1 to spring_count
     const uint32_t *sets;      ///< [spring_count] the set of each spring, or NULL: all are in set 0
     /// C = |d|^2/l - l as in eq 10, without regularisation and compliance; else C = (|d|^2 - l^2)/(2 |d|)
     bool literal;
-    double regularisation; ///< added to the diagonal, relative to the mean of w_a and w_b, >= 0
-    double time_step;      ///< s, h in compliance/h^2, > 0
-    double tolerance;      ///< residual of the conjugate gradients, relative to the right-hand side, > 0 to 1
-    int iterations;        ///< max of the conjugate gradients, 1 to 1e6
+    double regularisation; ///< 0 to 1e6; added to the diagonal, relative to the mean of w_a and w_b
+    double time_step;      ///< s, 1e-9 to 10; h in compliance/h^2
+    double tolerance;      ///< above 0, to 1; residual of the conjugate gradients, relative to the right-hand side
+    int iterations;        ///< 1 to 1000000; max of the conjugate gradients
 } SingeNetworkDef;
 
 SINGE_API void singe_init_network(SingeNetworkDef *def, size_t struct_size);
 
-/// Regularisation 1e-4, tolerance 1e-7, one set.
 static inline SingeNetworkDef singe_default_network(void) {
     SingeNetworkDef def;
     singe_init_network(&def, sizeof def);

@@ -14,13 +14,15 @@ struct SingeNetwork {
     Network network;
 };
 
-static const SingeNetworkDef network_standard = {.struct_size = sizeof(SingeNetworkDef),
-                                                 .thread_count = 1,
-                                                 .set_count = 1,
-                                                 .regularisation = 1e-4,
-                                                 .time_step = 1.0 / 480,
-                                                 .tolerance = 1e-7,
-                                                 .iterations = 5000};
+static const SingeNetworkDef network_standard = {
+    .struct_size = sizeof(SingeNetworkDef),
+#define SINGE_ROWS_STAY
+#define SINGE_FIELD(type, name, length, dimension, standard, range, kinds, text) .name = standard,
+#define SINGE_OTHER(declaration, name, standard, text) .name = standard,
+#include "singe/network.def"
+#undef SINGE_ROWS_STAY
+#include "singe/rows_end.def"
+};
 
 void singe_init_network(SingeNetworkDef *def, size_t struct_size) {
     if (struct_size < sizeof struct_size) return;
@@ -31,19 +33,31 @@ void singe_init_network(SingeNetworkDef *def, size_t struct_size) {
 
 // ---- checks
 
-static bool all_within(const double *values, size_t count, double low, double high, size_t *bad) {
-    for (*bad = 0; values && *bad < count; ++*bad)
-        if (!(values[*bad] >= low && values[*bad] <= high)) return false;
-    return true;
-}
-
 static SingeResult network_refuse(SingeError *error, int64_t element, const char *what) {
     return error_set(error, SINGE_ERROR_ARGUMENT, "network", element, "%s", what);
 }
 
+/// Checks an array that may be NULL: `each` numbers for each of `count`; 0: a field of one number.
+static SingeResult network_within(const char *name, const double *values, size_t each, size_t count, SingeError *error,
+                                  double low, double high, bool open, const char *words) {
+    for (size_t k = 0; values && k < (each ? each * count : 1); k++)
+        if (!(values[k] >= low && values[k] <= high) || (open && values[k] == low))
+            return error_set(error, SINGE_ERROR_ARGUMENT, "network", each ? (int64_t)(k / each) : -1, "%s must be %s",
+                             name, words);
+    return SINGE_OK;
+}
+
+// A row of the table checks its field.
+#undef WITHIN
+#undef OVER_UP_TO
+#define WITHIN(low, high) low, high, false, "between " #low " and " #high
+#define OVER_UP_TO(low, high) low, high, true, "above " #low " and at most " #high
+#define SINGE_FIELD(type, name, length, dimension, standard, range, kinds, text) \
+    TRY(network_within(#name, &(const double){(double)def->name}, 0, 1, error, range));
+#define SINGE_NUMBERS(each, count, name, dimension, range, text) \
+    TRY(network_within(#name, def->name, each, def->count, error, range));
+
 static SingeResult network_check(const SingeNetworkDef *def, SingeError *error) {
-    if (!(def->thread_count >= 1 && def->thread_count <= 64))
-        return network_refuse(error, -1, "thread_count must be between 1 and 64");
     if (def->tasks.enqueue && !def->tasks.finish) return network_refuse(error, -1, "tasks.enqueue needs tasks.finish");
     if (def->particle_count == 0 || !def->positions) return network_refuse(error, -1, "there are no particles");
     if (def->spring_count == 0 || !def->ends || !def->lengths) return network_refuse(error, -1, "there are no springs");
@@ -52,27 +66,9 @@ static SingeResult network_check(const SingeNetworkDef *def, SingeError *error) 
                          "too many springs or particles: at most 536870911 of each");
     if (def->set_count == 0 || def->set_count > def->spring_count)
         return network_refuse(error, -1, "set_count must be between 1 and the number of springs");
-    if (!(def->regularisation >= 0 && def->regularisation <= 1e6))
-        return network_refuse(error, -1, "regularisation must be between 0 and 1e6");
-    if (!(def->time_step >= 1e-9 && def->time_step <= 10))
-        return network_refuse(error, -1, "time_step must be between 1e-9 and 10 s");
-    if (!(def->tolerance > 0 && def->tolerance <= 1))
-        return network_refuse(error, -1, "tolerance must be above 0 and at most 1");
-    if (!(def->iterations >= 1 && def->iterations <= 1000000))
-        return network_refuse(error, -1, "iterations must be between 1 and 1000000");
 
-    // arrays
-    size_t bad;
-    if (!all_within(def->positions, 3 * (size_t)def->particle_count, -1e9, 1e9, &bad))
-        return network_refuse(error, (int64_t)(bad / 3), "positions must be finite, within 1e9 m");
-    if (!all_within(def->inverse_masses, def->particle_count, 0, 1e30, &bad))
-        return network_refuse(error, (int64_t)bad, "inverse masses must be between 0 and 1e30 1/kg");
-    if (!all_within(def->lengths, def->spring_count, 1e-12, 1e9, &bad))
-        return network_refuse(error, (int64_t)bad, "lengths must be between 1e-12 and 1e9 m");
-    if (!all_within(def->weights, def->spring_count, 0, 1, &bad))
-        return network_refuse(error, (int64_t)bad, "weights must be between 0 and 1");
-    if (!all_within(def->compliances, def->spring_count, 0, 1e9, &bad))
-        return network_refuse(error, (int64_t)bad, "compliances must be between 0 and 1e9 m/N");
+        // numbers and arrays of them
+#include "singe/network.def"
 
     // ends and sets of the springs
     for (uint32_t k = 0; k < def->spring_count; k++) {

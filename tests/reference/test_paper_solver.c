@@ -182,6 +182,35 @@ TEST(table_1_is_reproduced) {
     }
 }
 
+/// Puts a value into a network that is good without it: does it stand?
+#define STANDS(field, value)                                                                  \
+    (random_make(&random), (random.field) = (value), error = (SingeError){0}, network = NULL, \
+     singe_network_create(&random.def, &network, &error) == SINGE_OK && (singe_network_destroy(network), true))
+
+/// Both ends of each range in singe/network.def, and what lies just beyond them.
+TEST(networks_have_the_ranges_of_the_table) {
+    Random random;
+    SingeNetwork *network;
+    SingeError error;
+    int rows = 0;
+#define WITHIN(low, high) low, high, false
+#define OVER_UP_TO(low, high) low, high, true
+#define BEYOND_INT(end) 1
+#define BEYOND_DOUBLE(end) (1e-9 * (1 + fabs((double)(end))))
+#define TRY_ENDS(TYPE, name, field, last, low, high, open)                                                \
+    assert_true(STANDS(field, low) == !(open) && STANDS(field, high));                                    \
+    assert_false(STANDS(field, (low)-BEYOND_##TYPE(low)) || STANDS(field, (high) + BEYOND_##TYPE(high))); \
+    assert_int_equal(error.element, last);                                                                \
+    assert_non_null(strstr(error.message, #name " must be ")), rows++;
+#define TRY_ROW(...) TRY_ENDS(__VA_ARGS__)
+#define SINGE_FIELD(TYPE, name, length, dimension, standard, range, kinds, text) \
+    TRY_ROW(TYPE, name, def.name, -1, range)
+#define SINGE_NUMBERS(each, count, name, dimension, range, text) \
+    TRY_ROW(DOUBLE, name, name[each * 9 + each - 1], 9, range)
+#include "singe/network.def"
+    assert_int_equal(rows, 10);
+}
+
 TEST(bad_networks_are_refused) {
     Random random;
     SingeNetwork *network;
