@@ -126,6 +126,40 @@ static void pack_vertices(const PreviewScene *scene, const SingeSurface *surface
     }
 }
 
+/// The box of cells that are seen, within the border, in the head; and its first cell.
+static void pack_box(const Fire *fire, PackHead *head, int first[3]) {
+    float low[3], high[3], origin[3];
+    float3_store(low, fire->low);
+    float3_store(high, fire->high);
+    float3_store(origin, fire->origin);
+    head->cell = fire->cell;
+    for (int c = 0; c < 3; c++) {
+        const int from = (int)floorf((low[c] - origin[c]) / fire->cell) - 1;
+        const int to = (int)ceilf((high[c] - origin[c]) / fire->cell) + 1;
+        const int last = to < fire->size[c] - 1 ? to : fire->size[c] - 1;
+        first[c] = from > 0 ? from : 0;
+        head->size[c] = last >= first[c] ? (uint32_t)(last - first[c] + 1) : 0;
+        head->corner[c] = origin[c] + ((float)first[c] - 0.5f) * fire->cell;
+    }
+}
+
+static void pack_shapes(const Preview *preview, PackShape *out) {
+    for (uint32_t k = 0; k < preview->shape_count; k++, out++) {
+        const PreviewShape *shape = &preview->shapes[k];
+        *out = (PackShape){.kind = (int32_t)shape->kind,
+                           .radius = shape->radius,
+                           .height = shape->height,
+                           .temperature = shape->temperature,
+                           .solid = !shape->solid           ? 0
+                                    : shape->solid->passing ? 2
+                                                            : 1};
+        memcpy(out->position, shape->position, sizeof out->position);
+        memcpy(out->rotation, shape->rotation, sizeof out->rotation);
+        memcpy(out->half_size, shape->half_size, sizeof out->half_size);
+        memcpy(out->colour, shape->colour, sizeof out->colour);
+    }
+}
+
 SingeResult preview_pack(Preview *preview, const SingeSurface *surface, double time, uint8_t **bytes, size_t *size,
                          SingeError *error) {
     *bytes = NULL;
@@ -145,22 +179,8 @@ SingeResult preview_pack(Preview *preview, const SingeSurface *surface, double t
                      .low = {scene->low.x, scene->low.y, scene->low.z},
                      .high = {scene->high.x, scene->high.y, scene->high.z}};
     int first[3] = {0, 0, 0};
-    if (fire->size[0] && fire->visible) {
-        // the box of cells that are seen, within the border
-        float low[3], high[3], origin[3];
-        float3_store(low, fire->low);
-        float3_store(high, fire->high);
-        float3_store(origin, fire->origin);
-        head.cell = fire->cell;
-        for (int c = 0; c < 3; c++) {
-            const int from = (int)floorf((low[c] - origin[c]) / fire->cell) - 1;
-            const int to = (int)ceilf((high[c] - origin[c]) / fire->cell) + 1;
-            const int last = to < fire->size[c] - 1 ? to : fire->size[c] - 1;
-            first[c] = from > 0 ? from : 0;
-            head.size[c] = last >= first[c] ? (uint32_t)(last - first[c] + 1) : 0;
-            head.corner[c] = origin[c] + ((float)first[c] - 0.5f) * fire->cell;
-        }
-    }
+    if (fire->size[0] && fire->visible) pack_box(fire, &head, first);
+
     const EmberLights *lights = &scene->lights;
     for (int k = 0; k < scene->light_count; k++)
         head.lights[k] = (PackLight){{lights->x[k], lights->y[k], lights->z[k]},
@@ -191,21 +211,7 @@ SingeResult preview_pack(Preview *preview, const SingeSurface *surface, double t
     *bytes = out;
     memcpy(out, &head, sizeof head);
     pack_vertices(scene, surface, stretch, (PackVertex *)(void *)(out + sizeof head));
-    PackShape *shape_out = (PackShape *)(void *)(out + sizeof head + vertices);
-    for (uint32_t k = 0; k < preview->shape_count; k++, shape_out++) {
-        const PreviewShape *shape = &preview->shapes[k];
-        *shape_out = (PackShape){.kind = (int32_t)shape->kind,
-                                 .radius = shape->radius,
-                                 .height = shape->height,
-                                 .temperature = shape->temperature,
-                                 .solid = !shape->solid           ? 0
-                                          : shape->solid->passing ? 2
-                                                                  : 1};
-        memcpy(shape_out->position, shape->position, sizeof shape_out->position);
-        memcpy(shape_out->rotation, shape->rotation, sizeof shape_out->rotation);
-        memcpy(shape_out->half_size, shape->half_size, sizeof shape_out->half_size);
-        memcpy(shape_out->colour, shape->colour, sizeof shape_out->colour);
-    }
+    pack_shapes(preview, (PackShape *)(void *)(out + sizeof head + vertices));
     if (triangles) memcpy(out + sizeof head + vertices + shapes, scene->triangles, triangles);
 
     uint8_t *cell_out = out + sizeof head + vertices + shapes + triangles;

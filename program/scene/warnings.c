@@ -32,14 +32,8 @@ const char *source_heats_nothing(const Scene *scene, const SceneSource *source) 
     return scene->frames > 1 && (double)def->start >= end ? "it starts after the last frame" : NULL;
 }
 
-void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
-    if (!log->write) return;
-
-    for (uint32_t i = 0; i < scene->source_count; i++) {
-        const char *why = source_heats_nothing(scene, &scene->sources[i]);
-        if (why) message_warn(log, scene->text, scene->sources[i].location, "the source heats nothing: %s", why);
-    }
-
+/// Of meshes that are much too large, and of those too far away.
+static void warn_of_meshes(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
     // files that most likely are in cm or mm
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         const SceneSheet *sheet = &scene->sheets[i];
@@ -51,12 +45,6 @@ void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *l
             message_warn(log, scene->text, sheet->mesh.location,
                          "the mesh is %.3g x %.3g x %.3g m large: are its numbers cm or mm? (units: cm)", x, y, z);
     }
-
-    scene_warn_of_fires(scene, assets, log);
-    for (uint32_t i = 0; i < scene->collider_count; i++)
-        warn_of_motion(scene, &scene->colliders[i].motion, &assets->collider_motions[i], log);
-    for (uint32_t i = 0; i < scene->pin_count; i++)
-        warn_of_motion(scene, &scene->pins[i].motion, &assets->pin_motions[i], log);
 
     // sheets so far away that positions in single precision are too coarse for their cells
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
@@ -80,8 +68,10 @@ void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *l
                 "side is %.2g mm: move the scene to the origin",
                 farthest, 1e3 * rounded, 1e3 * shortest);
     }
+}
 
-    // blankets that reach no farther than contact lets other sheets come
+/// Of blankets that reach no farther than contact lets other sheets come.
+static void warn_of_blankets(const Scene *scene, const SingeLog *log) {
     float thickest = 0;
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         const SingeParam thickness = scene->sheets[i].material.def.thickness;
@@ -98,6 +88,24 @@ void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *l
                 "keeps between sheets (contact.thickness)",
                 1e3 * (double)reach, 1e3 * (double)kept);
     }
+}
+
+void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
+    if (!log->write) return;
+
+    for (uint32_t i = 0; i < scene->source_count; i++) {
+        const char *why = source_heats_nothing(scene, &scene->sources[i]);
+        if (why) message_warn(log, scene->text, scene->sources[i].location, "the source heats nothing: %s", why);
+    }
+
+    warn_of_meshes(scene, assets, log);
+    scene_warn_of_fires(scene, assets, log);
+    for (uint32_t i = 0; i < scene->collider_count; i++)
+        warn_of_motion(scene, &scene->colliders[i].motion, &assets->collider_motions[i], log);
+    for (uint32_t i = 0; i < scene->pin_count; i++)
+        warn_of_motion(scene, &scene->pins[i].motion, &assets->pin_motions[i], log);
+
+    warn_of_blankets(scene, log);
 
     // probes whose point is not on the sheet: for uv by more than rounding, for points by a tenth of its diagonal, as pins
     for (uint32_t i = 0; i < scene->probe_count; i++) {

@@ -102,6 +102,30 @@ SingeResult collision_plan_create(Memory *memory, const Shell *shell, const Sing
     return collision_plan_create_sized(memory, shell, def, time_step, &sizes, out);
 }
 
+/// Centroids at rest, and the thickness of cells: cells far smaller than the rest of their sheet would be torn apart by
+/// the contact of their own corners.
+static void measure_rest(CollisionPlan *plan, const Shell *shell) {
+    float min = plan->cell_size;
+
+    for (uint32_t c = 0; c < plan->cell_count; c++) {
+        Float4 position[4];
+        float shortest = INFINITY;
+
+        for (int i = 0; i < 4; i++) position[i] = float4_load(shell->rest_position[shell->cells[c][i]]);
+        for (int i = 0; i < 4; i++) {
+            Float4 side = position[(i + 1) & 3] - position[i];
+            shortest = float_min(shortest, float4_dot(side, side));
+        }
+
+        plan->rest[c] = collision_mean(position);
+        shortest = sqrtf(shortest);
+        plan->thin[c] = float_min(plan->thickness, 0.4f * shortest);
+        min = float_min(min, 4 * shortest);
+    }
+
+    plan->gap = 5e-3f * min + 4 * plan->noise;
+}
+
 SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
                                         const CollisionSizes *sizes, CollisionPlan **out) {
     CollisionPlan *plan;
@@ -157,27 +181,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     for (uint32_t v = 0; v < plan->vertex_count; v++) plan->zone[v] = SHELL_NONE;
     plan->work_max = COLLISION_WORK_MIN + (uint64_t)COLLISION_WORK * plan->cell_count;
 
-    // centroids at rest, and the thickness of cells: cells far smaller than the rest of their sheet would be torn apart
-    // by the contact of their own corners
-    float min = plan->cell_size;
-
-    for (uint32_t c = 0; c < plan->cell_count; c++) {
-        Float4 position[4];
-        float shortest = INFINITY;
-
-        for (int i = 0; i < 4; i++) position[i] = float4_load(shell->rest_position[shell->cells[c][i]]);
-        for (int i = 0; i < 4; i++) {
-            Float4 side = position[(i + 1) & 3] - position[i];
-            shortest = float_min(shortest, float4_dot(side, side));
-        }
-
-        plan->rest[c] = collision_mean(position);
-        shortest = sqrtf(shortest);
-        plan->thin[c] = float_min(plan->thickness, 0.4f * shortest);
-        min = float_min(min, 4 * shortest);
-    }
-
-    plan->gap = 5e-3f * min + 4 * plan->noise;
+    measure_rest(plan, shell);
     *out = plan;
     return SINGE_OK;
 }
