@@ -34,12 +34,21 @@ TINY = (
 )
 
 
+# whose tables are more than columns: facts above them, notes below them, a drawing. All others are printed by the same
+# lines of table.c
+PRINTED = ("swing", "step", "front", "compare", "stability", "plate")
+
+
 class Bench(Case):
     def measure(self, *args):
-        return json.loads(self.singe("bench", *args, "--json")[0])
+        out, err = self.singe("bench", *args, "--json")
+        self.assertEqual(err, "")
+        return json.loads(out)
 
     def test_tables(self):
         for name, options, keys in TINY:
+            if name not in PRINTED:
+                continue
             with self.subTest(name):
                 drawn = ["--svg", self.path("plate.svg")] if name == "plate" else []
                 out, err = self.singe("bench", name, *options, *drawn)
