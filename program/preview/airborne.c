@@ -4,6 +4,7 @@
 // Over a picture P, with smoke and sparks mixed, it gives P exp(-D) + J (1 - exp(-D)) / D.
 
 #include "preview/airborne.h"
+#include "preview/ground.h"
 
 #include <string.h>
 

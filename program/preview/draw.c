@@ -1,6 +1,7 @@
 // One frame: tiles of blocks of 4 x 4 pixels, by threads. Before them the table's own colour and what it mirrors; after
 // them the light is smoothed (seen.c, soften.c), and sparks, flakes and wisps are added.
 
+#include "preview/ground.h"
 #include "preview/airborne.h"
 #include "preview/block.h"
 

@@ -14,6 +14,7 @@
 // are points of it, each a soft dot, at moments while the shutter is open.
 
 #include "preview/airborne.h"
+#include "preview/ground.h"
 
 enum {
     FLAKES_A_SLOT = 3,  ///< that a site may lose in a slot

@@ -1,5 +1,6 @@
 // What the rays of a block see: the ground, the wall, a shape, a sheet through its holes, or the background.
 
+#include "preview/ground.h"
 #include "preview/block.h"
 
 enum { HOLE_LIMIT = 4 };

@@ -1,5 +1,6 @@
 // Creates and destroys a preview: the Def is checked field by field, then everything for a frame is allocated.
 
+#include "preview/ground.h"
 #include "preview/airborne.h"
 
 #include <stdio.h>

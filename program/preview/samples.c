@@ -6,6 +6,7 @@
 // background: nothing is intersected, and where no shadow can fall one sample is enough. Random numbers depend only on
 // the pixel's position and the sample's number, not on threads.
 
+#include "preview/ground.h"
 #include "preview/block.h"
 
 #include <string.h>

@@ -5,6 +5,7 @@
 // in its middle and pale at its rim. Its height over the ground is h(x, y). A ray of sight comes down to the ground, and
 // sees the leaf where its own height passes h within the leaf's outline; otherwise it sees the ground in the leaf's shadow.
 
+#include "preview/ground.h"
 #include "preview/internal.h"
 
 enum {

@@ -3,6 +3,7 @@
 // Stone is honed slabs of cast stone, which feet have worn: clouds of several sizes, cut gravel, pits, a hairline crack, and
 // joints. Every octave fades when a pixel no longer resolves it.
 
+#include "preview/ground.h"
 #include "preview/internal.h"
 
 #define PLANK_WIDTH 0.118f

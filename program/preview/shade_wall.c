@@ -4,6 +4,7 @@
 // lie in a stretcher bond of rows of 75 mm; each has its own tone, pits and worn edges, and mortar stands behind its face.
 // Every octave fades when a pixel no longer resolves it.
 
+#include "preview/ground.h"
 #include "preview/internal.h"
 
 #define BRICK_LONG 0.225f  ///< m, with a joint

@@ -5,6 +5,7 @@
 // wood, and ends abruptly; wide pores, dark dashes along the fibres, are crowded where the next begins. Where a branch was
 // cut there is a knot, and fibres and rings flow around it. Every octave fades when a pixel no longer resolves it.
 
+#include "preview/ground.h"
 #include "preview/shape_look.h"
 
 /// Where a point is among the fibres, and what it is cut through.
