@@ -249,6 +249,18 @@ static SingeResult out_of_memory(SingeError *error) {
     return refuse(error, SINGE_ERROR_MEMORY, "", -1, "out of memory while a frame was measured");
 }
 
+/// The area at rest, on which creases are looked for, m2.
+static double rest_area(const SingeSurface *surface) {
+    double area = 0;
+    for (uint32_t f = 0; f < surface->triangle_count; f++) {
+        const uint32_t *t = surface->triangles[f];
+        double twice[3];
+        area3(surface->rest_position[t[0]], surface->rest_position[t[1]], surface->rest_position[t[2]], twice);
+        area += 0.5 * sqrt(dot3(twice, twice));
+    }
+    return area;
+}
+
 static SingeResult measure_frame(Measure *measure, int frame, SingeError *error) {
     const int index = frame - measure->first;
     double *row = measure->rows[index];
@@ -271,16 +283,7 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
         result = out_of_memory(error);
 
     if (!result) {
-        // the area at rest, on which creases were looked for
-        double area = 0;
-        for (uint32_t f = 0; f < surface->triangle_count; f++) {
-            const uint32_t *t = surface->triangles[f];
-            double twice[3];
-            area3(surface->rest_position[t[0]], surface->rest_position[t[1]], surface->rest_position[t[2]], twice);
-            area += 0.5 * sqrt(dot3(twice, twice));
-        }
-
-        fill_row(&wrinkles, &folds, rim, area, row);
+        fill_row(&wrinkles, &folds, rim, rest_area(surface), row);
 
         // of all vertices: what a solver in which what rests sleeps could leave out
         uint32_t still = 0;

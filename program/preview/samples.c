@@ -44,6 +44,41 @@ static void layers_write(const Preview *preview, size_t pixel, const LayerSum *s
     }
 }
 
+/// Adds a lane's point to its sums for the layers; `fire` is before it, and lets the share `clear` through. Whether the point
+/// is of another sheet than the pixel's first one, or far from it.
+static bool add_to_layers(const Preview *preview, Block *block, int lane, Float3 fire, float clear) {
+    const Point *point = &block->point[lane];
+    LayerSum *sum = &block->layer[lane];
+    const float depth = point->distance * float3_dot(block->direction[lane], preview->camera.forward);
+    const bool first = !sum->samples++;
+    const bool other = !first && (point->sheet != sum->sheet || fabsf(depth - sum->depth) > 0.02f * depth);
+    if (other) sum->mixed = true;
+    if (first) {
+        sum->depth = depth;
+        sum->sheet = point->sheet;
+        sum->piece = point->piece;
+    }
+
+    sum->fire = float3_add(sum->fire, fire);
+    sum->fire_hides += 1 - clear;
+    if (!point->hit) return other;
+    sum->hits++;
+
+    // a sample of the piece counts if that is among the first that the pixel has met
+    for (int k = 0; k < PREVIEW_MATTES && preview->layers.mattes && point->sheet >= 0; k++) {
+        PreviewMatte *matte = &sum->mattes[k];
+        if (matte->share > 0 && (matte->sheet != point->sheet || matte->piece != point->piece)) continue;
+        *matte = (PreviewMatte){point->sheet, point->piece, matte->share + 1};
+        break;
+    }
+
+    sum->glow = float3_mad(sum->glow, point->glow, clear);
+    sum->normal = float3_add(sum->normal, point->normal);
+    sum->temperature += point->temperature;
+    sum->burn += point->burn;
+    return other;
+}
+
 void block_add_light(const Preview *preview, Block *block, const int *active, int sample, const int *ask) {
     float through[LANES], known[LANES];
     bool other[LANES] = {false};
@@ -80,34 +115,7 @@ void block_add_light(const Preview *preview, Block *block, const int *active, in
         colour = float3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
         block->sum[i] = float3_add(block->sum[i], colour);
 
-        LayerSum *sum = &block->layer[i];
-        const float depth = point->distance * float3_dot(block->direction[i], preview->camera.forward);
-        if (sum->samples++) {
-            other[i] = point->sheet != sum->sheet || fabsf(depth - sum->depth) > 0.02f * depth;
-            sum->mixed = sum->mixed || other[i];
-        } else {
-            sum->depth = depth;
-            sum->sheet = point->sheet;
-            sum->piece = point->piece;
-        }
-
-        sum->fire = float3_add(sum->fire, fire);
-        sum->fire_hides += 1 - clear;
-        if (!point->hit) continue;
-        sum->hits++;
-
-        // a sample of the piece counts if that is among the first that the pixel has met
-        for (int k = 0; k < PREVIEW_MATTES && preview->layers.mattes && point->sheet >= 0; k++) {
-            PreviewMatte *matte = &sum->mattes[k];
-            if (matte->share > 0 && (matte->sheet != point->sheet || matte->piece != point->piece)) continue;
-            *matte = (PreviewMatte){point->sheet, point->piece, matte->share + 1};
-            break;
-        }
-
-        sum->glow = float3_mad(sum->glow, point->glow, clear);
-        sum->normal = float3_add(sum->normal, point->normal);
-        sum->temperature += point->temperature;
-        sum->burn += point->burn;
+        other[i] = add_to_layers(preview, block, i, fire, clear);
     }
 
     // sky and lamps change slowly enough for every second sample, but not where faces meet; so does the sun where it is
