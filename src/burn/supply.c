@@ -95,27 +95,17 @@ static bool air_is_elsewhere(const BurnAirNear *near, const Float4Mask middle[3]
 /// Takes the nodes about the middle of lane k into `near`, with new ones where `adds`. What the table has no place for
 /// is not there: there is as much air as in a front.
 static void air_go(BurnAir *air, BurnAirNear *near, const Float4Mask middle[3], int k, bool adds) {
-    static const uint32_t low[3] = {0x1249249, 0x1c0e07, 0x1ff}; // bits of the nine nodes at -1 along an axis
-    int stride = 1, axis = 0, by = 0, axes = 0;
-    for (int d = 0, step = 1; d < 3; d++, step *= 3) {
-        const int along = middle[d][k] - near->middle[d];
-        near->middle[d] = middle[d][k];
-        if (along == 0) continue;
-        axis = d;
-        stride = step;
-        by = along;
-        axes++;
-    }
+    const int by = middle[0][k] - near->middle[0];
+    const bool follows =
+        near->known && (by == 1 || by == -1) && middle[1][k] == near->middle[1] && middle[2][k] == near->middle[2];
+    for (int d = 0; d < 3; d++) near->middle[d] = middle[d][k];
 
-    // mostly one node farther along an axis than those before: then only nine are new
+    // mostly one node farther along x than those before: then only nine are new
     uint32_t fresh = (1u << 27) - 1;
-    if (near->known && axes == 1 && (by == 1 || by == -1)) {
-        const int to = by < 0 ? stride : 0, from = stride - to;
-        fresh = by < 0 ? low[axis] : low[axis] << 2 * stride;
-        memmove(near->slot + to, near->slot + from, (size_t)(27 - stride) * sizeof *near->slot);
-        if (axis > 0)
-            memmove(near->demand + to / 3, near->demand + from / 3, sizeof(Float4) * (size_t)(9 - stride / 3));
-        for (int row = 0; axis == 0 && row < 9; row++) {
+    if (follows) {
+        fresh = by < 0 ? 0x1249249 : 0x1249249 << 2; // bits of the nine nodes at -1 along x, or at 1
+        memmove(near->slot + (by < 0), near->slot + (by > 0), 26 * sizeof *near->slot);
+        for (int row = 0; row < 9; row++) {
             const Float4 q = near->demand[row];
             near->demand[row] = by < 0 ? FLOAT4_SHUFFLE(q, q, 3, 0, 1, 3) : FLOAT4_SHUFFLE(q, q, 1, 2, 3, 3);
         }
