@@ -2,7 +2,7 @@
 //
 // Prints:
 //   1 piece, 0 vertices torn
-//   2 pieces, 19 vertices torn
+//   2 pieces, 17 vertices torn
 #include "sample.h"
 
 static void print_pieces(const SingeSim *sim) {

@@ -30,14 +30,14 @@ enum { SPARKS_A_SLOT = 6 }; ///< that a site may throw in a slot
 #define FIRE_AROUND 0.05f       ///< m, from a site, of which the fire is around it
 #define SPARK_OPEN (1 / 120.0f) ///< s, the shortest exposure of a spark: eye and film keep it
 #define BLUR_MOST 2.0f          ///< pixels
-#define WIDE_MOST 1.0f          ///< pixels
+#define WIDE_MOST 1.25f         ///< pixels
 #define STREAK_MOST 0.03f       ///< of the picture's height
 #define STREAK_SHORT 23.0f      ///< pixels, which no streak is too long with
 #define BUSY_RATE 2.1f          ///< 1/s, at which embers that crackle throw many and then none
 #define BUSY_WIDE 0.03f         ///< m from embers that crackle to others that do not
 #define BUSY 13.0f              ///< times as many, at most
 #define BUSY_LEAST 0.15f        ///< and those of others
-#define SPARKS_A_METRE 3600.0f  ///< 1/(m s), of sites that glow along a few cm
+#define SPARKS_A_METRE 6000.0f  ///< 1/(m s), of sites that glow along a few cm
 #define SPARKS_CROWD 0.25f      ///< m of glowing line above which sparks become rarer
 
 /// A spark's flight.

@@ -34,7 +34,7 @@ enum {
 #define CURL 0.036f       ///< m, by which curls move it at most
 #define CURLING 0.19f     ///< s after it has buckled, by which half of that
 #define EDDY 0.010f       ///< m, by which small eddies move threads then
-#define RIM 0.005f        ///< m of it to each side at most, from which a wisp comes
+#define RIM 0.003f        ///< m of it to each side at most, from which a wisp comes
 #define CLUMPED 0.5f      ///< of its width along the rim, by which threads keep together there
 #define NARROWS 0.4f      ///< of that width, what is left of it
 #define JOINED 0.8f       ///< s, when
@@ -42,7 +42,7 @@ enum {
 #define BURNT_LATE 0.8f   ///< that is seen wholly
 #define THREAD 0.0005f    ///< m, radius at the ember
 #define WISP_DEPTH 19e-3f ///< m, optical depth across a wisp times its width
-#define FRESH 0.55f       ///< of that at the ember: most vapours have not condensed
+#define FRESH 0.35f       ///< of that at the ember: most vapours have not condensed
 #define STRONG 1.2f       ///< by which strong wisps are weakened, or they would be white cords
 #define AMID 0.55f        ///< light of a wisp that is amid flames, which burn most of it; of a third it is whole
 #define FLAME_FAINT 0.08f ///< of a cell whose flame burns smoke
