@@ -133,7 +133,7 @@ void soften(Preview *preview, Block *block);
 
 // mirror.c
 /// Of one of the 4 x 4 blocks of pixels that are traced at once, of which `block` is the first.
-Mirrored *mirror_block(const Preview *preview, Mirrored *map, const Block *block, int lane);
+size_t mirror_block(const Preview *preview, const Block *block, int lane);
 
 /// Sets its time, its random numbers and the ray through its middle. False outside the picture.
 bool mirror_aim(const Preview *preview, Block *block, int lane, Float3 *origin, Float3 *direction);

@@ -31,7 +31,7 @@ static void draw_mirrored(Preview *preview, Block *block) {
     for (int i = 0; i < LANES; i++) {
         active[i] = 0;
         if (!mirror_aim(preview, block, i, &origin[i], &towards[i])) continue;
-        *mirror_block(preview, preview->mirrored[0], block, i) = (Mirrored){.share = 0};
+        preview->mirrored[0][mirror_block(preview, block, i)] = (Mirrored){.share = 0};
         float distance = ground_hit(preview, origin[i], towards[i]);
         if (!isfinite(distance) || wall_hit(preview, origin[i], towards[i]) < distance) continue;
         origin[i] = float3_mad(origin[i], towards[i], distance);
@@ -63,7 +63,7 @@ static void draw_mirrored(Preview *preview, Block *block) {
         block_add_light(preview, block, hit, SAMPLE_CENTRE, unasked);
         for (int i = 0; i < LANES; i++) {
             if (!hit[i]) continue;
-            Mirrored *mirrored = mirror_block(preview, preview->mirrored[0], block, i);
+            Mirrored *mirrored = &preview->mirrored[0][mirror_block(preview, block, i)];
             mirrored->share += share;
             for (int k = 0; k < LIT_KINDS; k++) block->sum[i] = float3_add(block->sum[i], block->lit[k][i]);
             mirrored->light = float3_mad(mirrored->light, block->sum[i], share);
@@ -83,7 +83,7 @@ static void draw_mirrored(Preview *preview, Block *block) {
             float3_length(float3_sub(fire->high, fire->low)) + float3_length(float3_sub(fire->high, origin[i]));
         const bool open = reached[i] > beyond;
         known = known && open;
-        Mirrored *mirrored = mirror_block(preview, preview->mirrored[0], block, i);
+        Mirrored *mirrored = &preview->mirrored[0][mirror_block(preview, block, i)];
         if (!known) fire_along(preview, origin[i], towards[i], reached[i], &light, &clear);
         known = open;
         mirrored->light = float3_mad(light, mirrored->light, clear);
@@ -195,6 +195,7 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     if (result) return result;
 
     preview->layers = *layers;
+    wood_singe(preview);
     fire_raise(preview);
     light_gather(preview);
     fire_light_smoke(preview);
@@ -207,7 +208,6 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     for (int pass = 0; pass < 2 && preview->mirrored[0]; pass++)
         mirror_smooth(preview, preview->mirrored, 2 + preview->def.height / 90);
     draw_all(preview, glints_draw);
-    if (glints_any(preview)) mirror_smooth(preview, preview->glints, 1);
     draw_all(preview, block_draw);
     draw_all(preview, seen_smooth);
     draw_all(preview, seen_finish);

@@ -31,7 +31,8 @@ static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *
     uint32_t *fan = allocator_resize(allocator, NULL, 0, corners * sizeof *fan);
 
     facets->normals = allocator_resize(allocator, NULL, 0, corners * sizeof *facets->normals);
-    bool ok = first && fan && facets->normals;
+    facets->bent = allocator_resize(allocator, NULL, 0, solid->triangle_count * sizeof *facets->bent);
+    bool ok = first && fan && facets->normals && facets->bent;
 
     if (ok) {
         // triangles by their vertices: those of vertex v are fan[first[v]] up to fan[first[v + 1]]
@@ -40,14 +41,6 @@ static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *
         for (size_t v = 2; v <= solid->vertex_count; v++) first[v + 1] += first[v];
         for (size_t k = 0; k < corners; k++) fan[first[triangles[k] + 1]++] = (uint32_t)(k / 3);
     }
-
-    double volume = 0, area = 0;
-    for (uint32_t t = 0; t < solid->triangle_count; t++) {
-        const Float3 cross = facets_cross(solid, t);
-        volume += (double)float3_dot(cross, facets_corner(solid, t, 0)) / 6;
-        area += (double)float3_length(cross) / 2;
-    }
-    facets->thick = area > 0 ? (float)(3 * fabs(volume) / area) : 0;
 
     Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t k = 0; ok && k < corners; k++) {
@@ -64,6 +57,21 @@ static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *
         high = float3(maxf(high.x, v.x), maxf(high.y, v.y), maxf(high.z, v.z));
     }
 
+    // how much the normals turn along the edges
+    double turn = 0, area = 0;
+    for (uint32_t t = 0; ok && t < solid->triangle_count; t++) {
+        const Float3 *n = facets->normals + 3 * (size_t)t;
+        const float twice = float3_length(facets_cross(solid, t));
+        facets->bent[t] = 0;
+        for (int k = 0; k < 3; k++) {
+            const int next = (k + 1) % 3;
+            const float edge = float3_length(float3_sub(facets_corner(solid, t, next), facets_corner(solid, t, k)));
+            facets->bent[t] = maxf(facets->bent[t], float3_length(float3_sub(n[next], n[k])) / maxf(edge, 1e-6f));
+        }
+        turn += (double)facets->bent[t] * (double)twice;
+        area += (double)twice;
+    }
+    facets->round = turn > 0 ? (float)(area / turn) : INFINITY;
     facets->bounds[0] = low;
     facets->bounds[1] = high;
     facets->centre = float3_scale(float3_add(low, high), 0.5f);
@@ -107,6 +115,8 @@ static void facets_free_one(Preview *preview, Facets *facets) {
     bvh_free(&facets->bvh, preview->allocator);
     size_t size = facets->normals ? 3 * (size_t)facets->triangle_count * sizeof *facets->normals : 0;
     allocator_resize(preview->allocator, facets->normals, size, 0);
+    size = facets->bent ? facets->triangle_count * sizeof *facets->bent : 0;
+    allocator_resize(preview->allocator, facets->bent, size, 0);
     allocator_resize(preview->allocator, facets, sizeof *facets, 0);
 }
 
@@ -133,7 +143,7 @@ void facets_free(Preview *preview) {
     }
 }
 
-float facets_intersect(const Facets *facets, Float3 o, Float3 d, float near, float far, Float3 *normal) {
+float facets_intersect(const Facets *facets, Float3 o, Float3 d, float near, float far, Facing *facing) {
     // whether the ray, of unit direction, comes near enough
     const Float3 to = float3_sub(facets->centre, o);
     const float along = float3_dot(to, d), extent = 1.0001f * facets->extent;
@@ -154,6 +164,7 @@ float facets_intersect(const Facets *facets, Float3 o, Float3 d, float near, flo
     Float3 flat = float3_unit_or(facets_cross(facets->solid, hits.triangle[0]), UP);
 
     // a smooth normal that faces away from the eye although the face does not would be flipped
-    *normal = float3_dot(smooth, d) * float3_dot(flat, d) > 0 ? float3_unit_or(smooth, flat) : flat;
+    facing->normal = float3_dot(smooth, d) * float3_dot(flat, d) > 0 ? float3_unit_or(smooth, flat) : flat;
+    facing->bent = facets->bent[hits.triangle[0]];
     return rays.far[0];
 }

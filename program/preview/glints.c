@@ -1,8 +1,8 @@
 // What metal mirrors: sheets, other shapes, the ground and flames, by rays.
 //
 // Brushed metal is rough, and so is its mirror image. As for the ground (mirror.c) a few rays are traced for each block of
-// 4 x 4 pixels, spread along the scratches and across as its lobe is, and smoothed over neighbouring blocks that see metal as
-// well. What is too small for that mirrors the lamps' lobes alone.
+// 4 x 4 pixels, spread along the scratches and across as its lobe is, and read as the mean of neighbouring blocks whose metal faces the
+// same way. What is too small for that mirrors the lamps' lobes alone.
 
 #include "preview/block.h"
 
@@ -18,7 +18,7 @@ bool glints_any(const Preview *preview) {
 
 /// Whether a block of pixels sees a part of the shape that is nearly flat.
 bool glints_may_be(const PreviewShape *shape, float footprint) {
-    const float size = shape->facets ? shape->facets->thick : shape->radius;
+    const float size = shape->facets ? shape->facets->round : shape->radius;
     return shape->surface == PREVIEW_SURFACE_METAL && shape->kind != SINGE_COLLIDER_CAPSULE &&
            !(shape->temperature > BLACKBODY_MIN) &&
            (shape->kind == SINGE_COLLIDER_BOX || size > GLINT_BLOCKS * BLOCK * footprint);
@@ -32,7 +32,7 @@ static bool find_metal(const Preview *preview, Block *block, int *active, Point 
         block->origin[i] = preview->camera.eye;
         block->direction[i] = preview->camera.forward;
         if (!mirror_aim(preview, block, i, &block->origin[i], &block->direction[i])) continue;
-        *mirror_block(preview, preview->glints[0], block, i) = (Mirrored){.share = 0};
+        preview->glints[mirror_block(preview, block, i)] = (Glint){.light = {0, 0, 0}};
         if (!mask_covers(preview, block->x[0] + BLOCK * (i % BLOCK), block->y[0] + BLOCK * (i / BLOCK))) continue;
         active[i] = -1;
         any = true;
@@ -84,14 +84,14 @@ void glints_draw(Preview *preview, Block *block) {
 
         for (int i = 0; i < LANES; i++) {
             if (!active[i]) continue;
-            Mirrored *glint = mirror_block(preview, preview->glints[0], block, i);
+            Glint *glint = &preview->glints[mirror_block(preview, block, i)];
             for (int k = 0; k < LIT_KINDS; k++) block->sum[i] = float3_add(block->sum[i], block->lit[k][i]);
             Float3 light = hit[i] ? block->sum[i] : sky_mirrored(&preview->sky, block->direction[i]), fire = {0, 0, 0};
             float clear = 1;
             if (preview->fire.visible)
                 fire_along(preview, block->origin[i], block->direction[i], block->point[i].distance, &fire, &clear);
             glint->light = float3_mad(glint->light, float3_mad(fire, light, clear), 1.0f / RAYS);
-            glint->share = 1;
+            glint->normal = seen[i].geometric;
         }
     }
 }
@@ -100,10 +100,8 @@ void glints_add(const Preview *preview, Block *block, const int *active) {
     for (int i = 0; i < LANES; i++) {
         Point *point = &block->point[i];
         if (!active[i] || !point->glints) continue;
-        const Mirrored seen = mirror_see(preview, preview->glints[0], (float)block->x[i], (float)block->y[i]);
-        point->glints = seen.share > 0.05f;
-        if (!point->glints) continue;
-        point->glow =
-            float3_add(point->glow, float3_scale(float3_mul(seen.light, light_fresnel(point)), 1 / seen.share));
+        Float3 light;
+        point->glints = mirror_see_glints(preview, point->geometric, (float)block->x[i], (float)block->y[i], &light);
+        if (point->glints) point->glow = float3_add(point->glow, float3_mul(light, light_fresnel(point)));
     }
 }

@@ -61,7 +61,7 @@ struct Preview {
     Fire fire;
     Stain stain;
     Mirrored *mirrored[2]; ///< [mask_size] for each block, and the same while it is smoothed; NULL: the ground is dull
-    Mirrored *glints[2];   ///< the same of metal
+    Glint *glints;         ///< by blocks
     PreviewLayers layers;  ///< being drawn
     double time;
 };
@@ -104,12 +104,16 @@ bool stain_may_be(const Preview *preview, float x, float y);
 float stain_at(const Preview *preview, float x, float y);
 
 // mirror.c
-/// Maps of the blocks of a picture, for the ground or for metal.
+/// Maps of the blocks of a picture, for the ground and for metal.
 SingeResult mirror_create(Preview *preview, SingeError *error);
 void mirror_free(Preview *preview);
 
 /// Smooths a map across, and so many times down. The second map is scratch.
 void mirror_smooth(const Preview *preview, Mirrored *const maps[2], int times);
+
+/// What metal mirrors at a point of the picture, in pixels: the mean of nearby blocks that see metal which faces the same way.
+/// False if there are none.
+bool mirror_see_glints(const Preview *preview, Float3 normal, float x, float y, Float3 *light);
 
 /// What a map mirrors at a point of the picture, in pixels.
 Mirrored mirror_see(const Preview *preview, const Mirrored *map, float x, float y);
@@ -120,6 +124,10 @@ bool glints_any(const Preview *preview);
 
 /// Whether a shape's mirror image is traced where a pixel is that large (m).
 bool glints_may_be(const PreviewShape *shape, float footprint);
+
+// shade_wood.c
+/// Finds how far the sheets that wood grips have burnt. The surface has been loaded.
+void wood_singe(Preview *preview);
 
 // film.c
 void bloom_apply(Preview *preview);

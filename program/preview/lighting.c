@@ -57,7 +57,7 @@ Float3 light_reflect(const Point *point, Float3 l) {
         return float3_scale(float3_mul(point->albedo, point->through), point->transmission * maxf(-cosine, 0));
     if (cosine <= 0) return float3(0, 0, 0);
 
-    Float3 out = float3_mad(light_shine(point, l, 0), point->albedo, cosine);
+    Float3 out = float3_scale(point->albedo, cosine);
     if (point->gloss > 0) {
         Float3 half = float3_unit_or(float3_add(l, point->view), point->normal);
         float aligned = float3_dot(half, point->normal);
@@ -120,7 +120,10 @@ void light_add_sun(const Preview *preview, Block *block, const int *active, int 
         sample_disc(square, disc);
         Float3 l = float3_mad(preview->sun, preview->sun_right, disc[0] * preview->sun_spread);
         l = float3_unit_or(float3_mad(l, preview->sun_up, disc[1] * preview->sun_spread), preview->sun);
-        Float3 light = float3_scale(float3_mul(light_reflect(point, l), preview->sun_light), through[i]);
+        // metal mirrors the whole of its disc: a lobe that is narrower would show single rays
+        const Float3 shone = light_shine(point, preview->sun, preview->sun_spread * preview->sun_spread);
+        const Float3 reflected = float3_add(light_reflect(point, l), shone);
+        Float3 light = float3_scale(float3_mul(reflected, preview->sun_light), through[i]);
         block->lit[LIT_SUN][i] = float3_add(block->lit[LIT_SUN][i], light);
         asked[i] = float3_luminance(light);
         if (!ask[i] || asked[i] < 1e-4f || is_outshone(block, i, asked[i])) continue;

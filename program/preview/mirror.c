@@ -11,31 +11,32 @@
 
 static int mirror_across(const Preview *preview) { return (preview->def.width + BLOCK - 1) / BLOCK; }
 
-static SingeResult create_maps(Preview *preview, Mirrored *maps[2], const char *what, SingeError *error) {
-    for (int k = 0; k < 2; k++) {
-        const size_t size = mask_size(preview) * sizeof(Mirrored);
-        maps[k] = allocator_resize(preview->allocator, NULL, 0, size);
-        if (!maps[k]) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for what %s mirrors", what);
-        memset(maps[k], 0, size);
-    }
+SingeResult mirror_create(Preview *preview, SingeError *error) {
+    if (preview->def.ground_gloss > 0 && isfinite(preview->def.ground_height))
+        for (int k = 0; k < 2; k++) {
+            preview->mirrored[k] = allocator_resize(preview->allocator, NULL, 0, mask_size(preview) * sizeof(Mirrored));
+            if (!preview->mirrored[k])
+                return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for what the ground mirrors");
+            memset(preview->mirrored[k], 0, mask_size(preview) * sizeof(Mirrored));
+        }
+    const size_t size = mask_size(preview) * sizeof *preview->glints;
+    preview->glints = allocator_resize(preview->allocator, NULL, 0, size);
+    if (!preview->glints) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for what metal mirrors");
+    memset(preview->glints, 0, size);
     return SINGE_OK;
 }
 
-SingeResult mirror_create(Preview *preview, SingeError *error) {
-    if (preview->def.ground_gloss > 0 && isfinite(preview->def.ground_height))
-        TRY(create_maps(preview, preview->mirrored, "the ground", error));
-    return create_maps(preview, preview->glints, "metal", error);
-}
-
 void mirror_free(Preview *preview) {
-    Mirrored *maps[] = {preview->mirrored[0], preview->mirrored[1], preview->glints[0], preview->glints[1]};
-    for (int k = 0; k < 4; k++)
-        if (maps[k]) allocator_resize(preview->allocator, maps[k], mask_size(preview) * sizeof(Mirrored), 0);
+    for (int k = 0; k < 2; k++)
+        if (preview->mirrored[k])
+            allocator_resize(preview->allocator, preview->mirrored[k], mask_size(preview) * sizeof(Mirrored), 0);
+    if (preview->glints)
+        allocator_resize(preview->allocator, preview->glints, mask_size(preview) * sizeof *preview->glints, 0);
 }
 
-Mirrored *mirror_block(const Preview *preview, Mirrored *map, const Block *block, int lane) {
+size_t mirror_block(const Preview *preview, const Block *block, int lane) {
     const int x = block->x[0] / BLOCK + lane % BLOCK, y = block->y[0] / BLOCK + lane / BLOCK;
-    return &map[y * mirror_across(preview) + x];
+    return (size_t)(y * mirror_across(preview) + x);
 }
 
 bool mirror_aim(const Preview *preview, Block *block, int lane, Float3 *origin, Float3 *direction) {
@@ -82,4 +83,28 @@ Mirrored mirror_see(const Preview *preview, const Mirrored *map, float x, float 
     const Mirrored *at = &map[j * across + i], *below = j + 1 < down ? at + across : at;
     const int right = i + 1 < across;
     return mirror_mix(mirror_mix(at[0], at[right], fx), mirror_mix(below[0], below[right], fx), fy);
+}
+
+bool mirror_see_glints(const Preview *preview, Float3 normal, float x, float y, Float3 *light) {
+    enum { NEAR = 4 };
+    const int across = mirror_across(preview), down = (int)(mask_size(preview) / (size_t)across);
+    float fx, fy, total = 0;
+    const int left = noise_floor((x + 0.5f) / BLOCK - 0.5f, &fx) - 1;
+    const int top = noise_floor((y + 0.5f) / BLOCK - 0.5f, &fy) - 1;
+    *light = float3(0, 0, 0);
+    for (int k = 0; k < NEAR * NEAR; k++) {
+        const int i = left + k % NEAR, j = top + k / NEAR;
+        if (i < 0 || j < 0 || i >= across || j >= down) continue;
+        const Glint *glint = &preview->glints[j * across + i];
+        const float alike = maxf(float3_dot(glint->normal, normal), 0), dx = (float)(k % NEAR - 1) - fx,
+                    dy = (float)(k / NEAR - 1) - fy;
+        const float near = maxf(1 - 0.25f * (dx * dx + dy * dy), 0);
+        float weight = alike * alike;
+        for (int p = 0; p < 3; p++) weight *= weight;               // alike^16: a tenth at thirty degrees
+        weight = (weight + (alike > 0 ? 0.002f : 0)) * near * near; // narrow faces have no block of their own
+        total += weight;
+        *light = float3_mad(*light, glint->light, weight);
+    }
+    if (total > 0) *light = float3_scale(*light, 1 / total);
+    return total > 0;
 }

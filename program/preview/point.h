@@ -5,11 +5,16 @@
 #include "preview/preview.h"
 #include "preview/render_math.h"
 
-/// What the ground mirrors of sheets, shapes and fire, or what metal mirrors, in a block of pixels.
+/// What the ground mirrors of sheets, shapes and fire in a block of pixels.
 typedef struct Mirrored {
     Float3 light;
-    float share; ///< of the sky behind, which it hides; of the block, which is metal
+    float share; ///< of the sky behind, which it hides
 } Mirrored;
+
+/// What the metal in the middle of a block of pixels mirrors.
+typedef struct Glint {
+    Float3 light, normal; ///< normal: zero without metal
+} Glint;
 
 /// A point to be lit. All normals face the viewer.
 typedef struct Point {
@@ -18,7 +23,7 @@ typedef struct Point {
     float transmission;                       ///< share of the light from behind that is transmitted
     Float3 through;                           ///< and its colour, over the albedo
     bool back;                                ///< of a sheet, where its picture is mirrored
-    float bent;                               ///< 1/m, of a sheet, how much it bends
+    float bent;                               ///< 1/m, how much it bends
     float gloss, shininess;                   ///< Blinn-Phong lobe of the sun
     float mirror;                             ///< reflectance for the blurred sky
     float fuzz;          ///< cosine by which lamps light more of what is round: fibres scatter light

@@ -119,7 +119,8 @@ static bool resolve(const Preview *preview, Block *block, int lane, const Met *m
         point->hit = true;
         point->temperature = shape->temperature;
         point->moved = preview->def.shutter * moved_across(float3_load(shape->velocity), d);
-        const Float3 found = met->normal[lane];
+        const Float3 found = met->facing[lane].normal;
+        point->bent = met->facing[lane].bent;
         point->normal = point->geometric = float3_dot(found, point->view) >= 0 ? found : float3_scale(found, -1);
         shape_shade(preview, shape, shutter_moment(preview, block->time[lane]), point);
         return true;

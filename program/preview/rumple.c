@@ -42,8 +42,8 @@ static float rumple_clear(const Preview *preview, Float3 p, Float3 n, float way)
         const Float3 to = float3_sub(shape_centre(shape), p);
         const float extent = shape_extent(shape, 0) + clear + RUMPLE_GAP;
         if (float3_dot(to, to) > extent * extent) continue;
-        Float3 normal;
-        const float hit = shape_intersect(shape, 0, p, d, 0, clear + RUMPLE_GAP, &normal);
+        Facing facing;
+        const float hit = shape_intersect(shape, 0, p, d, 0, clear + RUMPLE_GAP, &facing);
         if (hit >= 0) clear = maxf(hit - RUMPLE_GAP, 0);
     }
     const float above = p.z - preview->def.ground_height - RUMPLE_GAP; // infinite without a ground

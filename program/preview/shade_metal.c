@@ -43,15 +43,18 @@ void shape_metal(const Place *place, Point *point) {
         // it cools upwards, from what heats it
         const float height = shape->facets ? (place->p.z - shape->facets->centre.z) / shape->facets->extent : -1;
         const float grown = shape->temperature - 330 * clampf(height + 0.33f, 0, 1) + 14 * worn + 5 * grime;
-        shine = float3_mul(shine, temper_colour(grown));
+        shine = float3_mul(shine, float3_mix(float3(1, 1, 1), temper_colour(grown), 0.6f)); // it is worn
     }
 
     point->shine =
-        float3_scale(shine, clampf(1 + 0.45f * streaks - 0.30f * patina + 0.08f * grime + 0.5f * scratch, 0.3f, 1.6f));
+        float3_scale(shine, clampf(1 + 0.25f * streaks - 0.15f * patina + 0.08f * grime + 0.5f * scratch, 0.3f, 1.6f));
     point->albedo =
         float3_mul(point->albedo, float3_mix(float3(0.07f, 0.07f, 0.07f), float3(0.20f, 0.14f, 0.11f), patina));
-    point->rough[0] = 0.07f + 0.16f * patina + 0.03f * grime + 0.02f * worn;
-    point->rough[1] = point->rough[0] + 0.12f;
+    point->rough[0] = 0.035f + 0.05f * patina + 0.015f * grime + 0.01f * worn;
+    point->rough[1] = point->rough[0] + 0.05f;
+    // what turns within a pixel mirrors as much more
+    const float turns = minf(0.5f * footprint * point->bent, 0.5f);
+    for (int k = 0; k < 2; k++) point->rough[k] = sqrtf(point->rough[k] * point->rough[k] + turns * turns);
     point->gloss = point->mirror = 0;
     point->glints = glints_may_be(shape, footprint);
 
@@ -59,7 +62,7 @@ void shape_metal(const Place *place, Point *point) {
     point->brush = quat_rotate(shape->rotation, along);
     const Float3 across = float3_unit_or(float3_cross(place->normal, along), place->normal);
     Float3 dents = noise3_gradient(float3_scale(place->p, 36), noise3(float3_scale(place->p, 36), 416), 416);
-    shape_lean(place, float3_mad(float3_scale(dents, 0.020f), across, 0.10f * streaks + 0.3f * scratch), point);
+    shape_lean(place, float3_mad(float3_scale(dents, 0.020f), across, 0.06f * streaks + 0.2f * scratch), point);
 }
 
 // ---- heat
@@ -69,12 +72,13 @@ void shape_metal(const Place *place, Point *point) {
 // cooler towards the end by which it is held, that of its +z. Scale, which is thin and cooler than the metal, lies where
 // that is cool, and has come off elsewhere but for a few flakes.
 
-#define SHAPE_GAIN 0.30f
-#define SHAPE_MIDDLE 80.0f  ///< K, by which the middle is drawn hotter: the film shows what is bright paler
-#define SHAPE_LIMB 330.0f   ///< K, by which the limb is cooler than the middle
+#define SHAPE_GAIN 0.165f
+#define SHAPE_MIDDLE 20.0f  ///< K, by which the middle is drawn hotter: the film shows what is bright paler
+#define SHAPE_LIMB 240.0f   ///< K, by which the limb is cooler than the middle
 #define SHAPE_BELOW 150.0f  ///< K, by which what faces down is cooler than the middle
 #define SHAPE_HELD 480.0f   ///< K, by which a rod is cooler where it is held
-#define SCALE_COOLER 150.0f ///< K, scale over metal
+#define SHAPE_NECK 130.0f   ///< K, by which all of a rod is cooler than what is as hot
+#define SCALE_COOLER 200.0f ///< K, scale over metal
 
 void shape_glow(const Preview *preview, const Place *place, Point *point) {
     const PreviewShape *shape = place->shape;
@@ -91,9 +95,10 @@ void shape_glow(const Preview *preview, const Place *place, Point *point) {
     if (rod) view = float3_unit_or(float3(view.x, view.y, 0), view); // one that points at the eye has a middle, too
     const float facing = clampf(float3_dot(place->normal, view), 0, 1), aside = 1 - facing;
     const float end = rod ? clampf(0.5f + place->p.z / (shape->height + 2 * shape->radius), 0, 1) : 0;
-    const float cold = SHAPE_HELD * end * sqrtf(end) - SHAPE_BELOW * minf(point->normal.z, 0.2f);
+    const float cold =
+        SHAPE_HELD * end * sqrtf(end) + (rod ? SHAPE_NECK : 0) - SHAPE_BELOW * minf(point->normal.z, 0.2f);
     const float lies = 0.55f * middle + 0.6f * small + 0.4f * fine; // scale lies where it is high
-    const float scale = stepf(0.40f, 0.52f, lies + 0.0012f * cold);
+    const float scale = stepf(0.36f, 0.42f, lies + 0.0012f * cold);
     const float temperature = shape->temperature * (1 + 0.02f * broad + 0.012f * middle + 0.006f * small) - cold -
                               SHAPE_LIMB * aside * sqrtf(aside) + SHAPE_MIDDLE * facing * facing - SCALE_COOLER * scale;
     Float3 glow = blackbody_glow(preview->blackbody, temperature);

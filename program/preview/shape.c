@@ -91,11 +91,12 @@ float shape_extent(const PreviewShape *shape, float shutter) {
 }
 
 float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Float3 direction, float near, float far,
-                      Float3 *normal) {
+                      Facing *facing) {
     Float3 offset = float3_mad(float3_sub(origin, float3_load(shape->position)), float3_load(shape->velocity), -moment);
     if (shape->kind == SINGE_COLLIDER_SPHERE) {
         float t = sphere(offset, direction, shape->radius, near, far);
-        if (t > 0) *normal = float3_scale(float3_mad(offset, direction, t), 1 / shape->radius);
+        if (t > 0) facing->normal = float3_scale(float3_mad(offset, direction, t), 1 / shape->radius);
+        facing->bent = 1 / shape->radius;
         return t;
     }
 
@@ -107,10 +108,12 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
 
     Float3 o = quat_unrotate(shape->rotation, offset), d = quat_unrotate(shape->rotation, direction), n = {0, 0, 1};
     float t = -1;
+    facing->bent = shape->kind == SINGE_COLLIDER_CAPSULE ? 1 / shape->radius : 0;
     if (shape->kind == SINGE_COLLIDER_BOX) t = box(shape, o, d, near, far, &n);
     if (shape->kind == SINGE_COLLIDER_CAPSULE) t = capsule(shape, o, d, near, far, &n);
-    if (shape->facets) t = facets_intersect(shape->facets, o, d, near, far, &n);
-    if (t > 0) *normal = quat_rotate(shape->rotation, n);
+    if (shape->facets) t = facets_intersect(shape->facets, o, d, near, far, facing);
+    if (shape->facets) n = facing->normal;
+    if (t > 0) facing->normal = quat_rotate(shape->rotation, n);
 
     return t;
 }

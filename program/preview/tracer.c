@@ -109,13 +109,13 @@ void tracer_meet_shapes(const Preview *preview, const int *valid, const Rays *ra
         const PreviewShape *shape = &preview->shapes[k];
         for (unsigned near = wanted & shape_near_rays(preview, shape, rays); near; near &= near - 1) {
             const int i = __builtin_ctz(near);
-            Float3 normal = {0, 0, 1};
+            Facing facing = {{0, 0, 1}, 0};
             const float t = shape_intersect(shape, shutter_moment(preview, rays->time[i]), rays_origin(rays, i),
-                                            rays_direction(rays, i), 0, met->distance[i], &normal);
+                                            rays_direction(rays, i), 0, met->distance[i], &facing);
             if (!(t > 0)) continue;
             met->distance[i] = t;
             met->shape[i] = shape;
-            met->normal[i] = normal;
+            met->facing[i] = facing;
         }
     }
 }
@@ -129,9 +129,9 @@ void tracer_occlude(const Preview *preview, const int *valid, Rays *rays, float 
         const PreviewShape *shape = &preview->shapes[k];
         for (unsigned near = shape_near_rays(preview, shape, rays) & open; near; near &= near - 1) {
             const int i = __builtin_ctz(near);
-            Float3 normal;
+            Facing facing;
             if (shape_intersect(shape, shutter_moment(preview, rays->time[i]), rays_origin(rays, i),
-                                rays_direction(rays, i), scene->epsilon, rays->far[i], &normal) > 0)
+                                rays_direction(rays, i), scene->epsilon, rays->far[i], &facing) > 0)
                 open &= ~(1u << i);
         }
     }

@@ -31,6 +31,12 @@ typedef struct PreviewScene {
     Float3 flame_points[FLAME_POINTS];
 } PreviewScene;
 
+/// How a shape faces a ray that meets it.
+typedef struct Facing {
+    Float3 normal; ///< outward
+    float bent;    ///< 1/m, how much that turns nearby
+} Facing;
+
 /// The data of a PreviewSolid for rays.
 typedef struct Facets {
     const PreviewSolid *solid;
@@ -38,7 +44,8 @@ typedef struct Facets {
     Float3 *normals;          ///< [3 * triangle_count] of each triangle's corners
     Float3 bounds[2], centre; ///< in its own frame
     float extent;             ///< m, from the centre
-    float thick;              ///< m, three times its volume over its area: a ball's radius
+    float *bent;              ///< [triangle_count] 1/m, how much its normals turn
+    float round;              ///< m, over the mean of that by area: a ball's radius, and more of what is mostly flat
     uint32_t triangle_count;
     bool passing; ///< freed when no shape uses it any more
     struct Facets *next;
@@ -80,7 +87,7 @@ void tracer_intersect(const Preview *preview, const int *valid, Rays *rays, Hits
 typedef struct Met {
     const PreviewShape *shape[LANES]; ///< NULL: none before the sheets
     float distance[LANES];            ///< to the shape or the sheet
-    Float3 normal[LANES];             ///< the shape's
+    Facing facing[LANES];             ///< the shape's
 } Met;
 
 /// The shapes before the hits of valid lanes.
@@ -98,13 +105,13 @@ SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets
 void facets_drop(Preview *preview);
 void facets_free(Preview *preview);
 
-/// Distance along a ray in the solid's frame, in (near, far), or -1; *normal points outward.
-float facets_intersect(const Facets *facets, Float3 origin, Float3 direction, float near, float far, Float3 *normal);
+/// Distance along a ray in the solid's frame, in (near, far), or -1.
+float facets_intersect(const Facets *facets, Float3 origin, Float3 direction, float near, float far, Facing *facing);
 
 // shape.c
-/// Distance to the shape in (near, far), or -1; *normal points outward.
+/// Distance to the shape in (near, far), or -1.
 float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Float3 direction, float near, float far,
-                      Float3 *normal);
+                      Facing *facing);
 
 /// Centre of a sphere around the shape at the middle of the exposure.
 Float3 shape_centre(const PreviewShape *shape);
