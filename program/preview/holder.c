@@ -1,4 +1,4 @@
-// What sheets hang from, as triangles: clothes-pegs, bulldog clips and curtain rings, and cords and rods.
+// What sheets hang from, as triangles: clothes-pegs, clips of bent steel and curtain rings, and cords and rods.
 //
 // All of it is swept: a section with rounded corners goes along a line, and changes its size on the way. Sizes are those of
 // real things, in mm, times the scale of what is held, in its axes: `along` the edge, `over` the sheet's face, and `out`.
@@ -183,49 +183,66 @@ static void peg_spring(Builder *b, const PreviewHeld *h) {
     }
 }
 
-// ---- bulldog clips
-
-/// From `along` times a width: a plate whose middle is a line of {out, over, half a width}.
-static void plate(Builder *b, const PreviewHeld *h, const float (*rows)[3], int count, float thick) {
-    Station line[MOST];
-    for (int i = 0; i < count; i++)
-        line[i] = (Station){.at = spot(h, 0, rows[i][1], rows[i][0]),
-                            .side = float3_load(h->along),
-                            .half = {maxf(rows[i][2] * unit_of(h), thick), thick}};
-    sweep(b, line, count, 0.9f * thick, EDGED, false);
-}
+// ---- clips
 
 #define CLIP_WIDEST 18.0f ///< mm, half
+#define CLIP_LIP 7.5f     ///< mm, from the edge of what it holds down to the middle of its rolled lips
+#define CLIP_ROLL 1.6f    ///< mm, radius of these
+#define CLIP_BACK 13.0f   ///< mm, from the edge up to its back
 
-static void clip(Builder *b, const PreviewHeld *h) {
-    // from the lip to the back, {out, over, share of the width}, and the handle, whose widths are in mm
-    static const float jaw[][3] = {{-8.6f, 1.9f, 0.98f}, {-8.1f, 1.2f, 1},    {-7.2f, 0.65f, 1},   {-6, 0.6f, 1},
-                                   {-4, 1.1f, 1},        {-1, 2.4f, 1},       {3, 3.9f, 0.97f},    {7, 4.6f, 0.93f},
-                                   {10, 4.3f, 0.91f},    {12.2f, 3.2f, 0.9f}, {13.4f, 1.7f, 0.9f}, {13.7f, 0, 0.9f}},
-                       handle[][3] = {{0, 2.9f, 7},     {3, 4.3f, 6.6f},  {7, 5.2f, 5.6f},
-                                      {12, 5.6f, 4.8f}, {17, 5.8f, 4.6f}, {21, 5.9f, 5},
-                                      {24, 5.9f, 5.4f}, {26, 5.7f, 4.8f}, {27, 5.5f, 3}};
-    enum { JAW = sizeof jaw / sizeof *jaw, HANDLE = sizeof handle / sizeof *handle };
-    const float u = unit_of(h), half = minf(0.5f * h->width / u, CLIP_WIDEST);
-    float rows[2 * JAW - 1][3];
-    for (int i = 0; i < 2 * JAW - 1; i++) {
-        const bool back = i >= JAW;
-        memcpy(rows[i], jaw[back ? 2 * JAW - 2 - i : i], sizeof *rows);
-        rows[i][1] *= back ? -1 : 1;
-        rows[i][2] *= half;
-    }
-    plate(b, h, (const float(*)[3])rows, 2 * JAW - 1, 0.35f * u);
-    for (int side = -1; side <= 1; side += 2) {
-        for (int i = 0; i < HANDLE; i++) {
-            memcpy(rows[i], handle[i], sizeof *rows);
-            rows[i][1] *= (float)side;
-        }
-        plate(b, h, (const float(*)[3])rows, HANDLE, 0.35f * u);
-    }
+/// Half of what is between its lips, and half of its back, in mm.
+static float clip_gap(const PreviewHeld *h) { return 0.5f * h->gape / unit_of(h) + 0.6f; }
+static float clip_back(const PreviewHeld *h) { return maxf(clip_gap(h) + 0.5f, 8.5f); }
 
-    // the rod that it is the end of: a wire, where it hangs
-    const float hangs = h->out[2] > 0.7f ? 0.5f : 1;
-    const Float3 from = spot(h, 0, 0, 12), collar = spot(h, 0, 0, 19),
+/// Its spring: a plate that is bent to a back and two jaws, which end in rolled lips.
+static void clip_body(Builder *b, const PreviewHeld *h) {
+    enum { ROLL = 12, BEND = 6, HALF = ROLL + BEND };
+    const float u = unit_of(h), half = minf(0.5f * h->width / u, CLIP_WIDEST), thick = 0.45f, bend = 3.5f;
+    Station line[2 * HALF];
+    for (int i = 0; i < HALF; i++) {
+        // the roll from within to where it meets the jaw, and the bend from the jaw to the back
+        const bool rolls = i < ROLL;
+        const float turn =
+            PI_F * (rolls ? 2.35f - 1.35f * (float)i / (ROLL - 1) : 0.5f * (float)(i - ROLL) / (BEND - 1));
+        const float radius = rolls ? CLIP_ROLL : bend,
+                    over = rolls ? clip_gap(h) + thick + CLIP_ROLL : clip_back(h) - bend,
+                    out = rolls ? -CLIP_LIP : CLIP_BACK - bend;
+        const float away = over + radius * cosf(turn), up = out + radius * sinf(turn);
+        for (int side = 0; side < 2; side++)
+            line[side ? 2 * HALF - 1 - i : i] = (Station){.at = spot(h, 0, side ? -away : away, up),
+                                                          .side = float3_load(h->along),
+                                                          .half = {half * u, thick * u}};
+    }
+    sweep(b, line, 2 * HALF, 0.9f * thick * u, EDGED, false);
+}
+
+/// One of its two arms, on the side that the sign says: a wire from the lip over the jaw, that goes on beyond the back.
+static void clip_arm(Builder *b, const PreviewHeld *h, float sign) {
+    enum { SIDE = 5, TIP = 9 };
+    const float wide = minf(0.5f * h->width / unit_of(h), CLIP_WIDEST) / CLIP_WIDEST, thick = 1.0f;
+    const float lip = clip_gap(h) + 0.45f + CLIP_ROLL, lean = clip_back(h) + 1.6f, tip = 5 * wide, far = CLIP_BACK + 13;
+    // from the lip to the tip: along, over and out
+    const float way[SIDE][3] = {{13 * wide, lip, -CLIP_LIP},
+                                {9.4f * wide, lip, -CLIP_LIP},
+                                {8.6f * wide, lip + 1.0f, -CLIP_LIP + 1.2f},
+                                {6.6f * wide, lean, CLIP_BACK - 3},
+                                {5.1f * wide, lean + 0.2f, far}};
+    Float3 points[2 * SIDE + TIP];
+    for (int i = 0; i < SIDE; i++) {
+        points[i] = spot(h, way[i][0], sign * way[i][1], way[i][2]);
+        points[2 * SIDE + TIP - 1 - i] = spot(h, -way[i][0], sign * way[i][1], way[i][2]);
+    }
+    for (int i = 0; i < TIP; i++) {
+        const float turn = PI_F * (float)(i + 1) / (TIP + 1);
+        points[SIDE + i] = spot(h, tip * cosf(turn), sign * (lean + 0.2f), far + tip * sinf(turn));
+    }
+    wire(b, points, 2 * SIDE + TIP, thick * unit_of(h), float3_load(h->over), false);
+}
+
+/// The rod that it is the end of: a wire, where it hangs.
+static void clip_rod(Builder *b, const PreviewHeld *h) {
+    const float hangs = h->out[2] > 0.7f ? 0.5f : 1, u = unit_of(h);
+    const Float3 from = spot(h, 0, 0, CLIP_BACK), collar = spot(h, 0, 0, CLIP_BACK + 6),
                  far = float3_mad(from, float3_load(h->out), h->reach);
     wire(b, (const Float3[]){from, far}, 2, 1.9f * hangs * u, float3_load(h->along), false);
     wire(b, (const Float3[]){from, collar}, 2, 3.1f * hangs * u, float3_load(h->along), false);
@@ -246,43 +263,48 @@ static void circle(Builder *b, const PreviewHeld *h, Float3 middle, float radius
 
 // ---- all of them
 
-bool preview_holder_grip(PreviewHolder holder, const PreviewHeld *held, uint32_t count,
+/// A peg hangs a little askew, about its cord.
+static void peg(const PreviewHeld *held, uint32_t number, Builder *prongs, Builder *spring) {
+    PreviewHeld askew = *held;
+    const float turn = 0.07f * (hash_unit(number * 7 + 3) - 0.5f), rise = PEG_CORD * unit_of(held);
+    const Float3 x = float3_load(held->out), y = float3_load(held->along);
+    const Float3 up = float3_mad(float3_scale(x, cosf(turn)), y, -sinf(turn));
+    float3_store(askew.along, float3_mad(float3_scale(y, cosf(turn)), x, sinf(turn)));
+    float3_store(askew.at, float3_mad(float3_load(held->at), float3_sub(x, up), rise));
+    float3_store(askew.out, up);
+    for (int side = -1; side <= 1; side += 2) peg_prong(prongs, &askew, (float)side);
+    peg_spring(spring, &askew);
+}
+
+/// It rests on its rod, and an eye below it holds the cloth.
+static void ring(Builder *b, const PreviewHeld *h) {
+    const Float3 out = float3_load(h->out);
+    const float u = unit_of(h), thick = 1.3f * u, eye = 2.2f * u, hole = h->drop - 0.6f * eye;
+    const float radius = 0.5f * (hole - eye + h->rod);
+    const Float3 rod = float3_mad(float3_load(h->at), out, h->drop);
+    circle(b, h, float3_mad(rod, out, h->rod + thick - radius), radius, thick);
+    circle(b, h, float3_mad(rod, out, -hole), eye, 0.5f * thick);
+}
+
+bool preview_holder_grip(PreviewHolder holder, const PreviewHeld *held, uint32_t number,
                          PreviewHolderPart parts[PREVIEW_HOLDER_PARTS]) {
+    static const Stuff stuff[][PREVIEW_HOLDER_PARTS] = {[PREVIEW_HOLDER_PEG] = {WOOD, STEEL},
+                                                        [PREVIEW_HOLDER_CLIP] = {ZINC, ZINC},
+                                                        [PREVIEW_HOLDER_RING] = {BRASS, BRASS}};
     const Float3 out = float3_load(held->out), along = float3_load(held->along);
-    Builder first, second;
-    for (int k = 0; k < PREVIEW_HOLDER_PARTS; k++) parts[k] = (PreviewHolderPart){.solid = {0}};
-    if (holder == PREVIEW_HOLDER_PEG) {
-        first = begin(&parts[0], WOOD, held->at, out, along);
-        second = begin(&parts[1], STEEL, held->at, along, float3_load(held->over));
-        for (uint32_t i = 0; i < count; i++) {
-            // each hangs a little askew, about its cord
-            PreviewHeld askew = held[i];
-            const float turn = 0.07f * (hash_unit(i * 7 + 3) - 0.5f), rise = PEG_CORD * unit_of(&askew);
-            const Float3 x = float3_load(askew.out), y = float3_load(askew.along);
-            const Float3 up = float3_mad(float3_scale(x, cosf(turn)), y, -sinf(turn));
-            float3_store(askew.along, float3_mad(float3_scale(y, cosf(turn)), x, sinf(turn)));
-            float3_store(askew.at, float3_mad(float3_load(askew.at), float3_sub(x, up), rise));
-            float3_store(askew.out, up);
-            for (int side = -1; side <= 1; side += 2) peg_prong(&first, &askew, (float)side);
-            peg_spring(&second, &askew);
-        }
-        return !first.no_memory && !second.no_memory;
-    }
     float at[3];
     float3_store(at, float3_mad(float3_load(held->at), out, holder == PREVIEW_HOLDER_RING ? held->drop : 0));
-    first = begin(&parts[0], holder == PREVIEW_HOLDER_RING ? BRASS : ZINC, at, out, along);
-    for (uint32_t i = 0; i < count; i++) {
-        const PreviewHeld *h = &held[i];
-        if (holder == PREVIEW_HOLDER_CLIP) clip(&first, h);
-        if (holder != PREVIEW_HOLDER_RING) continue;
-        // it rests on its rod, and an eye below it holds the cloth
-        const float u = unit_of(h), thick = 1.3f * u, eye = 2.2f * u, hole = h->drop - 0.6f * eye;
-        const float radius = 0.5f * (hole - eye + h->rod);
-        const Float3 rod = float3_mad(float3_load(h->at), out, h->drop);
-        circle(&first, h, float3_mad(rod, out, h->rod + thick - radius), radius, thick);
-        circle(&first, h, float3_mad(rod, out, -hole), eye, 0.5f * thick);
+    Builder first = begin(&parts[0], stuff[holder][0], at, out, along),
+            second = begin(&parts[1], stuff[holder][1], at, out, along);
+    parts[0].shape.grips = holder == PREVIEW_HOLDER_PEG;
+    if (holder == PREVIEW_HOLDER_PEG) peg(held, number, &first, &second);
+    if (holder == PREVIEW_HOLDER_RING) ring(&first, held);
+    if (holder == PREVIEW_HOLDER_CLIP) {
+        clip_body(&first, held);
+        for (int side = -1; side <= 1; side += 2) clip_arm(&second, held, (float)side);
+        clip_rod(&second, held);
     }
-    return !first.no_memory;
+    return !first.no_memory && !second.no_memory;
 }
 
 bool preview_holder_line(PreviewHolder holder, const PreviewHeld *held, uint32_t count, PreviewHolderPart *part) {

@@ -38,6 +38,8 @@ typedef struct PreviewShape {
     float temperature;           ///< K; glows by black-body colour above about 800 K
     const PreviewSolid *solid;   ///< of a heightfield or a mesh, in the shape's frame
     const struct Facets *facets; ///< the preview's own; NULL
+    bool grips;                  ///< wood that holds a sheet at its origin, and is singed where that burns
+    float singed;                ///< the preview's own, 0 to 1
 } PreviewShape;
 
 /// What holds a sheet at its edge, with its word in scenes.
@@ -54,6 +56,7 @@ typedef struct PreviewHeld {
     float scale;                     ///< 1: real sizes
     float reach;                     ///< m, how far cords and rods go on
     float rod, drop;                 ///< m, of a ring: radius of its rod, and the distance of `at` from the rod's axis
+    float gape;                      ///< m, of a clip: from the first of the sheets between its jaws to the last
 } PreviewHeld;
 
 /// A drawn part: a shape whose solid is this one, with arrays from malloc. Without triangles: none.
@@ -64,9 +67,9 @@ typedef struct PreviewHolderPart {
 
 enum { PREVIEW_HOLDER_PARTS = 2 };
 
-/// What grips each of several parts of a sheet; it moves with them. Rings are around the origin of their shape, whose x
-/// points away from what hangs from it, and y along the rod: one of them. False without memory.
-bool preview_holder_grip(PreviewHolder holder, const PreviewHeld *held, uint32_t count,
+/// What grips a part of a sheet; it moves with that. Rings are around the origin of their shape, whose x points away from what
+/// hangs from it, and y along the rod. `number` tells one from the other. False without memory.
+bool preview_holder_grip(PreviewHolder holder, const PreviewHeld *held, uint32_t number,
                          PreviewHolderPart parts[PREVIEW_HOLDER_PARTS]);
 
 /// The cord or the rod that they share; `held` are in order along it. False without memory.

@@ -51,7 +51,7 @@ static void grow_rings(const Plank *p, uint32_t seed, float footprint, Grain *gr
     float within;
     const int ring = noise_floor(year, &within);
     const float slope = maxf(fabsf(aside) / maxf(radius, 1e-4f), 0.12f); // of the cut through the rings
-    const float fall = clampf(1.2f * footprint * slope / wide, 0.03f, 0.4f);
+    const float fall = clampf(1.2f * footprint * slope / wide, 0.12f, 0.4f);
     const float late = stepf(0.25f, 1.0f - fall, within) * (1 - stepf(1 - fall, 1.0f, within));
     const float shown = visible(0.0035f / maxf(slope, 0.3f), footprint);
     float strength = 0.35f + 0.65f * hash_unit((uint32_t)ring * 0x27d4eb2fu + seed + (uint32_t)(1024 * p->tone));
@@ -105,7 +105,7 @@ void wood_look(const Plank *plank, float x, float y, uint32_t seed, float footpr
     // planks differ, and the heart of a tree is darker than its outside
     const float blotch = noise2(u * 3.1f, p.across * 14, seed + 5), wear = noise2(x * 5, y * 5, seed + 6);
     const float heart = noise2(u * 0.9f, p.across * 11 + 7 * p.hue, seed + 8);
-    float value = 1.19f + 0.46f * (p.tone - 0.5f) - 0.66f * late + 0.24f * fibre + 0.10f * blotch + 0.05f * wear;
+    float value = 1.19f + 0.46f * (p.tone - 0.5f) - 0.56f * late + 0.30f * fibre + 0.10f * blotch + 0.05f * wear;
     value += 0.10f * heart;
     value *= 1 - 0.64f * pores;
 
@@ -142,6 +142,35 @@ void wood_look(const Plank *plank, float x, float y, uint32_t seed, float footpr
 // ---- things cut from it
 
 #define STAVE 0.072f ///< m, width of the pieces that a board is glued from
+
+#define SINGED 0.014f ///< m, from the origin of what grips a sheet to what of that burns at it
+
+void wood_singe(Preview *preview) {
+    const PreviewScene *scene = &preview->scene;
+    for (uint32_t k = 0; k < preview->shape_count; k++) {
+        PreviewShape *shape = &preview->shapes[k];
+        if (!shape->grips) continue;
+        float burnt = 0, count = 0;
+        for (uint32_t i = 0; i < scene->vertex_count; i++) {
+            const Float3 to = float3_sub(float3_load(scene->positions[i]), float3_load(shape->position));
+            if (float3_dot(to, to) > SINGED * SINGED) continue;
+            burnt += scene->vertices[i].burn;
+            count++;
+        }
+        shape->singed = count > 0 ? stepf(0.1f, 0.6f, burnt / count) : 1; // nothing is left of it
+    }
+}
+
+/// Wood that grips what burns is brown, and black at its tips and edges.
+static void singe(const Place *place, const Table *table, Point *point) {
+    if (!(place->shape->singed > 0)) return;
+    const float rough = noise3(float3_scale(place->p, 140), 377) + 0.5f * noise3(float3_scale(place->p, 420), 378);
+    const float up = place->p.x + 0.009f * rough - 0.010f * (table->polish - 0.4f);
+    const float brown = place->shape->singed * (1 - stepf(0.006f, 0.045f, up)),
+                black = place->shape->singed * (1 - stepf(-0.004f, 0.014f, up));
+    point->albedo = float3_mul(point->albedo, float3_mix(float3(1, 1, 1), float3(0.34f, 0.20f, 0.12f), brown));
+    point->albedo = float3_mix(point->albedo, float3(0.022f, 0.020f, 0.019f), 0.92f * black);
+}
 
 void shape_wood(const Preview *preview, const Place *place, Point *point) {
     const float p[3] = {place->p.x, place->p.y, place->p.z}, n[3] = {place->normal.x, place->normal.y, place->normal.z};
@@ -181,6 +210,7 @@ void shape_wood(const Preview *preview, const Place *place, Point *point) {
     wood_look(&plank, p[axis[0]], p[axis[1]] + 0.83f * p[axis[2]], seed, point->footprint, &table);
     const float end = fabsf(n[axis[0]]); // cut across, it takes up more oil
     point->albedo = float3_mul(point->albedo, float3_scale(table.albedo, 1 - 0.35f * end * end));
+    singe(place, &table, point);
 
     float slope[3] = {0, 0, 0};
     slope[axis[0]] = -table.tilt[0];

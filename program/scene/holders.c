@@ -290,6 +290,44 @@ static bool find_grips(Holding *h, uint32_t index, uint32_t *parent) {
     return good;
 }
 
+#define CLIP_GAPE 0.02f ///< m, the most from one sheet in a clip to the next
+
+/// Whether a clip that has the sheets of `a` between its jaws can have those of `b`, too: they lie before or behind them.
+static bool share_clip(const Scene *scene, const Grip *a, const Grip *b) {
+    const ScenePin *one = &scene->pins[a->pin], *other = &scene->pins[b->pin];
+    const bool moves = one->key_count || other->key_count;
+    if (one->holder != PREVIEW_HOLDER_CLIP || other->holder != PREVIEW_HOLDER_CLIP || moves) return false;
+
+    const Float3 over = float3_load(a->held.over), way = float3_sub(float3_load(b->held.at), float3_load(a->held.at));
+    const float before = float3_dot(way, over), aside = float3_length(float3_mad(way, over, -before));
+    return fabsf(float3_dot(over, float3_load(b->held.over))) > 0.9f &&
+           float3_dot(float3_load(a->held.out), float3_load(b->held.out)) > 0.8f &&
+           fabsf(before) < 0.5f * a->held.gape + CLIP_GAPE * a->held.scale && aside < 0.5f * a->held.width;
+}
+
+/// Makes one clip of those whose sheets lie one before the other.
+static void join_clips(Holding *h) {
+    for (uint32_t i = 0; i < h->grip_count; i++)
+        for (uint32_t k = i + 1; k < h->grip_count; k++) {
+            PreviewHeld *held = &h->grips[i].held;
+            if (!share_clip(h->scene, &h->grips[i], &h->grips[k])) continue;
+            const PreviewHeld *more = &h->grips[k].held;
+            const Float3 over = float3_load(held->over), at = float3_load(held->at);
+            const float before = float3_dot(float3_sub(float3_load(more->at), at), over), half = 0.5f * held->gape;
+            const float low = fminf(-half, before), high = fmaxf(half, before);
+            const Float3 out = float3_add(float3_load(held->out), float3_load(more->out));
+            const Float3 along = float3_unit(float3_cross(out, over));
+            float3_store(held->at, float3_mad(at, over, 0.5f * (low + high)));
+            float3_store(held->out, float3_cross(over, along));
+            float3_store(held->along,
+                         float3_dot(along, float3_load(held->along)) < 0 ? float3_scale(along, -1) : along);
+            held->width = fmaxf(held->width, more->width);
+            held->gape = high - low;
+            memmove(&h->grips[k], &h->grips[k + 1], (--h->grip_count - k) * sizeof *h->grips);
+            k = i; // sheets that were too far from it may be near enough now
+        }
+}
+
 static bool add_part(Holding *h, const PreviewHolderPart *part, const Grip *grip, bool still) {
     SceneAssets *assets = h->assets;
     const bool ring = h->scene->pins[grip->pin].holder == PREVIEW_HOLDER_RING;
@@ -349,22 +387,6 @@ static bool add_line(Holding *h, Grip *grip, PreviewHeld *held) {
     return add_part(h, &part, grip, pin->holder == PREVIEW_HOLDER_RING) && good;
 }
 
-/// Adds what grips the parts from `first` on that are of one pin.
-static bool add_grips(Holding *h, uint32_t first, uint32_t count, PreviewHeld *held) {
-    const PreviewHolder holder = (PreviewHolder)h->scene->pins[h->grips[first].pin].holder;
-    const uint32_t together = holder == PREVIEW_HOLDER_PEG ? count : 1; // rings swing, each on its own
-    bool good = true;
-    for (uint32_t i = 0; i < count; i += together) {
-        PreviewHolderPart parts[PREVIEW_HOLDER_PARTS];
-        for (uint32_t k = 0; k < together; k++) held[k] = h->grips[first + i + k].held;
-        good = preview_holder_grip(holder, held, together, parts) && good;
-        for (int k = 0; k < PREVIEW_HOLDER_PARTS; k++)
-            good = add_part(h, &parts[k], &h->grips[first + i], false) && good;
-    }
-
-    return good;
-}
-
 bool holders_make(const Scene *scene, SceneAssets *assets) {
     Holding h = {.scene = scene, .assets = assets};
     uint32_t most = 0;
@@ -376,13 +398,15 @@ bool holders_make(const Scene *scene, SceneAssets *assets) {
     for (uint32_t i = 0; i < scene->pin_count && good; i++)
         if (scene->pins[i].holder) good = find_grips(&h, i, parent);
 
+    join_clips(&h);
     PreviewHeld *held = malloc((h.grip_count + (size_t)1) * sizeof *held);
     good = good && held;
-    for (uint32_t i = 0, next; i < h.grip_count && good; i = next) {
-        for (next = i + 1; next < h.grip_count && h.grips[next].pin == h.grips[i].pin;) next++;
-        good = add_grips(&h, i, next - i, held);
+    for (uint32_t i = 0; i < h.grip_count && good; i++) {
+        PreviewHolderPart parts[PREVIEW_HOLDER_PARTS];
+        const PreviewHolder holder = (PreviewHolder)scene->pins[h.grips[i].pin].holder;
+        good = preview_holder_grip(holder, &h.grips[i].held, i, parts);
+        for (int k = 0; k < PREVIEW_HOLDER_PARTS; k++) good = add_part(&h, &parts[k], &h.grips[i], false) && good;
     }
-
     for (uint32_t i = 0; i < h.grip_count && good; i++) good = add_line(&h, &h.grips[i], held);
     free(held);
     free(parent);

@@ -257,7 +257,7 @@ static const SchemaRow pin_rows[] = {
     {"holder", ROW_ENUM, DIM_NONE, AT(ScenePin, holder), .names = holder_names,
      .doc =
          "what holds the sheet's edge in the preview, at each part of it that the pin holds; nothing else depends on "
-         "it. `none`; `peg`, clothes-pegs on a cord; `clip`, bulldog clips, each at the end of a rod; `ring`, curtain "
+         "it. `none`; `peg`, clothes-pegs on a cord; `clip`, clips of bent steel, each at the end of a rod, and one for sheets that lie one before the other; `ring`, curtain "
          "rings on the nearest `capsule` within 6 cm, even an invisible one, or else on a rod of brass. Not with "
          "`motion`"},
 };

@@ -12,16 +12,20 @@ typedef struct Hung {
     uint32_t count;
 } Hung;
 
-/// A sheet of 0.2 x 0.3 m that stands upright, its upper edge at z = 0.15, and pins.
-static Hung hang(const char *more) {
-    char text[2000];
-    snprintf(text, sizeof text,
-             "sheets: [{grid: {size: [0.2, 0.3], cells: [40, 60], jitter: 0}, rotate: [90, 0, 0]}]\n%s\n", more);
+static Hung hang_text(const char *text) {
     Hung hung = {.scene = good_scene(text, NULL, 0)};
     SceneMessages messages = {0};
     assert_int_equal(scene_load(hung.scene, &hung.assets, &messages), SINGE_OK);
     scene_messages_free(&messages);
     return hung;
+}
+
+/// A sheet of 0.2 x 0.3 m that stands upright, its upper edge at z = 0.15, and pins.
+static Hung hang(const char *more) {
+    char text[2000];
+    snprintf(text, sizeof text,
+             "sheets: [{grid: {size: [0.2, 0.3], cells: [40, 60], jitter: 0}, rotate: [90, 0, 0]}]\n%s\n", more);
+    return hang_text(text);
 }
 
 static void gather(Hung *hung, double time) {
@@ -79,22 +83,25 @@ TEST(nothing_holds_what_has_no_holder) {
 TEST(pegs_stand_on_the_edge_and_follow_their_pin) {
     Hung hung = hang(PIN ", holder: peg, path: [{time: 0, position: [0, 0, 1]}, {time: 1, position: [0.3, 0, 1]}]}]");
     gather(&hung, 0);
-    assert_int_equal(hung.count, 3);
+    assert_int_equal(hung.count, 5); // of each peg the wood and the spring
     assert_int_equal(hung.shapes[0].surface, PREVIEW_SURFACE_WOOD);
-    assert_int_equal(hung.shapes[2].surface, PREVIEW_SURFACE_CORD);
+    assert_int_equal(hung.shapes[2].surface, PREVIEW_SURFACE_WOOD);
+    assert_int_equal(hung.shapes[4].surface, PREVIEW_SURFACE_CORD);
 
     Float3 low, high, first;
+    measure(&hung.shapes[2], &low, &high);
+    assert_true(high.x < 0.06f && high.x > 0.05f);
     measure(&hung.shapes[0], &first, &high);
-    assert_true(first.x > -0.06f && high.x < 0.06f && high.x > 0.05f && first.x < -0.05f);
+    assert_true(first.x > -0.06f && first.x < -0.05f);
     assert_true(first.y < -0.005f && high.y > 0.005f);
     assert_true(fabsf(first.z - 0.138f) < 0.002f && fabsf(high.z - 0.21f) < 0.002f);
     measure(&hung.shapes[1], &low, &high);
     assert_true(low.z > 0.15f && high.z < 0.18f);
-    measure(&hung.shapes[2], &low, &high);
+    measure(&hung.shapes[4], &low, &high);
     assert_true(low.x < -0.7f && high.x > 0.7f && low.z > 0.15f);
 
     gather(&hung, 0.5);
-    for (int i = 0; i < 3; i++) assert_true(fabsf(hung.shapes[i].velocity[0] - 0.3f) < 1e-3f);
+    for (int i = 0; i < 5; i++) assert_true(fabsf(hung.shapes[i].velocity[0] - 0.3f) < 1e-3f);
     measure(&hung.shapes[0], &low, &high);
     assert_true(fabsf(low.x - first.x - 0.15f) < 1e-5f && fabsf(low.z - first.z) < 1e-5f);
     let_go(&hung);
@@ -107,13 +114,44 @@ TEST(clips_turn_with_their_pin) {
     Float3 low, high;
 
     gather(&hung, 0);
-    assert_int_equal(hung.count, 1);
+    assert_int_equal(hung.count, 2); // the plate, and its wires
     measure(&hung.shapes[0], &low, &high);
-    assert_true(low.x > 0.088f && low.x < 0.095f && high.x > 0.6f && fabsf(high.z) < 0.025f);
+    assert_true(low.x > 0.088f && low.x < 0.095f && high.x < 0.12f && fabsf(high.z) < 0.025f);
+    measure(&hung.shapes[1], &low, &high);
+    assert_true(high.x > 0.6f && fabsf(high.z) < 0.025f);
     gather(&hung, 1);
-    measure(&hung.shapes[0], &low, &high); // about y: x turns down
+    measure(&hung.shapes[1], &low, &high); // about y: x turns down
     assert_true(low.z < -0.6f && high.z < -0.088f && fabsf(high.x) < 0.025f);
     let_go(&hung);
+}
+
+/// Sheets that lie one before the other share a clip, whose jaws are around all of them; those farther apart have their own.
+TEST(sheets_one_before_the_other_share_a_clip) {
+    for (int apart = 0; apart < 2; apart++) {
+        char text[2000];
+        int used = snprintf(text, sizeof text, "sheets:\n");
+        const double step = apart ? 0.05 : 0.012;
+        for (int i = 0; i < 3; i++)
+            used +=
+                snprintf(text + used, sizeof text - (size_t)used,
+                         "  - {name: s%d, grid: {size: [0.1, 0.15], cells: [20, 30], jitter: 0}, rotate: [90, %d, 0], "
+                         "translate: [0, %g, 0]}\n",
+                         i, 5 * i, i * step);
+        used += snprintf(text + used, sizeof text - (size_t)used, "pins:\n");
+        for (int i = 0; i < 3; i++)
+            used += snprintf(text + used, sizeof text - (size_t)used,
+                             "  - {sheet: s%d, points: [[0, %g, 0.075]], radius: 14 mm, holder: clip}\n", i, i * step);
+        Hung hung = hang_text(text);
+        gather(&hung, 0);
+        assert_int_equal(hung.count, apart ? 6 : 2);
+
+        Float3 low, high;
+        measure(&hung.shapes[0], &low, &high);
+        print_message("%u shapes; a clip is %.1f mm deep\n", hung.count, 1e3 * (double)(high.y - low.y));
+        if (apart) assert_true(high.y < 0.02f && low.y > -0.02f);
+        else assert_true(low.y < -1e-3f && high.y > 0.025f && high.y - low.y < 0.04f);
+        let_go(&hung);
+    }
 }
 
 /// Rings hang from a capsule, and swing about it as their pins move; a rod is drawn where none is seen.
@@ -196,4 +234,36 @@ TEST(pictures_show_what_holds_a_sheet) {
     assert_memory_equal(rgb, other, BYTES);
     let_go(&bare);
     let_go(&hung);
+}
+
+/// Pegs whose sheet has burnt are black where they held it, and wood where it has not.
+TEST(pegs_are_singed_where_their_sheet_burns) {
+    static uint8_t rgb[BYTES];
+    double light[3];
+    for (int k = 0; k < 3; k++) { // fresh, burnt, and nothing left of it
+        PreviewDef def;
+        Preview *preview = NULL;
+        PreviewShape shapes[16];
+        Hung hung = hang("pins: [{points: [[0, 0, 0.15]], radius: 8 mm, holder: peg}]");
+        Float4 q;
+        quad_make(&q, 0.004f, k == 2 ? -0.5f : 0.15f);
+        for (int i = 0; i < 4; i++) q.burn[i] = k == 1;
+        scene_preview(hung.scene, &hung.assets, &def);
+        def.width = W;
+        def.height = H;
+        def.samples = 4;
+        def.camera =
+            (PreviewCamera){.eye = {0, -0.2f, 0.144f}, .target = {0, 0, 0.144f}, .up = {0, 0, 1}, .fov = 0.05f};
+        def.shapes = shapes;
+        def.shape_count = scene_shapes(hung.scene, &hung.assets, 0, shapes, 16);
+        assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+        assert_int_equal(preview_draw(preview, &q.surface, 0, rgb, NULL), SINGE_OK);
+        preview_destroy(preview);
+        light[k] = 0;
+        for (int y = H / 2; y < H * 3 / 4; y++)
+            for (int x = W * 2 / 5; x < W * 3 / 5; x++) light[k] += rgb[3 * (y * W + x)] / (0.25 * H * 0.2 * W);
+        let_go(&hung);
+    }
+    print_message("red of the jaws: %.0f, burnt %.0f, nothing left %.0f\n", light[0], light[1], light[2]);
+    assert_true(light[0] > 60 && light[1] < 0.5 * light[0] && light[2] < 0.5 * light[0]);
 }
