@@ -43,7 +43,7 @@ void shape_metal(const Place *place, Point *point) {
         // it cools upwards, from what heats it
         const float height = shape->facets ? (place->p.z - shape->facets->centre.z) / shape->facets->extent : -1;
         const float grown = shape->temperature - 330 * clampf(height + 0.33f, 0, 1) + 14 * worn + 5 * grime;
-        shine = float3_mul(shine, float3_mix(float3(1, 1, 1), temper_colour(grown), 0.6f)); // it is worn
+        shine = float3_mul(shine, float3_mix(float3(1, 1, 1), temper_colour(grown), 0.7f)); // it is worn
     }
 
     point->shine =
@@ -72,9 +72,9 @@ void shape_metal(const Place *place, Point *point) {
 // cooler towards the end by which it is held, that of its +z. Scale, which is thin and cooler than the metal, lies where
 // that is cool, and has come off elsewhere but for a few flakes.
 
-#define SHAPE_GAIN 0.165f
-#define SHAPE_MIDDLE 20.0f  ///< K, by which the middle is drawn hotter: the film shows what is bright paler
-#define SHAPE_LIMB 240.0f   ///< K, by which the limb is cooler than the middle
+#define SHAPE_GAIN 0.30f
+#define SHAPE_MIDDLE 80.0f  ///< K, by which the middle is drawn hotter: the film shows what is bright paler
+#define SHAPE_LIMB 330.0f   ///< K, by which the limb is cooler than the middle
 #define SHAPE_BELOW 150.0f  ///< K, by which what faces down is cooler than the middle
 #define SHAPE_HELD 480.0f   ///< K, by which a rod is cooler where it is held
 #define SHAPE_NECK 130.0f   ///< K, by which all of a rod is cooler than what is as hot
