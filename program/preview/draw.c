@@ -210,6 +210,7 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     draw_all(preview, glints_draw);
     draw_all(preview, block_draw);
     draw_all(preview, seen_smooth);
+    gaps_fill(preview);
     draw_all(preview, seen_finish);
     draw_all(preview, soften);
     if (preview->def.stop && preview->def.stop())

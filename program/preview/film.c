@@ -23,7 +23,7 @@ static void blur_line(const Float3 *in, Float3 *out, int length, size_t step, co
     }
 }
 
-static void bloom_blur(Float3 *image, Float3 *scratch, int w, int h, float sigma) {
+void film_blur(Float3 *image, Float3 *scratch, int w, int h, float sigma) {
     float weight[RADIUS_LIMIT + 1], sum = 0;
     int radius = (int)ceilf(3 * sigma);
     radius = radius < 1 ? 1 : radius > RADIUS_LIMIT ? RADIUS_LIMIT : radius;
@@ -82,9 +82,9 @@ void bloom_apply(Preview *preview) {
     if (!any) return;
 
     float near = 0.005f * (float)height / SHRINK, far = 0.022f * (float)height / SHRINK;
-    bloom_blur(glow, scratch, w, h, maxf(near, 0.4f));
+    film_blur(glow, scratch, w, h, maxf(near, 0.4f));
     bloom_add(preview, glow, w, h, 0.14f);
-    bloom_blur(glow, scratch, w, h, maxf(far, 0.8f));
+    film_blur(glow, scratch, w, h, maxf(far, 0.8f));
     bloom_add(preview, glow, w, h, 0.10f);
 }
 

@@ -56,7 +56,7 @@ struct Preview {
     bool table_known;
     struct Veil *veil; ///< [height * width] sparks and wisps
     uint8_t *mask;     ///< [mask_size] for each block, whether a sheet or a shape may touch it
-    Float3 *glow[2];   ///< [quarter height * quarter width] for the bloom
+    Float3 *glow[2];   ///< [quarter height * quarter width] for gaps, then for the bloom
     PreviewScene scene;
     Fire fire;
     Stain stain;
@@ -129,6 +129,15 @@ bool glints_may_be(const PreviewShape *shape, float footprint);
 /// Finds how far the sheets that wood grips have burnt. The surface has been loaded.
 void wood_singe(Preview *preview);
 
+// gaps.c
+/// Finds where pictures of char surround what lies behind it. The light has been written.
+void gaps_fill(Preview *preview);
+
+/// How deep in a hole of char a pixel's point lies, 0 to 1.
+float gap_at(const Preview *preview, int x, int y, const Lit *lit);
+
 // film.c
+/// Smooths a picture by a Gaussian of `sigma` pixels.
+void film_blur(Float3 *image, Float3 *scratch, int w, int h, float sigma);
 void bloom_apply(Preview *preview);
 void tonemap_write(const Preview *preview, uint8_t *rgb);

@@ -54,6 +54,7 @@ typedef struct Lit {
     float distance;          ///< m, the same; negative: the pixel shows several faces, the first at minus that
     float noise;             ///< variance of the mean of the samples, as l / (1 + l)
     float blur;              ///< pixels over which lens and shutter spread what is seen here
+    float burnt;             ///< share of the samples that is char
     int32_t sheet;
 } Lit;
 

@@ -7,13 +7,18 @@
 
 #include "preview/block.h"
 
+/// Of each kind of light, the share that what lies deep in a gap does not get.
+static const float gap_hides[LIT_KINDS] = {[LIT_SUN] = 0.6f, [LIT_SKY] = 0.6f, [LIT_LAMPS] = 0.78f};
+
 enum { EDGE_REACH = 3 }; ///< pixels around one that shows several faces, in which it looks for each alone
 
 void seen_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples, bool mixed) {
     const Point *point = &block->point[lane];
     Lit lit = {.normal = point->geometric, .distance = point->distance, .blur = block->spread, .sheet = point->sheet};
+    const LayerSum *sum = &block->layer[lane];
+    lit.burnt =
+        stepf(0.15f, 0.45f, sum->burn / maxf((float)sum->hits, 1)) * (float)sum->hits / maxf((float)sum->samples, 1);
     if (mixed) {
-        const LayerSum *sum = &block->layer[lane];
         lit.distance = -sum->depth / float3_dot(block->direction[lane], preview->camera.forward);
         lit.sheet = sum->sheet;
     }
@@ -95,12 +100,17 @@ static Float3 light_of_faces(const Preview *preview, const Lit *lit, int x, int 
             }
         }
 
+    // of two faces the one behind lies in the gap
+    const float first = gap_at(preview, x, y, lit);
+    const float gap[FACES] = {first, gap_at(preview, x, y, &(Lit){.distance = INFINITY}) - first};
     Float3 colour = {0, 0, 0};
     for (int k = 0; k < LIT_KINDS; k++) {
         const Float3 light[FACES] = {float3_sub(lit->light[k], lit->other[k]), lit->other[k]};
         const float own = lit->seen[k] < 0 ? 1 : lit->seen[k];
         for (int face = 0; face < FACES; face++)
-            colour = float3_mad(colour, light[face], total[face][k] > 0 ? sum[face][k] / total[face][k] : own);
+            colour =
+                float3_mad(colour, light[face],
+                           (total[face][k] > 0 ? sum[face][k] / total[face][k] : own) * (1 - gap_hides[k] * gap[face]));
     }
     return colour;
 }
@@ -118,7 +128,9 @@ void seen_finish(Preview *preview, Block *block) {
         if (lit->distance < 0) colour = float3_add(colour, light_of_faces(preview, lit, x, y));
         else {
             smooth_line(lit, &preview->seen[pixel], sizeof *preview->seen, w, y, h - 1 - y, reach, seen);
-            for (int k = 0; k < LIT_KINDS; k++) colour = float3_mad(colour, lit->light[k], seen[k] < 0 ? 1 : seen[k]);
+            const float gap = gap_at(preview, x, y, lit);
+            for (int k = 0; k < LIT_KINDS; k++)
+                colour = float3_mad(colour, lit->light[k], (seen[k] < 0 ? 1 : seen[k]) * (1 - gap_hides[k] * gap));
         }
         preview->picture[pixel] = colour;
 

@@ -210,7 +210,8 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
     // how many threads it is from there to where cloth ends: the border of the piece, from which much has crumbled, and holes
     const float damage = burnt > 0 ? cloth_damage(at, wide) : -1;
     const float worn = WORN - 0.4f * stepf(0.45f, 0.9f, burn);
-    const float bite = burnt * FRAY * (1 - 0.75f * hot) * maxf(0.6f + 1.5f * damage, 0.1f);
+    const float nibble = 5.5f * oblique(at, 28, wide, 156) + 3.2f * oblique(at, 9, wide, 157);
+    const float bite = burnt * (FRAY * (1 - 0.65f * hot) * maxf(0.6f + 1.5f * damage, 0.1f) + maxf(3 + nibble, 0));
     const float left = minf((worn - damage) * HOLE_SLOPE, edge < CLOTH_EDGE ? edge - bite : INFINITY);
     cloth->left = left;
     const float loose = burnt * (1 - stepf(-REACH, 4, left));
@@ -348,7 +349,7 @@ float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth
     point->albedo = float3_mix(point->albedo, float3(0.060f, 0.030f, 0.015f), 0.7f * brown);
     point->albedo = float3_scale(point->albedo, 1 + charred * clampf(0.5f * up, -0.5f, 0.6f));
     point->albedo = float3_mix(point->albedo, float3(0.155f, 0.150f, 0.143f), 0.6f * ash);
-    point->albedo = float3_mix(point->albedo, float3(0.190f, 0.182f, 0.170f), 0.7f * torn);
+    point->albedo = float3_mix(point->albedo, float3(0.190f, 0.182f, 0.170f), 0.3f * torn);
     Float3 lean = float3_mad(float3_scale(point->across[0], relief[0]), point->across[1], relief[1]);
     Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, -0.36f * charred), point->normal);
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
@@ -368,7 +369,7 @@ static float cloth_line(float distance, float width, float wide) {
 void cloth_glow(const Preview *preview, const Weave *weave, const PaperState *state, const Cloth *cloth, float deep,
                 Point *point) {
     const float line = stepf(CHAR_LEAF, EMBER_BURN, state->burn) * ember_activity(state->burn_rate);
-    const float alone = maxf(ember_activity(state->glowing), line);
+    const float alone = maxf(ember_activity(state->glowing), 0.4f * line);
     const float starved = ember_starved(state->starved, state->burn, alone);
     const float mean = ember_temperature(state->temperature), wide = point->footprint / weave->pitch;
     point->glow = float3(0, 0, 0);
@@ -381,11 +382,14 @@ void cloth_glow(const Preview *preview, const Weave *weave, const PaperState *st
     const float alive = 0.75f * oblique(far, 90, wide, 201) + 0.5f * oblique(near, 34, wide, 202);
     const float life = stepf(-0.05f, 0.5f, alive + 0.2f * oblique(near, 12, wide, 203));
 
-    const float rim = cloth_line(cloth->left, RIM_GLOW * (0.5f + life), wide);
+    // a rim glows from a point to two millimetres wide, dull red but for few spots, with gaps
+    const float uneven = 0.8f * oblique(near, 15, wide, 208) + 0.6f * oblique(near, 6, wide, 209);
+    const float spot = stepf(0.3f, 0.75f, uneven + 0.35f * life);
+    const float rim = cloth_line(cloth->left, RIM_GLOW * clampf(0.25f + 0.7f * life + 1.7f * uneven, 0.04f, 2), wide);
     const float bow = 5 * oblique(cloth->at, 9, wide, 207), at[2] = {cloth->at[0] + bow - 0.8f * t, cloth->at[1] - bow};
     const float creeping = life > 0 ? cloth_line(32 * fabsf(oblique(at, 80, wide, 205)), 0.9f, wide) : 0;
     const float hot = 1.5f * life * maxf(rim, 0.22f * creeping);
-    const float temperature = minf(mean, RIM_HOT) + 140 * (life - 0.6f);
+    const float temperature = minf(mean, RIM_HOT) - 190 + 110 * life + 170 * spot;
     Float3 bright = blackbody_glow(preview->blackbody, temperature);
     Float3 dull = blackbody_glow(preview->blackbody, temperature - 130);
     Float3 glow = float3_scale(bright, hot * (alone + 0.3f * starved));
