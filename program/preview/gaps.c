@@ -43,8 +43,9 @@ void gaps_fill(Preview *preview) {
 static float gap_side(const Preview *preview, float x, float y, float distance) {
     const int w = quarter(preview->def.width), h = quarter(preview->def.height);
     float fx, fy;
-    const int i = noise_floor(x / 4 - 0.5f, &fx), j = noise_floor(y / 4 - 0.5f, &fy);
-    if (i < 0 || j < 0 || i >= w - 1 || j >= h - 1) return 0;
+    const int i = noise_floor(clampf(x / 4 - 0.5f, 0, (float)(w - 1) - 0.01f), &fx);
+    const int j = noise_floor(clampf(y / 4 - 0.5f, 0, (float)(h - 1) - 0.01f), &fy);
+    if (i < 0 || j < 0 || i + 1 >= w || j + 1 >= h) return 0; // a picture of one quarter pixel
     const Float3 *at = preview->glow[0] + j * w + i;
     const Float3 char_at = float3_mix(float3_mix(at[0], at[1], fx), float3_mix(at[w], at[w + 1], fx), fy);
     if (char_at.x < 0.02f) return 0;

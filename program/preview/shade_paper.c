@@ -18,6 +18,7 @@ typedef struct Bent {
     Float3 position;               ///< for noise
     float burn, temperature, peak; ///< b', T' and P'
     float coarse, medium, fine;    ///< the noise that perturbed them, [-1, 1]
+    float bays;                    ///< wider noise, where it is burnt
 } Bent;
 
 /// Noise whose features are `millimetres` wide, 0 where a pixel no longer resolves it.
@@ -56,6 +57,7 @@ static Bent shade_paper_bend(const PaperState *state, float footprint) {
     bent.coarse = paper_noise(bent.position, 4.0f, footprint, 1);
     bent.medium = paper_noise(bent.position, 1.3f, footprint, 2);
     bent.fine = paper_noise(bent.position, 0.45f, footprint, 3);
+    if (state->burn > PAPER_WHOLE) bent.bays = paper_noise(bent.position, 9.5f, footprint, 4);
     float delta = 1.5e-3f * bent.coarse + 0.7e-3f * bent.medium + 0.22e-3f * bent.fine;
     delta *= clampf(state->spacing / 1.8e-3f, 0.3f, 1);
     float slope = minf(state->gradient, 400.0f);
@@ -98,6 +100,8 @@ static void tilt(Float3 position, float millimetres, float height, bool folded, 
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
 }
 
+#define BAY 0.0055f ///< m, depth of the deepest bay of a burnt border
+
 // ---- ash
 
 // Ash: the remaining leaf of mineral fibres, thin enough to transmit light. It is sooty at first and pales within about
@@ -116,9 +120,16 @@ static float border_bite(float burn, const Bent *bent) {
     return stepf(PAPER_WHOLE, 0.65f, burn) * clampf(bite, 0, 0.85f);
 }
 
+/// How much farther it has crumbled, m: in bays, which are ragged themselves.
+static float border_bay(const PaperState *state, const Bent *bent) {
+    const float bay = bent->bays + 0.55f * bent->coarse + 0.3f * bent->medium + 0.15f * bent->fine - 0.1f;
+    return BAY * stepf(PAPER_WHOLE, 0.6f, state->burn) * clampf(bay, 0, 1);
+}
+
 /// The distance to the ragged border, m.
 static float border_distance(const PaperState *state, const Bent *bent) {
-    return maxf(state->edge - border_bite(state->burn, bent) * minf(state->spacing, 2.5e-3f), 0);
+    const float bite = border_bite(state->burn, bent) * minf(state->spacing, 2.5e-3f);
+    return maxf(state->edge - maxf(bite, border_bay(state, bent)), 0);
 }
 
 /// How near a border of a piece is: 1 on it, 0 `width` m away and in triangles that do not reach it, uneven.
@@ -216,9 +227,9 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 #define LEAF_DULL 1.7f
 #define LEAF_SCATTERS 0.4f ///< how much coals differ where little is alive
 #define LEAF_COOLER 150.0f ///< K, how much cooler it is between coals
-#define LEAF_BRIGHT 1.4f
+#define LEAF_BRIGHT 1.2f
 #define LEAF_DIM 150.0f      ///< K, how much cooler a coal's sides are
-#define LEAF_CORE 130.0f     ///< K, how much hotter its core is
+#define LEAF_CORE 60.0f      ///< K, how much hotter its core is
 #define STARVED_COOLER 90.0f ///< K, how much cooler threads and border of char below a flame are
 #define STARVED_BORDER 0.42f ///< the burn value of its line
 
@@ -253,7 +264,7 @@ static Float3 ember_line(const Preview *preview, const PaperState *state, const 
     if (activity < 0.02f || state->temperature < BLACKBODY_MIN) return float3(0, 0, 0);
     float life = line_life(preview, bent) * minf(air, 1.2f);
     float distance = (bent->burn - EMBER_BURN) / maxf(state->gradient, 20.0f);
-    float width = EMBER_WIDTH * (0.42f + 0.66f * life), x = fabsf(distance) / width;
+    float width = EMBER_WIDTH * (0.22f + 0.9f * life * life), x = fabsf(distance) / width;
     float profile = distance > 0 ? 0.72f * expf(-0.5f * x * x) + 0.28f * expf(-0.8f * x) : expf(-x * x);
     float temperature = ember_temperature(state->temperature) + 210 * (life - 0.6f) + 60 * bent->fine;
     if (distance > 0) temperature -= 45 * minf(x, 3);
@@ -294,14 +305,14 @@ static float leaf_alive(const Preview *preview, const PaperState *state, const B
     Float3 p = float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 0.5e-3f);
     const float stretch = noise3(float3_mad(float3(0.05f * t, -0.08f * t, 0.11f * t), p, 1 / 17e-3f), 61);
     const float rim = stepf(-0.3f, 0.5f, stretch + 0.9f * patch);
-    const float behind = rim * expf(-border / (1 + 4 * rim));
+    const float behind = rim * expf(-border / maxf(0.4f + 2.4f * rim * (0.8f + 0.7f * patch), 0.3f));
 
     const float creeps = stepf(-0.1f, 0.5f, 0.35f * patch - stretch);
     if (creeps <= 0) return behind;
     const float phase = 1.9f * noise3(float3_mad(float3(0, 0.04f * t, 0), p, 1 / 24e-3f), 63) +
                         0.6f * noise3(float3_scale(p, 1 / 7e-3f), 64) + 0.11f * t;
     const float since = phase - floorf(phase);
-    return maxf(behind, 0.8f * creeps * stepf(0, 0.16f, since) * expf(-2.6f * since));
+    return maxf(behind, creeps * stepf(0, 0.05f, since) * (0.75f * expf(-14 * since) + 0.25f * expf(-3 * since)));
 }
 
 /// A leaf of char that glows away, at its own temperature, which the simulation spreads over a cell or two. Where much of it
@@ -323,7 +334,7 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     const float inward = (bent->burn - STARVED_BORDER) / (maxf(state->gradient, 20) * 2 * EMBER_WIDTH);
     alive = maxf(alive, LEAF_FRONT * starved * expf(-inward * inward));
 
-    const float coals = 0.45f * patch + 0.42f * bent->medium + 0.55f * fibre + 0.35f * bent->fine;
+    const float coals = 0.45f * patch + 0.42f * bent->medium + 0.45f * fibre + 0.2f * bent->fine;
     const float gathers =
         mixf(LEAF_SCATTERS, 1, stepf(0.05f, 0.5f, alive)); // no coals by themselves: they were glitter
     const float lit = clampf(LEAF_SPREAD * alive + gathers * coals - 0.56f, 0, 1),
@@ -351,7 +362,9 @@ static void ember_shade(const Preview *preview, const PaperState *state, const B
 
 /// Burnt borders crumble, and ash wears.
 static bool is_hole(const PaperState *state, const Bent *bent, float footprint) {
-    if (state->burn > PAPER_WHOLE && state->rim > 1 - border_bite(state->burn, bent)) return true;
+    if (state->burn > PAPER_WHOLE &&
+        (state->rim > 1 - border_bite(state->burn, bent) || state->edge < border_bay(state, bent)))
+        return true;
     return bent->burn > 0.7f && ash_amount(bent) * stepf(0.72f, 0.95f, ash_lace(bent, footprint)) > 0.5f;
 }
 
@@ -447,6 +460,8 @@ static void coat(float coating, const Bent *bent, Point *point) {
 /// of ink's minerals.
 #define DYE_LEFT 0.12f
 
+#define SHEEN 0.09f ///< of char, where it turns away from the eye
+
 /// Char: browner where it is thin, bluer where complete; print (1) remains readable on it, as a dull grey.
 static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) {
     float black = stepf(0.12f, 0.46f, bent->burn);
@@ -465,8 +480,16 @@ static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) 
     point->gloss = 0.06f * black * tar;
     point->shininess = 14;
     point->mirror = 0.45f * black * tar;
-    tilt(bent->position, 5.2f, 0.40f * black, true, 32, point);
-    tilt(bent->position, 1.6f, 0.10f * black, false, 31, point);
+    Float3 cockled = float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 0.7e-3f);
+    tilt(cockled, 13, 0.30f * black, true, 33, point);
+    tilt(cockled, 5.2f, 0.45f * black, true, 32, point);
+    tilt(bent->position, 1.6f, 0.15f * black, true, 31, point);
+
+    // aslant it is grey by whatever light: its skin is smooth
+    const float away = 1 - maxf(float3_dot(point->normal, point->view), 0);
+    const float sheen =
+        SHEEN * black * away * away * away * away * (1 - 0.5f * craze) * maxf(0.8f + 0.5f * bent->coarse, 0.2f);
+    point->albedo = float3_mad(point->albedo, float3(0.96f, 0.98f, 1.0f), sheen);
 }
 
 /// How brown paper is: by heat, up to 0.76, and by what has burnt. Near a front, where the peak temperature falls off within
