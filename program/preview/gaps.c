@@ -8,9 +8,9 @@
 
 #include <string.h>
 
-#define GAP_WIDTH 0.010f ///< m, at the middle of what burns
-#define GAP_NEAR 0.003f  ///< m, from char to what lies so far behind that it is no part of it
-#define GAP_FAR 0.02f    ///< and what is as dark as any
+#define GAP_WIDTH 0.007f ///< m, at the middle of what burns
+#define GAP_NEAR 0.008f  ///< m, from char to what lies so far behind that it is no part of it
+#define GAP_FAR 0.03f    ///< and what is as dark as any
 
 static int quarter(int pixels) { return (pixels + 3) / 4; }
 
@@ -26,7 +26,8 @@ void gaps_fill(Preview *preview) {
     const int width = preview->def.width, height = preview->def.height, w = quarter(width), h = quarter(height);
     Float3 *map = preview->glow[0];
     memset(map, 0, (size_t)w * (size_t)h * sizeof *map);
-    bool any = false;
+    int *box = preview->gaps;
+    box[0] = width, box[1] = height, box[2] = box[3] = -1;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             const Lit *lit = &preview->lit[(size_t)y * (size_t)width + (size_t)x];
@@ -34,40 +35,45 @@ void gaps_fill(Preview *preview) {
             Float3 *sum = &map[(y / 4) * w + x / 4];
             sum->x += lit->burnt / 16;
             sum->y += lit->burnt / 16 * fabsf(lit->distance);
-            any = true;
+            box[0] = x < box[0] ? x : box[0], box[1] = y < box[1] ? y : box[1];
+            box[2] = x > box[2] ? x : box[2], box[3] = y;
         }
-    if (any) film_blur(map, preview->glow[1], w, h, gap_width(preview));
+    if (box[3] >= 0) film_blur(map, preview->glow[1], w, h, gap_width(preview));
 }
 
-/// How much char stands before a point of that distance, as seen so far aside.
-static float gap_side(const Preview *preview, float x, float y, float distance) {
+/// Char as seen at a place of the picture: its share, and that times its distance.
+static Float3 gap_read(const Preview *preview, float x, float y) {
     const int w = quarter(preview->def.width), h = quarter(preview->def.height);
     float fx, fy;
     const int i = noise_floor(clampf(x / 4 - 0.5f, 0, (float)(w - 1) - 0.01f), &fx);
     const int j = noise_floor(clampf(y / 4 - 0.5f, 0, (float)(h - 1) - 0.01f), &fy);
-    if (i < 0 || j < 0 || i + 1 >= w || j + 1 >= h) return 0; // a picture of one quarter pixel
+    if (i < 0 || j < 0 || i + 1 >= w || j + 1 >= h) return float3(0, 0, 0); // a picture of one quarter pixel
     const Float3 *at = preview->glow[0] + j * w + i;
-    const Float3 char_at = float3_mix(float3_mix(at[0], at[1], fx), float3_mix(at[w], at[w + 1], fx), fy);
-    if (char_at.x < 0.02f) return 0;
-    return char_at.x * stepf(GAP_NEAR, GAP_FAR, distance - char_at.y / char_at.x);
+    return float3_mix(float3_mix(at[0], at[1], fx), float3_mix(at[w], at[w + 1], fx), fy);
 }
 
 float gap_at(const Preview *preview, int x, int y, const Lit *lit) {
-    enum { PAIRS = 4, RINGS = 3 };
-    // what cloth hangs on is sooty where it has burnt, however near
-    const float distance = fabsf(lit->distance) + (lit->sheet < 0 ? 0.8f * GAP_FAR : 0);
+    enum { PAIRS = 4, RINGS = 4 };
     static const float direction[PAIRS][2] = {{0.92f, 0.38f}, {0.38f, 0.92f}, {-0.38f, 0.92f}, {-0.92f, 0.38f}};
-    const float reach = 4 * 1.7f * gap_width(preview);
-    float sum = 0;
+    // what cloth hangs on is sooty where it has burnt, however near
+    const int *box = preview->gaps;
+    if (x < box[0] || y < box[1] || x > box[2] || y > box[3] || lit->burnt > 0.95f) return 0;
+    const float distance = fabsf(lit->distance) + (lit->sheet < 0 ? 0.9f * GAP_FAR : 0);
+    const float reach = 4 * 1.3f * gap_width(preview), px = (float)x + 0.5f, py = (float)y + 0.5f;
+    float first = 0, second = 0; // of the pairs: aslant a hole is narrow one way
     for (int k = 0; k < PAIRS; k++) {
-        float side[2] = {0, 0};
-        for (int s = 0; s < 2; s++)
-            for (int ring = 1; ring <= RINGS; ring++) {
-                const float far = (s ? -reach : reach) * (0.5f + 0.5f * (float)(ring * ring));
-                side[s] = maxf(side[s], gap_side(preview, (float)x + 0.5f + far * direction[k][0],
-                                                 (float)y + 0.5f + far * direction[k][1], distance));
-            }
-        sum += minf(side[0], side[1]);
+        float most = 0;
+        for (int ring = 1; ring <= RINGS; ring++) {
+            const float far = reach * (0.5f + 0.5f * (float)(ring * ring)), dx = far * direction[k][0],
+                        dy = far * direction[k][1];
+            const Float3 a = gap_read(preview, px + dx, py + dy), b = gap_read(preview, px - dx, py - dy);
+            const float share = minf(a.x, b.x);
+            if (share < 0.02f) continue;
+            const float before = 0.5f * (a.y / a.x + b.y / b.x); // of a plane through both
+            most = maxf(most, share * stepf(GAP_NEAR, GAP_FAR, distance - before));
+        }
+        second = maxf(second, minf(first, most));
+        first = maxf(first, most);
     }
-    return stepf(0.12f, 0.6f, sum / PAIRS);
+    return stepf(0.1f, 0.6f, 0.5f * (first + second));
 }

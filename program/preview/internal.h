@@ -55,6 +55,7 @@ struct Preview {
     struct Table *table;      ///< [height * width], once `table_known`
     bool table_known;
     struct Veil *veil; ///< [height * width] sparks and wisps
+    int gaps[4];       ///< pixels of the box around char, in which it may have holes
     uint8_t *mask;     ///< [mask_size] for each block, whether a sheet or a shape may touch it
     Float3 *glow[2];   ///< [quarter height * quarter width] for gaps, then for the bloom
     PreviewScene scene;
