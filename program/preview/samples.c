@@ -313,6 +313,7 @@ void block_draw(Preview *preview, Block *block) {
         preview->picture[pixel] = float3_scale(block->sum[i], 1 / (float)taken[i]);
         layers_write(preview, pixel, &block->layer[i]);
         const LayerSum *sum = &block->layer[i];
-        seen_write(preview, pixel, block, i, taken[i], is_edge(sum) || (sum->mixed && (is_still(preview) || sum->burn > 0)));
+        seen_write(preview, pixel, block, i, taken[i],
+                   is_edge(sum) || (sum->mixed && (is_still(preview) || sum->burn > 0)));
     }
 }

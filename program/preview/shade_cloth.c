@@ -389,10 +389,10 @@ void cloth_glow(const Preview *preview, const Weave *weave, const PaperState *st
     const float bow = 5 * oblique(cloth->at, 9, wide, 207), at[2] = {cloth->at[0] + bow - 0.8f * t, cloth->at[1] - bow};
     const float creeping = life > 0 ? cloth_line(32 * fabsf(oblique(at, 80, wide, 205)), 0.9f, wide) : 0;
     const float hot = 1.5f * life * maxf(rim, 0.22f * creeping);
-    const float temperature = minf(mean, RIM_HOT) - 190 + 110 * life + 170 * spot;
+    const float temperature = minf(mean, RIM_HOT) - 190 + 100 * life + 130 * spot;
     Float3 bright = blackbody_glow(preview->blackbody, temperature);
     Float3 dull = blackbody_glow(preview->blackbody, temperature - 130);
-    Float3 glow = float3_scale(bright, hot * (alone + 0.3f * starved));
+    Float3 glow = float3_scale(bright, hot * (0.5f * alone + 0.1f * starved));
     glow = float3_mad(glow, dull, alone * (0.03f + 0.3f * life) * deep);
     glow = float3_scale(glow, EMBER_GAIN * ember_air(preview, point->position));
     point->glow = float3_scale(glow, 1 / (1 + maxf(glow.x, maxf(glow.y, glow.z)) / EMBER_MOST));
