@@ -210,8 +210,10 @@ void cloth_find(const Weave *weave, const PaperState *state, float burn, float f
     // how many threads it is from there to where cloth ends: the border of the piece, from which much has crumbled, and holes
     const float damage = burnt > 0 ? cloth_damage(at, wide) : -1;
     const float worn = WORN - 0.4f * stepf(0.45f, 0.9f, burn);
+    // what burns crumbles less, but is nibbled, or its rim followed the sides of cells
     const float nibble = 5.5f * oblique(at, 28, wide, 156) + 3.2f * oblique(at, 9, wide, 157);
-    const float bite = burnt * (FRAY * (1 - 0.65f * hot) * maxf(0.6f + 1.5f * damage, 0.1f) + maxf(3 + nibble, 0));
+    const float bite =
+        burnt * (FRAY * (1 - 0.65f * hot) * maxf(0.6f + 1.5f * damage, 0.1f) + hot * maxf(3 + nibble, 0));
     const float left = minf((worn - damage) * HOLE_SLOPE, edge < CLOTH_EDGE ? edge - bite : INFINITY);
     cloth->left = left;
     const float loose = burnt * (1 - stepf(-REACH, 4, left));
@@ -349,7 +351,7 @@ float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth
     point->albedo = float3_mix(point->albedo, float3(0.060f, 0.030f, 0.015f), 0.7f * brown);
     point->albedo = float3_scale(point->albedo, 1 + charred * clampf(0.5f * up, -0.5f, 0.6f));
     point->albedo = float3_mix(point->albedo, float3(0.155f, 0.150f, 0.143f), 0.6f * ash);
-    point->albedo = float3_mix(point->albedo, float3(0.190f, 0.182f, 0.170f), 0.3f * torn);
+    point->albedo = float3_mix(point->albedo, float3(0.190f, 0.182f, 0.170f), 0.4f * torn);
     Float3 lean = float3_mad(float3_scale(point->across[0], relief[0]), point->across[1], relief[1]);
     Float3 tilted = float3_unit_or(float3_mad(point->normal, lean, -0.36f * charred), point->normal);
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;

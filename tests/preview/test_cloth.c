@@ -371,6 +371,33 @@ TEST(rims_of_holes_in_cloth_are_pale) {
     assert_true(ratio > 1.15); // 1.01
 }
 
+/// The light of a table 5 cm below such a sheet, of paper, as it is seen through a hole of 2 cm in its middle.
+static float seen_through(float burn) {
+    static float beauty[SEEN * SEEN][3];
+    char_make(burn);
+    uint32_t kept = 0;
+    for (uint32_t t = 0; t < burnt.surface.triangle_count; t++) {
+        const float *corner = burnt.position[burnt.triangles[t][0]];
+        if (hypotf(corner[0], corner[1]) > 0.010f)
+            memmove(burnt.triangles[kept++], burnt.triangles[t], sizeof *burnt.triangles);
+    }
+    burnt.surface.triangle_count = kept;
+    PreviewDef def = above();
+    def.width = def.height = SEEN, def.samples = 4, def.camera.fov = 0.376f, def.ground_height = -0.05f;
+    def.sun_direction[1] = 0; // through the hole
+    draw_layers(&def, &burnt.surface, NULL, 30, &(PreviewLayers){.beauty = beauty});
+    float sum = 0;
+    for (int k = -3; k <= 3; k++) sum += beauty[SEEN / 2 * SEEN + SEEN / 2 + k][1] / 7;
+    return sum;
+}
+
+/// A hole in char is a dark gap, one in fresh paper is not.
+TEST(what_lies_behind_char_is_dim) {
+    const float fresh = seen_through(0), burnt_sheet = seen_through(0.7f);
+    print_message("through a hole in char a table has %.2f of its light\n", (double)(burnt_sheet / fresh));
+    assert_true(burnt_sheet < 0.7f * fresh && burnt_sheet > 0.2f * fresh); // 1.0 with no gaps
+}
+
 /// The depth of burnt cloth that lies at 0, seen from above, as its root mean square in mm; returns the pixels that show it.
 static int char_depth(float ground, double *rms) {
     static float depth[SEEN * SEEN];
