@@ -1,29 +1,38 @@
 // The facets of crumpled paper.
 //
 // Paper hardly stretches, so a crumpled sheet is flat between straight, sharp ridges, while the drawn surface is smooth. Its
-// sheet at rest is divided into cells around scattered points (Worley 1996), with straight walls. Where the sheet is bent
-// sharply the normals within a cell draw together towards their mean, and change at its walls.
+// sheet at rest is divided into cells around scattered points (Worley 1996), with straight walls; most are broken into
+// smaller ones, so that no two are alike. Where the sheet is bent sharply the normals within a cell draw together towards
+// their mean, some more than others, as of a cone, and change at its walls. Small dents are left between the creases.
 
 #include "preview/internal.h"
 
 #include <string.h>
 
-#define FACET_SIZE 0.0090f ///< m
-#define FACET_FLAT 0.9f    ///< of what their normals differ from the mean, that goes
+#define FACET_SIZE 0.0150f ///< m
+#define FACET_PART 0.0068f ///< m, of the parts that they are broken into
+#define FACET_WHOLE 0.25f  ///< the share of facets that are not
+#define FACET_FLAT 0.95f   ///< of what their normals differ from the mean, that goes at most
+#define FACET_BENT 0.4f    ///< and that stays of it at most
+#define DENT_SIZE 0.0032f  ///< m
+#define DENT_TILT 0.16f    ///< slope at most
 #define RIDGE 0.035f       ///< of a cell: where the flat parts end
 /// 1/m, of a sheet that bends without a crease, and of one that is all facets
-#define CREASED_LOW 40.0f
-#define CREASED_HIGH 160.0f
-#define FACET_TILT 0.16f ///< slope
+#define CREASED_LOW 30.0f
+#define CREASED_HIGH 120.0f
+#define FACET_TILT 0.30f ///< slope
 #define PROBES 16u
 
 float crumple_amount(float bent) { return stepf(CREASED_LOW, CREASED_HIGH, bent); }
 
 /// The key of the facet at a place of the sheet at rest, and how far its walls are, in cells.
 static uint32_t facet_key(Float3 rest, int32_t sheet, float *wall) {
-    uint32_t key;
+    uint32_t key, part;
     *wall = noise_cell(float3_scale(rest, 1 / FACET_SIZE), 37 + (uint32_t)sheet, &key);
-    return key | 1;
+    if (hash_unit(key + 4) < FACET_WHOLE) return key | 1;
+    const float nearer = noise_cell(float3_scale(rest, 1 / FACET_PART), 59 + (uint32_t)sheet, &part);
+    *wall = minf(*wall * FACET_SIZE / FACET_PART, nearer);
+    return hash_u32(key + 3 * part) | 1;
 }
 
 void crumple_load(PreviewScene *scene) {
@@ -58,8 +67,16 @@ void crumple_shade(const PreviewScene *scene, const PaperState *state, float amo
     if (facing < 0) mean = float3_scale(mean, -1); // seen from behind
     const Float3 aside = float3(hash_unit(key) - 0.5f, hash_unit(key + 1) - 0.5f, hash_unit(key + 2) - 0.5f);
     mean = float3_mad(mean, aside, 2 * FACET_TILT);
-    const float flat =
-        FACET_FLAT * amount * stepf(0, RIDGE, wall) * stepf(0.2f, 0.6f, fabsf(facing)); // not over a fold
-    const Float3 turned = float3_unit_or(float3_mix(point->normal, mean, flat), point->normal);
+    const float over = amount * stepf(0.2f, 0.6f, fabsf(facing)), // not over a fold
+        flat = (FACET_FLAT - FACET_BENT * hash_unit(key + 5)) * over * stepf(0, RIDGE, wall);
+    Float3 turned = float3_unit_or(float3_mix(point->normal, mean, flat), point->normal);
+
+    const float near = 1 - stepf(0.25f, 0.7f, point->footprint / DENT_SIZE);
+    if (near > 0) {
+        uint32_t dent;
+        noise_cell(float3_scale(state->rest, 1 / DENT_SIZE), 83, &dent);
+        const Float3 down = float3(hash_unit(dent) - 0.5f, hash_unit(dent + 1) - 0.5f, hash_unit(dent + 2) - 0.5f);
+        turned = float3_unit_or(float3_mad(turned, down, 2 * DENT_TILT * near * over * hash_unit(dent + 3)), turned);
+    }
     if (float3_dot(turned, point->view) > 0.02f) point->normal = turned;
 }

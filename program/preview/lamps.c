@@ -26,8 +26,9 @@ typedef struct Cluster {
 /// Embers are drawn on the film's scale, which compresses bright parts (blackbody.c). The light they cast is not
 /// compressed, and an eye in the dark sees it better than a camera set for daylight. Flames dazzle it.
 static const float EMBER_CAST = 5;
-static const float LAMP_WRAP = 0.2f; ///< cosine by which lamps light more than what faces them
-static const float DAZZLED = 0.3f;   ///< the share of it that is left beside flames that light far more
+static const float LAMP_WRAP = 0.3f; ///< cosine over which the least of lamps sets on what turns away from it
+static const float LAMP_WRAP_MOST = 0.7f;
+static const float DAZZLED = 0.3f; ///< the share of it that is left beside flames that light far more
 
 static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster *clusters) {
     const PreviewScene *scene = &preview->scene;
@@ -152,10 +153,12 @@ static inline Four four_max(Four a, Four b) {
     return a;
 }
 
-/// What a lamp in that direction gives: wrapped, as lamps have an extent that points do not, and fuzz scatters their light.
-static inline float lamp_before(const Point *point, float cosine) {
-    const float wrap = LAMP_WRAP + point->fuzz;
-    return maxf((cosine + wrap) / (1 + wrap), 0);
+/// What a lamp in that direction gives. It sets bit by bit, as it has an extent: E(c) = (c + w)^2 / 4w for |c| < w, and c
+/// above. Fuzz scatters its light.
+static inline float lamp_before(const Point *point, float cosine, float extent, float distance) {
+    const float wrap = minf(LAMP_WRAP + point->fuzz + extent / distance, LAMP_WRAP_MOST),
+                up = clampf((cosine + wrap) / (2 * wrap), 0, 1);
+    return wrap * up * up + maxf(cosine - wrap, 0);
 }
 
 static inline float four_sum(Four a) { return a[0] + a[1] + (a[2] + a[3]); }
@@ -166,18 +169,19 @@ static Float3 lamps_gather(const PreviewScene *scene, const Point *point, float 
     const EmberLights *l = &scene->lights;
     const int count = scene->light_count;
     Float3 p = point->position, n = point->normal;
-    const float through = point->transmission, wrap = LAMP_WRAP + point->fuzz;
+    const float through = point->transmission;
     const Float3 tint = float3_sub(point->through, float3(1, 1, 1));
-    Four r = {0, 0, 0, 0}, g = r, b = r, all = r, zero = r;
+    Four r = {0, 0, 0, 0}, g = r, b = r, all = r;
     for (int k = 0; k < count; k += 4) {
         Four x = four_load(l->x + k) - p.x, y = four_load(l->y + k) - p.y, z = four_load(l->z + k) - p.z;
-        Four d2 = x * x + y * y + z * z + four_load(l->softness + k), cosine = n.x * x + n.y * y + n.z * z;
-        for (int i = 0; i < 4; i++) cosine[i] /= sqrtf(d2[i]);
-
-        // wrapped: clusters have an extent that points do not, and their own sheet must be lit, too
+        Four d2 = x * x + y * y + z * z + four_load(l->softness + k), cosine = n.x * x + n.y * y + n.z * z, seen;
+        for (int i = 0; i < 4; i++) {
+            const float distance = sqrtf(d2[i]);
+            cosine[i] /= distance;
+            seen[i] = lamp_before(point, cosine[i], l->extent[k + i], distance);
+        }
         const Four red = four_load(l->strength[0] + k), green = four_load(l->strength[1] + k),
                    blue = four_load(l->strength[2] + k);
-        Four seen = four_max((cosine + wrap) * (1 / (1 + wrap)), zero);
         if (through > 0) {
             const Four before = seen;
             seen = four_max(seen, -through * cosine);
@@ -259,9 +263,13 @@ static void ask_lamps(const Preview *preview, Block *block, const float wanted[L
         // a part of a lamp in front that is behind the sheet shines through it
         const Float3 centre = float3_sub(float3(l->x[lamp], l->y[lamp], l->z[lamp]), point->position);
         to = float3_sub(to, point->position);
-        const float cosine = float3_dot(point->normal, centre) / maxf(float3_length(centre), 1e-6f);
+        const float distance = maxf(float3_length(centre), 1e-6f),
+                    cosine = float3_dot(point->normal, centre) / distance;
+        const float above = float3_dot(point->geometric, to);
         const bool before =
-            float3_dot(point->geometric, to) > 0 || lamp_before(point, cosine) >= -point->transmission * cosine;
+            above > 0 || lamp_before(point, cosine, l->extent[lamp], distance) >= -point->transmission * cosine;
+        // what has set is not counted twice: it is asked for along the sheet
+        if (before) to = float3_mad(to, point->geometric, maxf(0.05f * float3_length(to) - above, 0));
         aim_ray(&block->shadow, i,
                 float3_mad(point->position, point->geometric, before ? scene->epsilon : -scene->epsilon),
                 float3_scale(to, 1 / float3_length(to)), 0, far, block->time[i]);
