@@ -295,6 +295,52 @@ TEST(a_glossy_ground_mirrors_embers) {
     assert_float_equal((seen[2] - seen[0]) / (seen[1] - seen[0]), 2, 0.1);
 }
 
+/// A hot ball sets bit by bit on a sheet that bulges, as it is wide: the largest share of the light that is lost from one
+/// pixel to the next. A lamp that sets at one angle, whatever its extent, draws an arc.
+TEST(light_sets_softly_on_a_bulging_sheet) {
+    enum { ACROSS = 61, COUNT = 2 * ACROSS, CELLS = ACROSS - 1 };
+    static float position[COUNT][3], normal[COUNT][3], uv[COUNT][2], cold[COUNT], nought[COUNT], beauty[W * H][3];
+    static uint32_t triangles[2 * CELLS][3];
+    static int32_t sheet[COUNT];
+    const float radius = 0.08f;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        const float turn = 0.025f * ((float)(i / 2) - 0.5f * CELLS);
+        normal[i][0] = sinf(turn), normal[i][2] = cosf(turn), cold[i] = 293;
+        position[i][0] = radius * normal[i][0], position[i][1] = i % 2 ? 0.08f : -0.08f;
+        position[i][2] = radius * (normal[i][2] - 1);
+    }
+    for (uint32_t k = 0; k < CELLS; k++) {
+        memcpy(triangles[2 * k], (uint32_t[3]){2 * k, 2 * k + 2, 2 * k + 1}, sizeof *triangles);
+        memcpy(triangles[2 * k + 1], (uint32_t[3]){2 * k + 2, 2 * k + 3, 2 * k + 1}, sizeof *triangles);
+    }
+    const SingeSurface surface = {.vertex_count = COUNT,
+                                  .triangle_count = 2 * CELLS,
+                                  .position = position,
+                                  .normal = normal,
+                                  .uv = uv,
+                                  .rest_position = position,
+                                  .temperature = cold,
+                                  .temperature_peak = cold,
+                                  .burn = nought,
+                                  .burn_rate = nought,
+                                  .sheet = sheet,
+                                  .triangles = triangles};
+    PreviewShape hot = {
+        .kind = SINGE_COLLIDER_SPHERE, .position = {-0.09f, 0, 0.02f}, .radius = 0.025f, .temperature = 1300};
+    PreviewDef def = at_night();
+    def.camera = above().camera;
+    def.camera.fov = 0.25f, def.samples = 64, def.ground_height = -INFINITY;
+    def.shapes = &hot, def.shape_count = 1;
+    see(&def, &surface, NULL, beauty);
+    float profile[W] = {0};
+    for (int x = 0; x < W; x++)
+        for (int y = H / 2 - 8; y < H / 2 + 8; y++) profile[x] += beauty[y * W + x][0] / 16;
+    float steepest = 0;
+    for (int x = W / 4; x < W * 7 / 8; x++) steepest = fmaxf(steepest, 1 - profile[x + 1] / profile[x]);
+    print_message("of the light %.3f is lost from pixel to pixel at most\n", (double)steepest);
+    assert_true(profile[W / 4] > 1 && steepest < 0.18f); // was 0.20
+}
+
 /// The waves of a wooden floor break up what it mirrors: bends from pixel to pixel down the image of a ball, over its light.
 /// The floor itself is black, and what it mirrors of an even sky is divided out.
 TEST(waves_of_wood_break_its_reflections) {
