@@ -508,7 +508,7 @@ class BurningTorus(Example):
         self.assertEqual(self.unburnt_halves(15), 1)
         self.assertGreaterEqual(halves, 2)
         self.assertGreater(self.column("tears")[-1], 0)
-        self.assertTrue(0.060 < rest < 0.084 < first)  # 84 mm high at rest: it lands, and sags a little
+        self.assertTrue(0.082 < rest < 0.115 < first)  # 115 mm high at rest: it lands, and sags a little
         self.assertLess(last, 0.8 * rest)
         self.assertTrue(0.3 < self.rows[-1]["burnt_fraction"] < 0.95)
         self.assertGreaterEqual(self.rows[-1]["pieces"], 2)
