@@ -168,12 +168,15 @@ static inline Noise noise_at(const Fire *fire, Float3 p) {
     return (Noise){n[0], n[1], n[2], n[3]};
 }
 
-/// The number of eddies that have passed the height since the start: grows with time, and by one over each eddy.
-static inline float eddies_passed(float height, float time) {
+/// The number of eddies that have passed z, at a height above what burns, since the start: grows with time, and by one over
+/// each eddy. What burns higher up has others: up a sheet that burns everywhere the height stays the same, and by that alone
+/// eddies would be as long as the sheet, and its flames a comb.
+static inline float eddies_passed(float height, float z, float time) {
     const float steady = (RISE_MOST * RISE_MOST - BASE_SPEED * BASE_SPEED) / (2 * BUOYANCY); // m
     float speed = sqrtf(BASE_SPEED * BASE_SPEED + 2 * BUOYANCY * clampf(height, 0, steady));
     float risen = (speed - BASE_SPEED) / BUOYANCY + maxf(height - steady, 0) / RISE_MOST; // s
-    return EDDY_RATE * (time - risen) - minf(height, 0) * EDDY_RATE / BASE_SPEED;
+    float below = (z - height) / RISE_MOST + minf(height, 0) / BASE_SPEED;
+    return EDDY_RATE * (time - risen - below);
 }
 
 /// Noise of eddies `width` across, of which `often` pass where one of the largest does; rotated away from the axes.
@@ -402,7 +405,7 @@ FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
     p = float3_add(p, float3(sway[0], sway[1], 0));
 
     // large eddies move it, then small ones
-    const float scale = fire->scale, passed = eddies_passed(sway[2] / scale, fire->moment / sqrtf(scale));
+    const float scale = fire->scale, passed = eddies_passed(sway[2] / scale, p.z / scale, fire->moment / sqrtf(scale));
     Noise wide = eddies(fire, p, passed, scale * EDDY_WIDE, 1);
     Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), scale * 0.7f * FIRE_WARP_WIDE);
 

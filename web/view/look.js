@@ -399,11 +399,12 @@ struct Smoke { vec3 light; float dense; float fold; float old; };
 struct Noise { float a; float b; float c; float d; };
 Noise noise_at(vec3 q);
 FireCell cell_at(vec3 p);
-float eddies_passed(float height, float time) {
+float eddies_passed(float height, float z, float time) {
     float steady = (RISE_MOST * RISE_MOST - BASE_SPEED * BASE_SPEED) / (2.0 * BUOYANCY);
     float speed = sqrt(BASE_SPEED * BASE_SPEED + 2.0 * BUOYANCY * clamp(height, 0.0, steady));
     float risen = (speed - BASE_SPEED) / BUOYANCY + max(height - steady, 0.0) / RISE_MOST;
-    return EDDY_RATE * (time - risen) - min(height, 0.0) * EDDY_RATE / BASE_SPEED;
+    float below = (z - height) / RISE_MOST + min(height, 0.0) / BASE_SPEED;
+    return EDDY_RATE * (time - risen - below);
 }
 Noise eddies(vec3 p, float passed, float width, float often) {
     float c = 0.829, s = 0.559;

@@ -365,7 +365,7 @@ FireCell cell_at(vec3 p) {
 }
 FirePoint fire_at_point(vec3 p, float height, float blur) {
     FirePoint point = FirePoint(vec3(0.0), vec3(0.0), FIRE_OUTSIDE, 0.0, 0.0, 0.0);
-    float sway[2], passed = eddies_passed(height / fireScale, time / sqrt(fireScale)), root = sqrt(fireScale);
+    float sway[2], passed = eddies_passed(height / fireScale, p.z / fireScale, time / sqrt(fireScale)), root = sqrt(fireScale);
     fire_sway(p, height, sway);
     p += vec3(sway[0], sway[1], 0.0);
     Noise wide = eddies(p, passed, fireScale * EDDY_WIDE, 1.0);
