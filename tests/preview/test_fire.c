@@ -165,6 +165,47 @@ TEST(flames_are_no_comb) {
             up); // 3.09 where soot is in strands, 3.77 where eddies were of one size, and up to nine times as long as wide
 }
 
+/// Nor are those up a hanging sheet all of which burns, where no flame is high above what does.
+TEST(flames_up_a_sheet_are_no_comb) {
+    enum { FRAMES = 8 };
+    static float fire[W * H][4];
+    float across = 0, up = 1e-6f;
+
+    line_make(&line, 0.003f), burning_make(&paper);
+    for (int i = 0; i < COLUMN; i++) {
+        const int x = i % WIDE, y = i / WIDE % DEEP, z = i / (WIDE * DEEP);
+        line.flame[i] = x > 4 && x < WIDE - 5 && (y == 1 || y == 2) && z < 36 ? 3e6f : 0;
+    }
+    for (int v = 0; v < 4 * WIDE; v++) {
+        const float along = 0.008f * ((float)(v / 4) + 0.5f - 0.5f * WIDE);
+        paper.position[v][0] = copysignf(0.015f, paper.position[v][0] - along);
+        paper.position[v][2] += 0.018f * (float)(v / 4);
+        paper.burn[v] = 0.5f; // else each row covers those below it
+    }
+    PreviewDef def = aside(0.02f);
+    def.camera = (PreviewCamera){// 2 mm are a pixel
+                                 .eye = {0, -1, 0.2f},
+                                 .target = {0, 0, 0.2f},
+                                 .up = {0, 0, 1},
+                                 .fov = 2 * atanf(H / 1000.0f)};
+    PreviewLayers layers = {.fire = fire};
+    for (int k = 0; k < FRAMES; k++) {
+        draw_layers(&def, &paper.surface, &line.gas, 0.3 + k / 6.0, &layers);
+        for (int row = 0; row < H - 1; row++)
+            for (int x = 1; x < W; x++) {
+                const float(*at)[4] = &fire[(H - 1 - row) * W + x];
+                const float here = luminance(at[0]), left = luminance(at[-1]), above = luminance(at[-W]);
+                if (here < 0.2f) continue;
+                const float aside_by = here / (1 + here) - left / (1 + left);
+                const float up_by = here / (1 + here) - above / (1 + above);
+                across += aside_by * aside_by, up += up_by * up_by;
+            }
+    }
+
+    print_message("comb up a sheet: light changes %.2f times as much from side to side as up\n", (double)(across / up));
+    assert_true(across < 4.5f * up); // 6.8 where eddies were as long as the sheet
+}
+
 /// What burns behind a plate changes nothing of the flames before it, however deep these are: along 11 cm of them a ray takes
 /// more steps than it notes.
 TEST(deep_flames_end_at_what_is_behind_them) {
