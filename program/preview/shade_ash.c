@@ -41,24 +41,51 @@ static float ash_drift(uint32_t seed, float x, float y) {
     return stepf(-0.1f, 0.7f, noise2(x * 21, y * 21, seed) + 0.55f * noise2(x * 57, y * 57, seed + 310));
 }
 
-static Leaf leaf_find(uint32_t seed, uint32_t kind, float x, float y) {
+/// What lies in the square of a lattice, or nothing. Points that are looked up in turn are mostly in the same one.
+typedef struct LeafSquare {
+    int i, j;
+    bool known;
+    uint32_t key; ///< 0: nothing
+    float size;
+    float turn[2], at[2]; ///< as of a Leaf; its middle within the square
+} LeafSquare;
+
+/// Fills a square whose middle is (x, y).
+static void leaf_lay(uint32_t seed, uint32_t kind, float x, float y, LeafSquare *square) {
+    const AshKind *of = &ash_kinds[kind];
+    const uint32_t key = sample_key(square->i, square->j, seed + 311 + kind) | 1;
+    const float chance = hash_unit(key);
+    square->key = 0;
+    if (chance > of->often) return;
+    float drift = ash_drift(seed, x, y);
+    if (kind > 0) drift *= stepf(-0.35f, 0.6f, noise2(x * 105, y * 105, seed + 320));
+    if (chance > mixf(of->alone, of->often, drift)) return;
+
+    const float share = hash_unit(key + 4), turn = 2 * PI_F * hash_unit(key + 3);
+    square->key = key;
+    square->size = mixf(of->smallest, of->largest, share * share);
+    square->turn[0] = cosf(turn);
+    square->turn[1] = sinf(turn);
+    const float room = 1.15f * square->size / of->square;
+    square->at[0] = mixf(room, 1 - room, hash_unit(key + 1));
+    square->at[1] = mixf(room, 1 - room, hash_unit(key + 2));
+}
+
+/// `square`: that of the point before, of the same kind.
+static Leaf leaf_find(uint32_t seed, uint32_t kind, float x, float y, LeafSquare *square) {
     const AshKind *of = &ash_kinds[kind];
     float fx, fy;
     const int i = noise_floor(x / of->square + 0.37f * (float)kind, &fx);
     const int j = noise_floor(y / of->square + 0.61f * (float)kind, &fy);
-    const uint32_t key = sample_key(i, j, seed + 311 + kind) | 1;
-    const float chance = hash_unit(key);
-    if (chance > of->often) return (Leaf){.key = 0};
-    const float atx = x + (0.5f - fx) * of->square, aty = y + (0.5f - fy) * of->square;
-    float drift = ash_drift(seed, atx, aty);
-    if (kind > 0) drift *= stepf(-0.35f, 0.6f, noise2(atx * 105, aty * 105, seed + 320));
-    if (chance > mixf(of->alone, of->often, drift)) return (Leaf){.key = 0};
+    if (!square->known || square->i != i || square->j != j) {
+        *square = (LeafSquare){.i = i, .j = j, .known = true};
+        leaf_lay(seed, kind, x + (0.5f - fx) * of->square, y + (0.5f - fy) * of->square, square);
+    }
+    if (!square->key) return (Leaf){.key = 0};
 
-    const float share = hash_unit(key + 4), size = mixf(of->smallest, of->largest, share * share);
-    const float turn = 2 * PI_F * hash_unit(key + 3), c = cosf(turn), s = sinf(turn), room = 1.15f * size / of->square;
-    const float dx = (fx - mixf(room, 1 - room, hash_unit(key + 1))) * of->square / size;
-    const float dy = (fy - mixf(room, 1 - room, hash_unit(key + 2))) * of->square / size;
-    return (Leaf){.key = key,
+    const float size = square->size, c = square->turn[0], s = square->turn[1];
+    const float dx = (fx - square->at[0]) * of->square / size, dy = (fy - square->at[1]) * of->square / size;
+    return (Leaf){.key = square->key,
                   .size = size,
                   .x = c * dx + s * dy,
                   .y = c * dy - s * dx,
@@ -136,7 +163,8 @@ void ash_look(const Preview *preview, Float3 position, float footprint, Ash *ash
     *ash = (Ash){.cover = dust, .albedo = 0.10f * dust};
     for (uint32_t kind = ASH_KINDS; kind-- > 0;) {
         if (visible(ash_kinds[kind].largest, footprint) <= 0) continue;
-        const Leaf below = leaf_find(seed, kind, position.x, position.y);
+        LeafSquare square = {.known = false};
+        const Leaf below = leaf_find(seed, kind, position.x, position.y, &square);
         if (below.key) {
             const float high = scrap_height(below.x, below.y, below.key), soft = 0.34f + 0.9f * high;
             const float dark = leaf_shown(&below, footprint) * mixf(0.9f, 0.6f, high / SCRAP_FLAT);
@@ -151,11 +179,11 @@ void ash_look(const Preview *preview, Float3 position, float footprint, Ash *ash
         uint32_t key = 0;
         for (int k = 0; k <= steps; k++) {
             const float z = top * (1 - (float)k / (float)steps);
-            Leaf leaf = leaf_find(seed, kind, position.x + z * view[0], position.y + z * view[1]);
+            Leaf leaf = leaf_find(seed, kind, position.x + z * view[0], position.y + z * view[1], &square);
             const float over = leaf.key ? z - leaf.size * scrap_height(leaf.x, leaf.y, leaf.key) : 0;
             if (leaf.key && leaf.key == key && over * above < 0) {
                 const float met = mixf(z, last, over / (over - above));
-                leaf = leaf_find(seed, kind, position.x + met * view[0], position.y + met * view[1]);
+                leaf = leaf_find(seed, kind, position.x + met * view[0], position.y + met * view[1], &square);
                 const float soft = 0.6f * footprint / leaf.size, depth = scrap_depth(leaf.x, leaf.y, leaf.key);
                 const float cover =
                     leaf.key == key ? leaf_shown(&leaf, footprint) * stepf(-soft, soft + 0.03f, depth) : 0;
