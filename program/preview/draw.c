@@ -9,6 +9,9 @@
 #include <stdatomic.h>
 #include <string.h>
 
+#define FIRE_MIRRORED \
+    2.0f ///< times as long as usual are steps through a fire that is mirrored, and smoothed afterwards
+
 typedef struct Job {
     Preview *preview;
     void (*draw)(Preview *preview, Block *block); ///< one block
@@ -70,21 +73,19 @@ static void draw_mirrored(Preview *preview, Block *block) {
         }
     }
 
-    // four blocks see the same fire, unless something hides it from one of them
+    // two blocks above each other see the same fire, unless something hides it from one of them
     const Fire *fire = &preview->fire;
     Float3 light = {0, 0, 0};
     float clear = 1;
     bool known = false;
     for (int k = 0; fire->visible && k < LANES; k++) {
-        const int i = k / 4 % 2 * 2 + k % 2 + BLOCK * (k / 8 * 2 + k % 4 / 2);
-        if (k % 4 == 0) known = false;
+        const int i = k / 4 + BLOCK * (k % 4);
+        if (k % 2 == 0) known = false;
         if (!active[i]) continue;
-        const float beyond =
-            float3_length(float3_sub(fire->high, fire->low)) + float3_length(float3_sub(fire->high, origin[i]));
-        const bool open = reached[i] > beyond;
+        const bool open = reached[i] > fire_leaves(fire, origin[i], towards[i]);
         known = known && open;
         Mirrored *mirrored = &preview->mirrored[0][mirror_block(preview, block, i)];
-        if (!known) fire_along(preview, origin[i], towards[i], reached[i], &light, &clear);
+        if (!known) fire_along(preview, origin[i], towards[i], reached[i], FIRE_MIRRORED, &light, &clear);
         known = open;
         mirrored->light = float3_mad(light, mirrored->light, clear);
         mirrored->share = 1 - clear * (1 - mirrored->share);

@@ -171,8 +171,12 @@ Matter fire_smoke_between(const Fire *fire, const Smoke *a, const Smoke *b, floa
 /// Fills a tile whose upper left pixel is (x, y).
 void fire_see(const Preview *preview, int x, int y, FireTile *tile);
 
-/// The light of the fire along a ray up to `distance`, and the transmittance.
-void fire_along(const Preview *preview, Float3 origin, Float3 direction, float distance, Float3 *light, float *clear);
+/// Where a ray leaves the bounds of all that is seen of the fire, m.
+float fire_leaves(const Fire *fire, Float3 origin, Float3 direction);
+
+/// The light of the fire along a ray up to `distance`, and the transmittance. `coarse`: times as long as usual are its steps.
+void fire_along(const Preview *preview, Float3 origin, Float3 direction, float distance, float coarse, Float3 *light,
+                float *clear);
 
 /// The light of the fire up to `distance` for a pixel of the tile, counted from its upper left, and the transmittance.
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear);

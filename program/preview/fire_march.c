@@ -7,7 +7,9 @@
 
 #include <string.h>
 
-#define FIRE_SHORT 0.18f   ///< step near an edge, relative to the usual one: .35 leaves ribs in thin sheets
+#define FIRE_SHORT 0.18f ///< step near an edge, relative to the usual one: .35 leaves ribs in thin sheets
+#define FIRE_LEAP 0.5f   ///< of the way to an edge, that a step outside of it may go: the depth is not quite a distance
+#define FIRE_DEEP 0.0015f  ///< m inside of an edge: from there on steps are two short ones; four leave ribs, too
 #define FIRE_NOTED 0.8f    ///< of the usual step, which what is noted is longer than
 #define FIRE_NEAR 5.0f     ///< short steps from an edge, in usual ones: with 2, arcs are seen inside of tongues
 #define FIRE_JUMP 0.5f     ///< of a step: by more the depth changes only near edges that eddies have bent
@@ -116,21 +118,43 @@ static bool guide_near(const Guide *guide, float t, int *run, float *until) {
     return false;
 }
 
-/// `tile` and `number`: of which it is one; NULL: of none. `guide` NULL: flames may be everywhere.
-static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile, int number, const Guide *guide,
-                    FireView *view) {
-    const Fire *fire = &preview->fire;
+/// How many short steps a step is long that begins at a depth: the more, the further the edge is. Powers of two, so that
+/// what is at an edge is at the same places whatever came before.
+static float steps_to_edge(float depth, float little) {
+    if (depth > FIRE_DEEP) return 2;
+    float times = 1;
+    while (2 * times * little <= -FIRE_LEAP * depth) times *= 2;
+    return times;
+}
+
+/// Where a ray enters and leaves the bounds; it misses them if it leaves no later.
+static void fire_pass(const Fire *fire, Float3 eye, Float3 d, float *enters, float *leaves) {
     const float from[3] = {eye.x, eye.y, eye.z}, ray[3] = {d.x, d.y, d.z};
     const float low[3] = {fire->low.x, fire->low.y, fire->low.z}, high[3] = {fire->high.x, fire->high.y, fire->high.z};
-
-    // where the ray enters and leaves the bounds
-    float t = 0, far = INFINITY;
+    *enters = 0;
+    *leaves = INFINITY;
     for (int c = 0; c < 3; c++) {
-        float inverse = 1 / (fabsf(ray[c]) > 1e-9f ? ray[c] : 1e-9f);
-        float a = (low[c] - from[c]) * inverse, b = (high[c] - from[c]) * inverse;
-        t = maxf(t, minf(a, b));
-        far = minf(far, maxf(a, b));
+        const float inverse = 1 / (fabsf(ray[c]) > 1e-9f ? ray[c] : 1e-9f);
+        const float a = (low[c] - from[c]) * inverse, b = (high[c] - from[c]) * inverse;
+        *enters = maxf(*enters, minf(a, b));
+        *leaves = minf(*leaves, maxf(a, b));
     }
+}
+
+float fire_leaves(const Fire *fire, Float3 origin, Float3 direction) {
+    float enters, leaves;
+    fire_pass(fire, origin, direction, &enters, &leaves);
+    return leaves;
+}
+
+/// `tile` and `number`: of which it is one; NULL: of none. `guide` NULL: flames may be everywhere. `coarse`: times as long as
+/// usual are its steps in flames.
+static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile, int number, const Guide *guide,
+                    float coarse, FireView *view) {
+    const Fire *fire = &preview->fire;
+    const float ray[3] = {d.x, d.y, d.z};
+    float t, far;
+    fire_pass(fire, eye, d, &t, &far);
 
     view->count = view->run_count = 0;
     if (!(t < far)) return;
@@ -139,7 +163,8 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile
     float clear = 1;
 
     // far away a step must still change a float
-    float fine = minf(0.17f * fire->cell, 0.0016f), min = maxf((far - t) / (16 * FIRE_STEPS), 1e-5f * far);
+    const float usual = minf(0.17f * fire->cell, 0.0016f), fine = coarse * usual; // a coarse one seeks flames no less
+    float min = maxf((far - t) / (16 * FIRE_STEPS), 1e-5f * far);
     bool dark = true;   // long steps until there is flame, longer far from it, and short ones at its edges
     bool known = false; // whether `here` is the point at t
     FirePoint here;
@@ -183,9 +208,11 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile
         if (!known) here = flame ? fire_at_point(fire, float3_mad(eye, d, t), blur * t) : outside;
         known = true;
         bool seek = dark && flame;
-        const float away = here.depth > FIRE_OUTSIDE ? 2 * fine : 3 * fine;
+        const float away = here.depth > FIRE_OUTSIDE ? 2 * usual : 3 * usual;
         const bool edge = t < again || fabsf(here.depth) < FIRE_NEAR * fine;
         float length = dark ? away : edge ? FIRE_SHORT * fine : fine;
+        const float times = flame && edge && !dark && t >= again ? steps_to_edge(here.depth, FIRE_SHORT * fine) : 1;
+        length *= times;
         float step = maxf(flame ? length : line.length, min);
         float next = minf(maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step), until);
         step = next - t;
@@ -195,7 +222,12 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile
             again = next; // the same distance in short steps: else the long ones of rays side by side are bars
             continue;
         }
-        dark = there.depth < -2 * fine;
+        const bool meets = here.depth > 0 ? there.depth < 0.5f * FIRE_DEEP : there.depth > -FIRE_SHORT * fine;
+        if (times > 1 && meets) {
+            again = next;
+            continue;
+        }
+        dark = there.depth < -2 * usual;
         if (seek && !dark) continue; // the same distance again in short steps
         if (maxf(here.depth, there.depth) > FIRE_OUTSIDE) view_extend(view, t, next);
         Matter m = {{0, 0, 0}, 0};
@@ -244,7 +276,7 @@ static void see_corner(const Preview *preview, int x, int y, int k, int apart, F
         if ((right && column % step == 0) || (down && row % step == 0)) continue;
         guide_add(&guide, &tile->views[(row / step + down) * step * FIRE_ACROSS + (column / step + right) * step]);
     }
-    see_ray(preview, eye, tile->rays[k], tile, k, guided ? &guide : NULL, &tile->views[k]);
+    see_ray(preview, eye, tile->rays[k], tile, k, guided ? &guide : NULL, 1, &tile->views[k]);
     tile->empty = tile->empty && !tile->views[k].count;
 }
 
@@ -341,9 +373,10 @@ static void add_view(const FireView *view, float distance, float weight, Float3 
     *clear += weight * left;
 }
 
-void fire_along(const Preview *preview, Float3 origin, Float3 direction, float distance, Float3 *light, float *clear) {
+void fire_along(const Preview *preview, Float3 origin, Float3 direction, float distance, float coarse, Float3 *light,
+                float *clear) {
     FireView view;
-    see_ray(preview, origin, direction, NULL, 0, NULL, &view);
+    see_ray(preview, origin, direction, NULL, 0, NULL, coarse, &view);
     *light = float3(0, 0, 0);
     *clear = 0;
     add_view(&view, distance, 1, light, clear);

@@ -89,7 +89,7 @@ void glints_draw(Preview *preview, Block *block) {
             Float3 light = hit[i] ? block->sum[i] : sky_mirrored(&preview->sky, block->direction[i]), fire = {0, 0, 0};
             float clear = 1;
             if (preview->fire.visible)
-                fire_along(preview, block->origin[i], block->direction[i], block->point[i].distance, &fire, &clear);
+                fire_along(preview, block->origin[i], block->direction[i], block->point[i].distance, 1, &fire, &clear);
             glint->light = float3_mad(glint->light, float3_mad(fire, light, clear), 1.0f / RAYS);
             glint->normal = seen[i].geometric;
         }

@@ -158,7 +158,7 @@ TEST(no_step_leaps_over_an_edge) {
             const Float3 direction = float3_unit(float3(0.1f, 1, 0.05f));
             Float3 light;
             float clear;
-            fire_along(preview, from, direction, INFINITY, &light, &clear);
+            fire_along(preview, from, direction, INFINITY, 1, &light, &clear);
             const float whole = light_in_short_steps(&preview->fire, float3_mad(from, direction, 0.12f), direction);
             lit += whole > 0.1f, wrong += whole > 0.1f && fabsf(float3_luminance(light) - whole) > 0.3f * whole;
         }
