@@ -72,7 +72,7 @@ void shape_metal(const Place *place, Point *point) {
 // cooler towards the end by which it is held, that of its +z. Scale, which is thin and cooler than the metal, lies where
 // that is cool, and has come off elsewhere but for a few flakes.
 
-#define SHAPE_GAIN 0.30f
+#define SHAPE_GAIN 0.265f
 #define SHAPE_MIDDLE 80.0f  ///< K, by which the middle is drawn hotter: the film shows what is bright paler
 #define SHAPE_LIMB 330.0f   ///< K, by which the limb is cooler than the middle
 #define SHAPE_BELOW 150.0f  ///< K, by which what faces down is cooler than the middle
