@@ -70,19 +70,27 @@ static inline Float3 noise3_gradient(Float3 p, float n, uint32_t seed) {
 /// Difference between the distances to the nearest two of scattered points, one in each cell of the unit lattice
 /// (Worley 1996): 0 on the walls between their regions, about 0.5 in the centres. `nearest`: the hash of the nearest.
 static inline float noise_cell(Float3 p, uint32_t seed, uint32_t *nearest) {
-    float fx, fy, fz, first = 9, second = 9;
+    float fx, fy, fz, first = 9, second = 9, far[27];
+    uint32_t keys[27];
     *nearest = 0;
     uint32_t ix = (uint32_t)noise_floor(p.x, &fx), iy = (uint32_t)noise_floor(p.y, &fy);
     uint32_t iz = (uint32_t)noise_floor(p.z, &fz);
     for (int k = 0; k < 27; k++) {
-        int dx = k % 3 - 1, dy = k / 3 % 3 - 1, dz = k / 9 - 1;
-        uint32_t h = ((ix + (uint32_t)dx) * 0x8da6b343u) ^ ((iy + (uint32_t)dy) * 0xd8163841u) ^
-                     ((iz + (uint32_t)dz) * 0xcb1ab31fu) ^ (seed * 0x165667b1u);
-        h = hash_u32(h);
-        float x = (float)dx + (float)(h & 1023) / 1024 - fx, y = (float)dy + (float)(h >> 10 & 1023) / 1024 - fy;
-        float z = (float)dz + (float)(h >> 20 & 1023) / 1024 - fz, d2 = x * x + y * y + z * z;
-        second = minf(second, maxf(first, d2));
-        if (d2 < first) first = d2, *nearest = h;
+        const uint32_t dx = (uint32_t)(k % 3 - 1), dy = (uint32_t)(k / 3 % 3 - 1), dz = (uint32_t)(k / 9 - 1);
+        keys[k] = ((ix + dx) * 0x8da6b343u) ^ ((iy + dy) * 0xd8163841u) ^ ((iz + dz) * 0xcb1ab31fu);
+    }
+
+    // apart from the search, in lanes
+    for (int k = 0; k < 27; k++) {
+        const uint32_t h = keys[k] = hash_u32(keys[k] ^ (seed * 0x165667b1u));
+        const float x = (float)(k % 3 - 1) + (float)(int)(h & 1023) / 1024 - fx;
+        const float y = (float)(k / 3 % 3 - 1) + (float)(int)(h >> 10 & 1023) / 1024 - fy;
+        const float z = (float)(k / 9 - 1) + (float)(int)(h >> 20 & 1023) / 1024 - fz;
+        far[k] = x * x + y * y + z * z;
+    }
+    for (int k = 0; k < 27; k++) {
+        second = minf(second, maxf(first, far[k]));
+        if (far[k] < first) first = far[k], *nearest = keys[k];
     }
     return sqrtf(second) - sqrtf(first);
 }
