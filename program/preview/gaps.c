@@ -27,7 +27,7 @@ void gaps_fill(Preview *preview) {
     Float3 *map = preview->glow[0];
     memset(map, 0, (size_t)w * (size_t)h * sizeof *map);
     int *box = preview->gaps;
-    box[0] = width, box[1] = height, box[2] = box[3] = -1;
+    memcpy(box, (const int[4]){width, height, -1, -1}, sizeof preview->gaps);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             const Lit *lit = &preview->lit[(size_t)y * (size_t)width + (size_t)x];
@@ -35,8 +35,10 @@ void gaps_fill(Preview *preview) {
             Float3 *sum = &map[(y / 4) * w + x / 4];
             sum->x += lit->burnt / 16;
             sum->y += lit->burnt / 16 * fabsf(lit->distance);
-            box[0] = x < box[0] ? x : box[0], box[1] = y < box[1] ? y : box[1];
-            box[2] = x > box[2] ? x : box[2], box[3] = y;
+            box[0] = x < box[0] ? x : box[0];
+            box[1] = y < box[1] ? y : box[1];
+            box[2] = x > box[2] ? x : box[2];
+            box[3] = y;
         }
     if (box[3] >= 0) film_blur(map, preview->glow[1], w, h, gap_width(preview));
 }

@@ -19,14 +19,15 @@ const float LEAF_FRONT = 1.1;
 const float LEAF_DULL = 1.7;
 const float LEAF_SCATTERS = 0.4;
 const float LEAF_COOLER = 150.0;
-const float LEAF_BRIGHT = 1.4;
+const float LEAF_BRIGHT = 1.2;
 const float LEAF_DIM = 150.0;
-const float LEAF_CORE = 130.0;
+const float LEAF_CORE = 60.0;
 const float STARVED_COOLER = 90.0;
 const float STARVED_BORDER = 0.42;
+const float SHEEN = 0.09;
 const float BLACKBODY_MIN = 780.0;
 struct PaperState { vec3 rest; float temperature; float peak; float burn; float burn_rate; float gradient; float heat_gradient; float rim; float spacing; float glowing; float starved; float age; float water; float edge; };
-struct Bent { vec3 position; float burn; float temperature; float peak; float coarse; float medium; float fine; };
+struct Bent { vec3 position; float burn; float temperature; float peak; float coarse; float medium; float fine; float bays; };
 float ember_activity(float rate) { return rate > 0.0 ? rate / (rate + 0.12) : 0.0; }
 float ember_starved(float rate, float burn, float alone) {
     return STARVED * stepf(STARVED_SLOW, STARVED_FAST, rate) * stepf(STARVED_BEGINS, STARVED_FULL, burn) * (1.0 - alone);
@@ -59,10 +60,11 @@ vec3 askew(vec3 r) {
                   -0.1905 * r.x + 0.3481 * r.y + 0.9179 * r.z);
 }
 Bent shade_paper_bend(PaperState state, float footprint) {
-    Bent bent = Bent(askew(state.rest), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    Bent bent = Bent(askew(state.rest), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     bent.coarse = paper_noise(bent.position, 4.0, footprint, 1.0);
     bent.medium = paper_noise(bent.position, 1.3, footprint, 2.0);
     bent.fine = paper_noise(bent.position, 0.45, footprint, 3.0);
+    if (state.burn > PAPER_WHOLE) bent.bays = paper_noise(bent.position, 9.5, footprint, 4.0);
     float delta = 1.5e-3 * bent.coarse + 0.7e-3 * bent.medium + 0.22e-3 * bent.fine;
     delta *= clamp(state.spacing / 1.8e-3, 0.3, 1.0);
     float slope = min(state.gradient, 400.0);
@@ -104,7 +106,8 @@ float border_bite(float burn, Bent bent) {
     return stepf(PAPER_WHOLE, 0.65, burn) * clamp(bite, 0.0, 0.85);
 }
 float border_distance(PaperState state, Bent bent) {
-    return max(state.edge - border_bite(state.burn, bent) * min(state.spacing, 2.5e-3), 0.0);
+    float bite = border_bite(state.burn, bent) * min(state.spacing, 2.5e-3);
+    return max(state.edge - max(bite, border_bay(state, bent)), 0.0);
 }
 float near_border(PaperState state, Bent bent, float width) {
     float distance_ = (1.0 - state.rim) * state.spacing;
@@ -188,7 +191,7 @@ vec3 ember_line(PaperState state, Bent bent, float air,
     if (activity < 0.02 || state.temperature < BLACKBODY_MIN) return vec3(0.0, 0.0, 0.0);
     float life = line_life(bent) * min(air, 1.2);
     float distance_ = (bent.burn - EMBER_BURN) / max(state.gradient, 20.0);
-    float width = EMBER_WIDTH * (0.42 + 0.66 * life), x = abs(distance_) / width;
+    float width = EMBER_WIDTH * (0.22 + 0.9 * life * life), x = abs(distance_) / width;
     float profile = distance_ > 0.0 ? 0.72 * exp(-0.5 * x * x) + 0.28 * exp(-0.8 * x) : exp(-x * x);
     float temperature = ember_temperature(state.temperature) + 210.0 * (life - 0.6) + 60.0 * bent.fine;
     if (distance_ > 0.0) temperature -= 45.0 * min(x, 3.0);
@@ -220,13 +223,13 @@ float leaf_alive(PaperState state, Bent bent, float patch_) {
     vec3 p = float3_mad(bent.position, vec3(bent.medium, bent.coarse, bent.fine), 0.5e-3);
     float stretch = noise3(float3_mad(vec3(0.05 * t, -0.08 * t, 0.11 * t), p, 1.0 / 17e-3), 61.0);
     float rim = stepf(-0.3, 0.5, stretch + 0.9 * patch_);
-    float behind = rim * exp(-border / (1.0 + 4.0 * rim));
+    float behind = rim * exp(-border / max(0.4 + 2.4 * rim * (0.8 + 0.7 * patch_), 0.3));
     float creeps = stepf(-0.1, 0.5, 0.35 * patch_ - stretch);
     if (creeps <= 0.0) return behind;
     float phase = 1.9 * noise3(float3_mad(vec3(0.0, 0.04 * t, 0.0), p, 1.0 / 24e-3), 63.0) +
                         0.6 * noise3(float3_scale(p, 1.0 / 7e-3), 64.0) + 0.11 * t;
     float since = phase - floor(phase);
-    return max(behind, 0.8 * creeps * stepf(0.0, 0.16, since) * exp(-2.6 * since));
+    return max(behind, creeps * stepf(0.0, 0.05, since) * (0.75 * exp(-14.0 * since) + 0.25 * exp(-3.0 * since)));
 }
 vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float alone = ember_activity(state.glowing), starved = ember_starved(state.starved, bent.burn, alone);
@@ -240,7 +243,7 @@ vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float alive = leaf_alive(state, bent, patch_) * (1.0 - LEAF_STARVES * starved);
     float inward = (bent.burn - STARVED_BORDER) / (max(state.gradient, 20.0) * 2.0 * EMBER_WIDTH);
     alive = max(alive, LEAF_FRONT * starved * exp(-inward * inward));
-    float coals = 0.45 * patch_ + 0.42 * bent.medium + 0.55 * fibre + 0.35 * bent.fine;
+    float coals = 0.45 * patch_ + 0.42 * bent.medium + 0.45 * fibre + 0.2 * bent.fine;
     float gathers =
         mix(LEAF_SCATTERS, 1.0, stepf(0.05, 0.5, alive));
     float lit = clamp(LEAF_SPREAD * alive + gathers * coals - 0.56, 0.0, 1.0),
@@ -261,7 +264,9 @@ void ember_shade(PaperState state, Bent bent, inout Point point) {
     point.glow = float3_scale(glow, 1.0 / (1.0 + max(glow.x, max(glow.y, glow.z)) / EMBER_MOST));
 }
 bool is_hole(PaperState state, Bent bent, float footprint) {
-    if (state.burn > PAPER_WHOLE && state.rim > 1.0 - border_bite(state.burn, bent)) return true;
+    if (state.burn > PAPER_WHOLE &&
+        (state.rim > 1.0 - border_bite(state.burn, bent) || state.edge < border_bay(state, bent)))
+        return true;
     return bent.burn > 0.7 && ash_amount(bent) * stepf(0.72, 0.95, ash_lace(bent, footprint)) > 0.5;
 }
 float flocks_of(PaperState state, inout Point point) {
@@ -299,8 +304,14 @@ void char_shade(Bent bent, vec3 burnt, float ink, inout Point point) {
     point.gloss = 0.06 * black * tar;
     point.shininess = 14.0;
     point.mirror = 0.45 * black * tar;
-    tilt(bent.position, 5.2, 0.40 * black, true, 32.0, point);
-    tilt(bent.position, 1.6, 0.10 * black, false, 31.0, point);
+    vec3 cockled = float3_mad(bent.position, vec3(bent.medium, bent.coarse, bent.fine), 0.7e-3);
+    tilt(cockled, 13.0, 0.30 * black, true, 33.0, point);
+    tilt(cockled, 5.2, 0.45 * black, true, 32.0, point);
+    tilt(bent.position, 1.6, 0.15 * black, true, 31.0, point);
+    float away = 1.0 - max(dot(point.normal, point.view), 0.0);
+    float sheen =
+        SHEEN * black * away * away * away * away * (1.0 - 0.5 * craze) * max(0.8 + 0.5 * bent.coarse, 0.2);
+    point.albedo = float3_mad(point.albedo, vec3(0.96, 0.98, 1.0), sheen);
 }
 float light_mirrored(Point point) {
     float rest = 1.0 - max(dot(point.normal, point.view), 0.0), rest2 = rest * rest;
