@@ -473,7 +473,7 @@ static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) 
         float3_mix(float3(0.034f, 0.020f, 0.012f), float3(0.0125f, 0.0125f, 0.0132f), stepf(0.22f, 0.62f, bent->burn));
     float craze = paper_cracks(bent, 3.1f, 0.04f, point->footprint);
     Float3 colour = float3_scale(soot, value * (1 - 0.6f * craze));
-    point->albedo = float3_mix(burnt, float3_mad(colour, float3(0.060f, 0.060f, 0.063f), ink), black);
+    point->albedo = float3_mix(burnt, float3_mad(colour, float3(0.078f, 0.078f, 0.082f), ink), black);
 
     // tar makes it shine
     float tar = clampf(0.75f + 0.5f * bent->coarse - 0.5f * ink, 0.2f, 1.2f);
@@ -481,9 +481,9 @@ static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) 
     point->shininess = 14;
     point->mirror = 0.45f * black * tar;
     Float3 cockled = float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 0.7e-3f);
-    tilt(cockled, 13, 0.30f * black, true, 33, point);
-    tilt(cockled, 5.2f, 0.45f * black, true, 32, point);
-    tilt(bent->position, 1.6f, 0.15f * black, true, 31, point);
+    tilt(cockled, 13, 0.17f * black, true, 33, point);
+    tilt(cockled, 5.2f, 0.29f * black, true, 32, point);
+    tilt(bent->position, 1.6f, 0.09f * black, true, 31, point);
 
     // aslant it is grey by whatever light: its skin is smooth
     const float away = 1 - maxf(float3_dot(point->normal, point->view), 0);
