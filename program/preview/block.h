@@ -42,6 +42,9 @@ typedef struct Block {
     LayerSum layer[LANES];
 } Block;
 
+/// Lamps are gathered anew: what a lane has kept is of another block, and which one that was depends on threads.
+static inline void block_forget_lamps(Block *block, int lane) { block->lamp_position[lane] = float3(INFINITY, 0, 0); }
+
 /// In place of a sample's number: the centre of the sun and an open sky, if nothing can occlude them.
 enum { SAMPLE_CENTRE = -1 };
 

@@ -33,6 +33,7 @@ static void draw_mirrored(Preview *preview, Block *block) {
 
     for (int i = 0; i < LANES; i++) {
         active[i] = 0;
+        block_forget_lamps(block, i);
         if (!mirror_aim(preview, block, i, &origin[i], &towards[i])) continue;
         preview->mirrored[0][mirror_block(preview, block, i)] = (Mirrored){.share = 0};
         float distance = ground_hit(preview, origin[i], towards[i]);

@@ -57,6 +57,7 @@ void glints_draw(Preview *preview, Block *block) {
     Point seen[LANES];
     block->tile = NULL;
     if (!find_metal(preview, block, active, seen)) return;
+    for (int i = 0; i < LANES; i++) block_forget_lamps(block, i);
 
     for (int s = 0; s < RAYS; s++) {
         memset(block->lit, 0, sizeof block->lit);

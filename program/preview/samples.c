@@ -279,6 +279,7 @@ void block_draw(Preview *preview, Block *block) {
 
     for (int i = 0; i < LANES; i++) {
         active[i] = block->x[i] < def->width && block->y[i] < def->height ? -1 : 0;
+        block_forget_lamps(block, i);
         sample_pixel(block->x[i], block->y[i], def->seed, block->turn[i]);
         block->key[i] = sample_key(block->x[i], block->y[i], def->seed);
         block->sum[i] = float3(0, 0, 0);
