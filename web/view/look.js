@@ -12,6 +12,7 @@ const float PAPER_WHOLE = 0.35;
 const float EMBER_WIDTH = 0.00042;
 const float EMBER_GAIN = 3.4;
 const float EMBER_MOST = 6.0;
+const float BAY = 0.0055;
 const float EMBER_HOT = 1180.0;
 const float LEAF_SPREAD = 1.35;
 const float LEAF_STARVES = 0.2;
@@ -104,6 +105,10 @@ float ash_amount(Bent bent) {
 float border_bite(float burn, Bent bent) {
     float bite = 0.40 + 0.38 * bent.medium + 0.20 * bent.fine + 0.28 * bent.coarse;
     return stepf(PAPER_WHOLE, 0.65, burn) * clamp(bite, 0.0, 0.85);
+}
+float border_bay(PaperState state, Bent bent) {
+    float bay = bent.bays + 0.55 * bent.coarse + 0.3 * bent.medium + 0.15 * bent.fine - 0.1;
+    return BAY * stepf(PAPER_WHOLE, 0.6, state.burn) * clamp(bay, 0.0, 1.0);
 }
 float border_distance(PaperState state, Bent bent) {
     float bite = border_bite(state.burn, bent) * min(state.spacing, 2.5e-3);
