@@ -105,12 +105,12 @@ TEST(a_sheet_before_a_flame_shines_through) {
     def.transmittances = &share, def.sheet_count = 1, def.pictures = pictures;
     wall_make(&q);
     for (int k = 0; k < 3; k++) {
-        share = 0.3f * (float)k, white[k] = added(&def, &q.surface, W / 2 - 12, H / 2);
+        share = 0.15f * (float)k, white[k] = added(&def, &q.surface, W / 2 - 12, H / 2);
         ink = added(&def, &q.surface, W / 2 + 12, H / 2);
     }
     print_message("through the sheet: %.4f %.4f %.4f, of ink %.4f\n", (double)white[0], (double)white[1],
                   (double)white[2], (double)ink);
-    assert_true(white[0] < 0.05f * white[1] && white[1] > 0.06f); // .021: what flames cast was less, and spread further
+    assert_true(white[0] < 0.05f * white[1] && white[1] > 0.06f); // .01: what flames cast was less, and spread further
     assert_float_equal(white[2] / white[1], 2, 0.1);
     assert_true(ink < 0.4f * white[2]);
 }
