@@ -48,15 +48,15 @@ int fine_octaves(float spacing) {
     return octaves;
 }
 
-static Float3 fine_rest(const Shell *shell, FineLocation location) {
-    const uint32_t *at = shell->cells[location.cell];
-    float quarter = 0.25f * location.weight[2];
+static Float3 fine_rest(const Shell *shell, const FineLocation *location) {
+    const uint32_t *at = shell->cells[location->cell];
+    float quarter = 0.25f * location->weight[2];
     Float3 sum = {0, 0, 0};
 
     for (int i = 0; i < 4; i++) {
         float weight = quarter;
-        if (i == location.side) weight += location.weight[0];
-        if (i == ((location.side + 1) & 3)) weight += location.weight[1];
+        if (i == location->side) weight += location->weight[0];
+        if (i == ((location->side + 1) & 3)) weight += location->weight[1];
         sum = float3_mad(sum, float3_load(shell->rest_position[at[i]]), weight);
     }
 
@@ -72,9 +72,9 @@ static Float3 fine_askew(Float3 p) {
 static float half_max(float length, float axis) { return length < 0.5f * axis ? length / axis : length > 0 ? 0.5f : 0; }
 
 /// S at a position.
-static float smooth_level(const Fine *fine, FineLocation location) {
+static float smooth_level(const Fine *fine, const FineLocation *location) {
     float level = fine_spline_at(fine->shell, &fine->splines[SPLINE_LEVEL], location);
-    if (fine->flags[location.cell] & FINE_WHOLE) return level;
+    if (fine->flags[location->cell] & FINE_WHOLE) return level;
     return float_min(level, fine_whole_level(fine_spline_at(fine->shell, &fine->splines[SPLINE_WHOLE], location)));
 }
 
@@ -135,11 +135,12 @@ void fine_tear_edges(Fine *fine) {
         }
 }
 
-static float fine_tear_level(const Fine *fine, FineLocation location) {
+static float fine_tear_level(const Fine *fine, const FineLocation *location) {
     const Shell *shell = fine->shell;
-    uint32_t index = shell->matter.sheet[shell_centre(shell, location.cell)];
+    uint32_t index = shell->matter.sheet[shell_centre(shell, location->cell)];
     const FineSheet *sheet = &fine->sheets[index];
     float size = shell->sheets[index].cell_size, reach = float_min(sheet->reach, TEAR_EDGE_WANDERS * size);
+    FineLocation there = *location;
 
     if (reach > 0) {
         // D, at most `reach` long
@@ -156,19 +157,20 @@ static float fine_tear_level(const Fine *fine, FineLocation location) {
 
         float length = float3_length(sum);
         const Float3 displacement = float3_scale(sum, length > 1 ? reach / length : reach);
-        location = fine_move(shell, location, displacement);
+        there = fine_move(shell, location, displacement);
     }
 
-    float field = fine_spline_at(shell, &fine->splines[SPLINE_TEAR_EDGE], location);
-    return 0.5f * float_max(field - TEAR_EDGE_MIN, location.weight[2] - TEAR_EDGE_CENTROID);
+    float field = fine_spline_at(shell, &fine->splines[SPLINE_TEAR_EDGE], &there);
+    return 0.5f * float_max(field - TEAR_EDGE_MIN, there.weight[2] - TEAR_EDGE_CENTROID);
 }
 
 // ---- the level
 
-FineValue fine_value(const Fine *fine, FineLocation location) {
+FineValue fine_value(const Fine *fine, const FineLocation *location) {
     const Shell *shell = fine->shell;
-    uint32_t sheet = shell->matter.sheet[shell_centre(shell, location.cell)];
-    FineLocation min_location = location;
+    uint32_t sheet = shell->matter.sheet[shell_centre(shell, location->cell)];
+    FineLocation walked[3];
+    const FineLocation *least = location;
     float min = smooth_level(fine, location), angle = 0, x, y;
 
     if (fine->sheets[sheet].reach > 0) {
@@ -187,8 +189,8 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
         float depth = fabsf(NOISE_MEAN + sum); // reflected into 0 to 1, so that no edge is smooth
         if (depth > 1) depth = float_max(2 - depth, 0);
         depth *= own->reach;
-        x = half_max(depth, fine->axes[location.cell][0]);
-        y = half_max(depth, fine->axes[location.cell][1]);
+        x = half_max(depth, fine->axes[location->cell][0]);
+        y = half_max(depth, fine->axes[location->cell][1]);
 
         // the min over three directions
         float c = real_cosf(angle), s = real_sinf(angle);
@@ -196,16 +198,16 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
         const float direction[3][2] = {
             {c, s}, {-0.5f * c - across * s, across * c - 0.5f * s}, {-0.5f * c + across * s, -across * c - 0.5f * s}};
         for (int i = 0; i < 3; i++) {
-            FineLocation there = fine_walk(shell, location, x * direction[i][0], y * direction[i][1]);
-            float value = smooth_level(fine, there);
+            fine_walk(shell, location, x * direction[i][0], y * direction[i][1], &walked[i]);
+            float value = smooth_level(fine, &walked[i]);
             if (value < min) {
                 min = value;
-                min_location = there;
+                least = &walked[i];
             }
         }
     }
 
     // edges of tears
-    if (fine->flags[location.cell] & FINE_TEAR_EDGE) min = float_min(min, fine_tear_level(fine, location));
-    return (FineValue){min, fine_spline_at(shell, &fine->splines[SPLINE_MASS], min_location)};
+    if (fine->flags[location->cell] & FINE_TEAR_EDGE) min = float_min(min, fine_tear_level(fine, location));
+    return (FineValue){min, fine_spline_at(shell, &fine->splines[SPLINE_MASS], least)};
 }

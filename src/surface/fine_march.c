@@ -120,7 +120,7 @@ static void metric(const uint32_t at[4], int side, const float (*field)[4], floa
 
 bool fine_is_torn(const Fine *fine, uint32_t cell, int side) {
     // only a cell that has burnt
-    if (ablate_level(fine->shell, fine->state, shell_centre(fine->shell, cell)) >= 0) return false;
+    if (fine->sound[cell] || ablate_level(fine->shell, fine->state, shell_centre(fine->shell, cell)) >= 0) return false;
 
     float rest[3], now[3];
     metric(fine->shell->cells[cell], side, (const float(*)[4])fine->shell->rest_position, rest);
@@ -142,12 +142,12 @@ typedef struct Row {
     uint32_t *lower_cut[FINE_SPLITS_MAX], *upper_cut[FINE_SPLITS_MAX], *first, *last;
 } Row;
 
-/// Point i of the row's lower or upper line.
-static void row_point(const Fine *fine, const Row *row, bool upper, int i, uint32_t *point, FineLocation *location) {
+/// Makes corner k of a piece point i of the row's lower or upper line.
+static void row_point(const Fine *fine, const Row *row, bool upper, int i, Piece *piece, int k) {
     int j = row->j + upper, parts = row->j == 0 && !upper ? row->lower : row->splits;
-    *point = j == 0 ? fine_side_point(fine, row->cell, row->side, parts, i)
-                    : fine_point(fine, row->cell, row->side, row->splits, i, j);
-    *location = fine_point_location(row->cell, row->side, parts, i, j);
+    piece->point[k] = j == 0 ? fine_side_point(fine, row->cell, row->side, parts, i)
+                             : fine_point(fine, row->cell, row->side, row->splits, i, j);
+    piece->location[k] = fine_point_location(row->cell, row->side, parts, i, j);
 }
 
 /// Position of a line's point i along the row, 0 to 1.
@@ -174,29 +174,30 @@ static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *f
                    .last = &last[j]};
 
         // cuts of the row's lower and upper line
-        memset(line[j & 1], 0, (size_t)splits * sizeof *line[0]);
         for (int i = 0; i < row.lower; i++)
             row.lower_cut[i] = j == 0 ? side_cut(fine, cell, side, row.lower, i) : &line[(j + 1) & 1][i];
-        for (int i = 0; i < row.upper; i++) row.upper_cut[i] = &line[j & 1][i];
+        for (int i = 0; i < row.upper; i++) {
+            row.upper_cut[i] = &line[j & 1][i];
+            *row.upper_cut[i] = 0;
+        }
 
         // its triangles
         uint32_t rung[2 * FINE_SPLITS_MAX + 1]; // cuts of the sides between the lines
         int low = 0, high = 0, steps = row.lower + row.upper;
-        memset(rung, 0, ((size_t)steps + 1) * sizeof *rung);
+        Piece piece;
+        row_point(fine, &row, false, 0, &piece, 0);
+        row_point(fine, &row, true, 0, &piece, 2);
 
         for (int step = 0; step < steps; step++) {
-            Piece piece;
-
             // the next triangle has its base on the lower line if that leaves the ends of the lines closer to each other
             bool on_lower = low < row.lower;
             if (low < row.lower && high < row.upper)
                 on_lower = along_row(&row, false, low + 1) - along_row(&row, true, high) <=
                            along_row(&row, true, high + 1) - along_row(&row, false, low);
-            row_point(fine, &row, false, low, &piece.point[0], &piece.location[0]);
-            row_point(fine, &row, !on_lower, on_lower ? low + 1 : high + 1, &piece.point[1], &piece.location[1]);
-            row_point(fine, &row, true, high, &piece.point[2], &piece.location[2]);
+            row_point(fine, &row, !on_lower, on_lower ? low + 1 : high + 1, &piece, 1);
 
             uint32_t *back = step == 0 ? row.first : &rung[step], *on = step + 1 == steps ? row.last : &rung[step + 1];
+            rung[step + 1] = 0;
             piece.cut[0] = on_lower ? row.lower_cut[low] : on;
             piece.cut[1] = on_lower ? on : row.upper_cut[high];
             piece.cut[2] = back;
@@ -210,6 +211,10 @@ static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *f
                 march->crossed += inside == 1 || inside == 2;
             }
 
+            // its new corner is the next one's on the same line
+            const int kept = on_lower ? 0 : 2;
+            piece.point[kept] = piece.point[1];
+            piece.location[kept] = piece.location[1];
             if (on_lower) low++;
             else high++;
         }
@@ -252,9 +257,8 @@ static void march_cells(Marching *march) {
         if (hidden) continue;
 
         uint32_t before = fine->surface->triangle_count;
-        if (!march_whole(march, c)) {          // its triangles are cut or split
-            uint32_t line[4][FINE_SPLITS_MAX]; // cuts of the lines from the corners to the centre
-            for (int side = 0; side < 4; side++) memset(line[side], 0, (size_t)fine->splits[c] * sizeof *line[side]);
+        if (!march_whole(march, c)) {                // its triangles are cut or split
+            uint32_t line[4][FINE_SPLITS_MAX] = {0}; // cuts of the lines from the corners to the centre
             for (int side = 0; side < 4; side++)
                 if (!fine_is_torn(fine, c, side)) march_triangle(march, c, side, line[side], line[(side + 1) & 3]);
         }

@@ -2,7 +2,8 @@
 //
 // A cell is near the front if, by the bounds of the splines, the level may be positive in it, and negative in it or in
 // one of the eight cells around it. Such a cell gets points: k - 1 within a side and within each line from a corner to
-// the centre, (k - 1)(k - 2)/2 within a triangle. The level is evaluated there; on a side once, for both of its cells.
+// the centre, (k - 1)(k - 2)/2 within a triangle. The level is evaluated there; on a side once, for both of its cells;
+// and nowhere where the bounds about the cell's vertices show that noise finds no negative level from within it.
 // A cell is split if these levels differ in sign; otherwise its four triangles suffice.
 //
 // A bent cell that is not split gets points to show its shape, in fewer parts. A side is drawn in the max of the
@@ -11,6 +12,9 @@
 #include "surface/surface_fine.h"
 
 #include <string.h>
+
+/// A bound of the level that rounding cannot take below 0.
+#define LEVEL_SAFE 1e-5f
 
 static bool points_alive(const Fine *fine, uint32_t cell) { return fine->state->ablate.cell_flags[cell] & SINGE_ALIVE; }
 
@@ -34,11 +38,11 @@ static SingeResult points_number(Fine *fine, SingeError *error) {
         if (!(fine->flags[c] & FINE_NEAR)) continue;
 
         // negative in it or in one around it
-        bool near = (fine->flags[c] & FINE_TEAR_EDGE) != 0;
-        for (int i = 0; i < 4 && !near; i++) {
-            uint32_t v = shell->cells[c][i];
-            for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++)
-                near |= fine->low[shell->fan[k]] < 0;
+        bool near = (fine->flags[c] & FINE_TEAR_EDGE) != 0, crossed = near;
+        for (int i = 0; i < 4; i++) {
+            const float *least = fine->least[shell->cells[c][i]];
+            near |= least[0] < 0;
+            crossed |= least[1] < LEVEL_SAFE;
         }
 
         if (splits == 1 || !near) {
@@ -52,6 +56,12 @@ static SingeResult points_number(Fine *fine, SingeError *error) {
             fine->side_owner[fine->side_count++] = 4 * c + (uint32_t)i;
             fine->side_point[blue] = (uint32_t)point;
             point += (uint64_t)splits - 1;
+        }
+
+        // from within it noise finds no level below 0; a neighbour may need its sides
+        if (!crossed) {
+            fine->flags[c] &= (uint8_t)~FINE_NEAR;
+            continue;
         }
 
         fine->cell_point[c] = (uint32_t)point;
@@ -144,7 +154,7 @@ static void evaluate_vertices(void *context, int begin, int end) {
 
         uint8_t corner = 0;
         while (shell->cells[home][corner] != v) corner++;
-        fine->values[v] = fine_value(fine, (FineLocation){home, corner, {1, 0, 0}});
+        fine->values[v] = fine_value(fine, &(FineLocation){home, corner, {1, 0, 0}});
         if (gone) fine->values[v] = held_back(fine->values[v], fine->raw_level[v]);
     }
 }
@@ -156,7 +166,7 @@ static void evaluate_centres(void *context, int begin, int end) {
         *value = (FineValue){-1, 0};
         if (!points_alive(fine, c)) continue;
         if (fine->flags[c] & FINE_EVEN) *value = particle_value(fine, shell_centre(fine->shell, c));
-        else *value = fine_value(fine, (FineLocation){c, 0, {0, 0, 1}});
+        else *value = fine_value(fine, &(FineLocation){c, 0, {0, 0, 1}});
     }
 }
 
@@ -168,9 +178,10 @@ static void evaluate_sides(void *context, int begin, int end) {
         const uint32_t *at = fine->shell->cells[cell];
         const uint32_t other = shell_neighbour(fine->shell, cell, side);
         const bool gone = other != SHELL_NONE && !points_alive(fine, other);
+        if (!((fine->flags[cell] | (other == SHELL_NONE ? 0 : fine->flags[other])) & FINE_NEAR)) continue;
         for (int i = 1; i < splits; i++) {
             FineLocation location = fine_point_location(cell, side, splits, i, 0);
-            FineValue value = fine_value(fine, location);
+            FineValue value = fine_value(fine, &location);
             if (gone)
                 value = held_back(value, location.weight[0] * fine->raw_level[at[side]] +
                                              location.weight[1] * fine->raw_level[at[(side + 1) & 3]]);
@@ -186,9 +197,10 @@ static void evaluate_cells(void *context, int begin, int end) {
         int splits = fine_splits(fine, cell);
         for (int side = 0; side < 4; side++)
             for (int j = 1; j < splits; j++)
-                for (int i = 0; i + j < splits; i++) // the line i + j = k is the next triangle's i = 0
-                    fine->values[fine_point(fine, cell, side, splits, i, j)] =
-                        fine_value(fine, fine_point_location(cell, side, splits, i, j));
+                for (int i = 0; i + j < splits; i++) { // the line i + j = k is the next triangle's i = 0
+                    const FineLocation location = fine_point_location(cell, side, splits, i, j);
+                    fine->values[fine_point(fine, cell, side, splits, i, j)] = fine_value(fine, &location);
+                }
     }
 }
 
@@ -218,7 +230,7 @@ static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation lo
     const FineValue *there = &fine->values[particle];
     if (fine->flags[location.cell] & FINE_EVEN) return *there;
 
-    FineValue value = fine_value(fine, location);
+    FineValue value = fine_value(fine, &location);
     value.level = there->level < 0 ? float_min(value.level, there->level) : float_max(value.level, 0);
     return value;
 }
@@ -248,19 +260,32 @@ static void evaluate_bent(void *context, int begin, int end) {
     }
 }
 
+/// Fills `least`. Noise looks half a cell along each axis at most, so from within a cell it stays in the quarters about
+/// its vertices.
+static void bound_vertices(Fine *fine, uint32_t cell, float low) {
+    const Float4 level = fine_spline_quarters(fine->shell, &fine->splines[SPLINE_LEVEL], cell);
+    const Float4 whole = fine_spline_quarters(fine->shell, &fine->splines[SPLINE_WHOLE], cell);
+    for (int i = 0; i < 4; i++) {
+        float *least = fine->least[fine->shell->cells[cell][i]];
+        least[0] = float_min(least[0], low);
+        least[1] = float_min(least[1], float_min(level[i], fine_whole_level(whole[i])));
+    }
+}
+
 SingeResult fine_points(Fine *fine, SingeError *error) {
     const Shell *shell = fine->shell;
 
     // cells' flags, from the bounds of their splines, and their axes
+    for (uint32_t v = 0; v < shell->vertex_count; v++) fine->least[v][0] = fine->least[v][1] = INFINITY;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         float low, high, whole, wholest, lightest, heaviest;
         fine_spline_bounds(shell, &fine->splines[SPLINE_LEVEL], c, &low, &high);
         fine_spline_bounds(shell, &fine->splines[SPLINE_WHOLE], c, &whole, &wholest);
         fine_spline_bounds(shell, &fine->splines[SPLINE_MASS], c, &lightest, &heaviest);
         low = float_min(low, fine_whole_level(whole));
-        fine->low[c] = low;
         fine->flags[c] = low >= 0 && heaviest - lightest < 1e-5f ? FINE_EVEN : 0;
         if (whole == 1) fine->flags[c] |= FINE_WHOLE;
+        if (low < 0) bound_vertices(fine, c, low);
         if (points_alive(fine, c) && high >= 0) fine->flags[c] |= FINE_NEAR; // until its neighbours are checked
 
         // lengths of the cell's two axes at rest

@@ -213,8 +213,9 @@ static Float3 unit_or_up(Float3 normal) {
     return float3_dot(unit, unit) > 0.5f ? unit : float3(0, 0, 1);
 }
 
-void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocation *location, float position[3],
-                      float normal[3]) {
+/// Fills the position; `normal` is of any length.
+static void place(const Fine *fine, const FinePatch *patch, const FineLocation *location, float position[3],
+                  Float3 *normal) {
     const uint32_t *at = fine->shell->cells[location->cell];
     const float(*corners)[4] = (const float(*)[4])fine->corner;
     const uint32_t particle[3] = {at[location->side], at[(location->side + 1) & 3],
@@ -229,11 +230,11 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
     float share = blend_corners(at, location, fine->share), max = blend_corners(at, location, fine->max), x, y;
 
     float3_store(position, flat);
-    float3_store(normal, unit_or_up(lean));
+    *normal = lean;
     if (!(share * max > 0)) return;
 
     // the smooth patch beneath the point
-    fine_coordinates(*location, &x, &y);
+    fine_coordinates(location, &x, &y);
     const float u = x + 0.5f, v = y + 0.5f;
     FinePoint point = fine_patch_at(patch, u, v);
     const float regular = blend_corners(at, location, fine->regular);
@@ -262,7 +263,14 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
 
     point = fine_patch_at(patch, u + float_max(-STEP_MAX, float_min(du, STEP_MAX)),
                           v + float_max(-STEP_MAX, float_min(dv, STEP_MAX)));
-    float3_store(normal, unit_or_up(float3_mad(float3_scale(lean, 1 - share), across(&point), share)));
+    *normal = float3_mad(float3_scale(lean, 1 - share), across(&point), share);
+}
+
+void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocation *location, float position[3],
+                      float normal[3]) {
+    Float3 any;
+    place(fine, patch, location, position, &any);
+    float3_store(normal, unit_or_up(any));
 }
 
 FineFrame fine_frame(const Fine *fine, uint32_t cell, Float3 normal) {

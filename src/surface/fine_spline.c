@@ -20,6 +20,9 @@
 
 #include <string.h>
 
+/// Numbers of a cell's corners or sides in another order.
+#define TURNED(a, i, j, k, l) FLOAT4_SHUFFLE(a, a, i, j, k, l)
+
 /// The cells' values are in place. Without values at the particles, the field is constant across the sheet's border.
 static void side_coefficients(const Fine *fine, const float *values, float *edge) {
     const Shell *shell = fine->shell;
@@ -77,43 +80,42 @@ void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell,
     }
 }
 
-float fine_spline_at(const Shell *shell, const Spline *spline, FineLocation location) {
-    const uint32_t *at = shell->cells[location.cell], *sides = shell->cell_springs[location.cell].blue;
-    int a = location.side, b = (a + 1) & 3, opposite = (a + 2) & 3, before = (a + 3) & 3;
+Float4 fine_spline_quarters(const Shell *shell, const Spline *spline, uint32_t cell) {
+    const Float4 corner = float4_gather(spline->corner, shell->cells[cell]);
+    const Float4 side = float4_gather(spline->edge, shell->cell_springs[cell].blue), before = TURNED(side, 3, 0, 1, 2);
+    const Float4 inner = 0.5f * (side + before), centre = float4_all(0.5f * (inner[0] + inner[2]));
+
+    // the triangles at the sides, halved from a side's middle to the centre
+    Float4 half = float4_min(0.25f * (corner + TURNED(corner, 1, 2, 3, 0)) + 0.5f * side,
+                             0.5f * (inner + TURNED(inner, 1, 2, 3, 0)));
+    half = float4_min(half, TURNED(half, 3, 0, 1, 2));
+    const Float4 beside = float4_min(inner, 0.5f * (corner + float4_min(side, before)));
+    return float4_min(float4_min(half, centre), float4_min(beside, corner));
+}
+
+float fine_spline_at(const Shell *shell, const Spline *spline, const FineLocation *location) {
+    const uint32_t *at = shell->cells[location->cell], *sides = shell->cell_springs[location->cell].blue;
+    int a = location->side, b = (a + 1) & 3, opposite = (a + 2) & 3, before = (a + 3) & 3;
     float ab = spline->edge[sides[a]], bb = spline->edge[sides[b]], aa = spline->edge[sides[before]];
     float centre = 0.25f * ((ab + bb) + (aa + spline->edge[sides[opposite]]));
-    float x = location.weight[0], y = location.weight[1], z = location.weight[2];
+    float x = location->weight[0], y = location->weight[1], z = location->weight[2];
     return spline->corner[at[a]] * x * x + spline->corner[at[b]] * y * y + centre * z * z + 2 * ab * x * y +
            (aa + ab) * x * z + (ab + bb) * y * z;
 }
 
 // `out` is the distance from the centre towards a side, `along` runs from its first corner to its second.
 
-void fine_coordinates(FineLocation location, float *x, float *y) {
-    float out = 0.5f * (location.weight[0] + location.weight[1]),
-          along = 0.5f * (location.weight[1] - location.weight[0]);
-    switch (location.side) {
-    case 0:
-        *x = along;
-        *y = -out;
-        break;
-    case 1:
-        *x = out;
-        *y = along;
-        break;
-    case 2:
-        *x = -along;
-        *y = out;
-        break;
-    default:
-        *x = -out;
-        *y = -along;
-        break;
-    }
+void fine_coordinates(const FineLocation *location, float *x, float *y) {
+    float out = 0.5f * (location->weight[0] + location->weight[1]),
+          along = 0.5f * (location->weight[1] - location->weight[0]);
+    const bool upright = location->side & 1, reverse = location->side & 2;
+    const float first = upright ? out : along, second = upright ? along : -out;
+    *x = reverse ? -first : first;
+    *y = reverse ? -second : second;
 }
 
-FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, float dy) {
-    uint32_t cell = location.cell;
+void fine_walk(const Shell *shell, const FineLocation *location, float dx, float dy, FineLocation *there) {
+    uint32_t cell = location->cell;
     float x, y;
     fine_coordinates(location, &x, &y);
     x += dx;
@@ -149,16 +151,18 @@ FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, floa
     // the position as weights
     const bool across = fabsf(x) > fabsf(y);
     const float out = across ? fabsf(x) : fabsf(y), along = across ? (x > 0 ? y : -y) : (y > 0 ? -x : x);
-    return (FineLocation){.cell = cell,
-                          .side = (uint8_t)(across ? (x > 0 ? 1 : 3) : (y > 0 ? 2 : 0)),
-                          .weight = {out - along, out + along, 1 - 2 * out}};
+    *there = (FineLocation){.cell = cell,
+                            .side = (uint8_t)(across ? (x > 0 ? 1 : 3) : (y > 0 ? 2 : 0)),
+                            .weight = {out - along, out + along, 1 - 2 * out}};
 }
 
-FineLocation fine_move(const Shell *shell, FineLocation location, Float3 displacement) {
+FineLocation fine_move(const Shell *shell, const FineLocation *location, Float3 displacement) {
     Float3 corner[4];
-    for (int i = 0; i < 4; i++) corner[i] = float3_load(shell->rest_position[shell->cells[location.cell][i]]);
+    for (int i = 0; i < 4; i++) corner[i] = float3_load(shell->rest_position[shell->cells[location->cell][i]]);
     Float3 along = float3_scale(float3_sub(float3_add(corner[1], corner[2]), float3_add(corner[0], corner[3])), 0.5f);
     Float3 up = float3_scale(float3_sub(float3_add(corner[3], corner[2]), float3_add(corner[0], corner[1])), 0.5f);
-    return fine_walk(shell, location, float3_dot(displacement, along) / float3_dot(along, along),
-                     float3_dot(displacement, up) / float3_dot(up, up));
+    FineLocation there;
+    fine_walk(shell, location, float3_dot(displacement, along) / float3_dot(along, along),
+              float3_dot(displacement, up) / float3_dot(up, up), &there);
+    return there;
 }

@@ -48,7 +48,7 @@ typedef struct Levels {
 static FineValue value_at(const Fine *fine, const FineLocation *foot) {
     const uint32_t cell = foot->cell, centre = shell_centre(fine->shell, cell);
     FineValue value = {fine->raw_level[centre], fine->state->burn.mass[centre]};
-    if (!(fine->flags[cell] & FINE_EVEN)) value = fine_value(fine, *foot);
+    if (!(fine->flags[cell] & FINE_EVEN)) value = fine_value(fine, foot);
     if (!(fine->state->ablate.cell_flags[cell] & SINGE_ALIVE) ||
         (!fine->sound[cell] && fine_is_torn(fine, cell, foot->side)))
         value.level = float_min(value.level, LEVEL_GONE);
@@ -204,7 +204,7 @@ static FineLocation along(const Fine *fine, const RenderVertex *a, const RenderV
     const float(*rest)[4] = (const float(*)[4])fine->shell->rest_position;
     const Float3 way = float3_sub(fine_blend(fine->shell->cells[b->foot.cell], &b->foot, rest),
                                   fine_blend(fine->shell->cells[foot.cell], &foot, rest));
-    return fine_move(fine->shell, foot, float3_scale(way, t));
+    return fine_move(fine->shell, &foot, float3_scale(way, t));
 }
 
 /// Where an edge is cut, from one of its ends: the vertex there, or the end itself.

@@ -30,10 +30,10 @@ static int list_arrays(const Fine *fine, FineArray arrays[]) {
     if (shell->corner_uv) ARRAY(cell_triangle, cells + 1);
     ARRAY(sheets, shell->sheet_count), ARRAY(raw_level, shell->particle_count);
     ARRAY(normal, shell->particle_count), ARRAY(share, corners), ARRAY(max, corners), ARRAY(corner, corners),
-        ARRAY(bend, corners), ARRAY(mesh_room, corners);
+        ARRAY(bend, corners), ARRAY(mesh_room, corners), ARRAY(least, corners);
     ARRAY(sound, cells), ARRAY(valence, corners), ARRAY(regular, corners), ARRAY(inner, cells), ARRAY(rail, sides);
     ARRAY(limit, corners), ARRAY(shift, corners), ARRAY(bent, cells), ARRAY(bent_point, cells), ARRAY(bent_side, sides);
-    ARRAY(splits, cells), ARRAY(parts, sides), ARRAY(cell_value, cells), ARRAY(low, cells), ARRAY(flags, cells);
+    ARRAY(splits, cells), ARRAY(parts, sides), ARRAY(cell_value, cells), ARRAY(flags, cells);
     ARRAY(axes, cells), ARRAY(cell_point, cells), ARRAY(near, cells), ARRAY(side_point, sides);
     ARRAY(side_owner, sides), ARRAY(side_cut, sides + 1);
 #undef ARRAY
@@ -91,12 +91,12 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
     surface->uv[v][1] = w;
 
     // fields by splines
-    surface->temperature[v] = fine_spline_at(shell, &fine->splines[SPLINE_TEMPERATURE], *location);
-    surface->temperature_peak[v] = fine_spline_at(shell, &fine->splines[SPLINE_PEAK], *location);
-    surface->burn_rate[v] = fine_spline_at(shell, &fine->splines[SPLINE_RATE], *location);
+    surface->temperature[v] = fine_spline_at(shell, &fine->splines[SPLINE_TEMPERATURE], location);
+    surface->temperature_peak[v] = fine_spline_at(shell, &fine->splines[SPLINE_PEAK], location);
+    surface->burn_rate[v] = fine_spline_at(shell, &fine->splines[SPLINE_RATE], location);
     surface->mass[v] = vertex->mass;
 
-    float fuel = float_min(float_max(fine_spline_at(shell, &fine->splines[SPLINE_FUEL], *location), 0), 1);
+    float fuel = float_min(float_max(fine_spline_at(shell, &fine->splines[SPLINE_FUEL], location), 0), 1);
     surface->char_fraction[v] = yield * shell_char(vertex->mass, fuel, mass_min, yield);
     surface->ash_fraction[v] = float_max(vertex->mass - fuel - surface->char_fraction[v], 0);
     surface->burn[v] = shell_burn_progress(vertex->mass, mass_min);

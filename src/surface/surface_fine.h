@@ -92,7 +92,7 @@ typedef struct Fine {
     Spline splines[SPLINE_COUNT];
     float *raw_level;     ///< [particles] m'; below 0 for particles that are gone
     float *cell_value;    ///< [cells] scratch of the splines
-    float *low;           ///< [cells] the level's smallest coefficient
+    float (*least)[2];    ///< [vertices] no level below 0 is less in the cells around it, and in their quarters there
     float (*axes)[2];     ///< [cells] m, lengths of a cell's two axes at rest
     uint8_t *flags;       ///< [cells] FINE_NEAR and the like
     uint32_t *cell_point; ///< [cells] first of its points; where FINE_NEAR
@@ -159,17 +159,20 @@ void fine_spline_cells(const Fine *fine, Spline *spline);
 /// The min and max coefficient of a cell: the spline lies between them.
 void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell, float *low, float *high);
 
-float fine_spline_at(const Shell *shell, const Spline *spline, FineLocation location);
+/// The least coefficient about each corner of a cell: of the quarter of the cell that the corner has.
+Float4 fine_spline_quarters(const Shell *shell, const Spline *spline, uint32_t cell);
+
+float fine_spline_at(const Shell *shell, const Spline *spline, const FineLocation *location);
 
 /// The position displaced by (x, y) from another one, in sides of its cell along the cell's own axes (corner 0 to 1,
 /// corner 0 to 3), at most half a cell along each. Beyond the sheet's border, the nearest point on it.
-FineLocation fine_walk(const Shell *shell, FineLocation location, float x, float y);
+void fine_walk(const Shell *shell, const FineLocation *location, float x, float y, FineLocation *there);
 
 /// The same by a displacement in space at rest, m.
-FineLocation fine_move(const Shell *shell, FineLocation location, Float3 displacement);
+FineLocation fine_move(const Shell *shell, const FineLocation *location, Float3 displacement);
 
 /// A position in its cell's own coordinates: corners at (-1/2, -1/2), (1/2, -1/2), (1/2, 1/2), (-1/2, 1/2).
-void fine_coordinates(FineLocation location, float *x, float *y);
+void fine_coordinates(const FineLocation *location, float *x, float *y);
 
 /// The level of this spline. It turns negative slightly inside the remaining cells, along smooth curves where the
 /// cells' sides have corners, so that the sides are never visible.
@@ -184,7 +187,7 @@ int fine_octaves(float spacing);
 void fine_tear_edges(Fine *fine);
 
 /// The level and the mass at a position.
-FineValue fine_value(const Fine *fine, FineLocation location);
+FineValue fine_value(const Fine *fine, const FineLocation *location);
 
 // ---- fine_points.c
 

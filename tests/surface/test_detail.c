@@ -310,7 +310,8 @@ TEST(walks_cross_cells) {
     for (uint32_t n = 0; n < 2000; n++) {
         FineLocation from = location_at(n, shell->cell_count);
         float x = random_unit(random_hash(n, 5, 0, 0)) - 0.5f, y = random_unit(random_hash(n, 6, 0, 0)) - 0.5f;
-        FineLocation to = fine_walk(shell, from, x, y);
+        FineLocation to;
+        fine_walk(shell, &from, x, y, &to);
         float at[2][2] = {{0}};
         for (int k = 0; k < 2; k++) {
             const FineLocation *location = k ? &to : &from;
@@ -326,6 +327,32 @@ TEST(walks_cross_cells) {
         for (int i = 0; i < 3; i++) assert_true(to.weight[i] >= -1e-6f);
     }
 
+    drawing_free(d);
+}
+
+/// A spline is nowhere less in a quarter of a cell than the bound there, but often less than those of other quarters.
+TEST(quarters_bound_their_splines) {
+    Drawing *d = fine_drawing(5, 4, 1, 0.3f, 0);
+    const Shell *shell = &d->sheet->shell;
+    float edge[64], corner[64];
+    uint32_t less = 0;
+    assert_true(shell->springs[SINGE_BLUE].count <= 64 && shell->vertex_count <= 64);
+    for (uint32_t n = 0; n < 20000; n++) {
+        if (n % 200 == 0)
+            for (uint32_t i = 0; i < 64; i++) {
+                edge[i] = random_unit(random_hash(n, i, 7, 0)) - 0.5f;
+                corner[i] = random_unit(random_hash(n, i, 8, 0)) - 0.5f;
+            }
+        const Spline spline = {edge, corner};
+        const FineLocation at = location_at(n, shell->cell_count);
+        const Float4 low = fine_spline_quarters(shell, &spline, at.cell);
+        const int near = at.weight[0] > at.weight[1] ? at.side : (at.side + 1) & 3, far = (near + 2) & 3;
+        const float value = fine_spline_at(shell, &spline, &at);
+        assert_true(value >= low[near] - 1e-6f);
+        less += value < low[far] - 0.05f;
+    }
+
+    assert_true(less > 100);
     drawing_free(d);
 }
 
