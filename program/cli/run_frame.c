@@ -14,8 +14,8 @@
 #include "cli/interrupt.h"
 #include "cli/run.h"
 
-/// Max share of the run's time that checkpoints take: the next is due when fifty times the cost of the last has passed.
-static const double checkpoint_share = 0.02;
+/// Max share of the run's time that checkpoints take: the next is due when a hundred times the cost of the last has passed.
+static const double checkpoint_share = 0.01;
 static const double checkpoint_every = 5; ///< s, however expensive it is
 
 // ---- steps
