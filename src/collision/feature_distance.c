@@ -146,7 +146,7 @@ bool feature_is_apart_along(const FeatureHulls *hulls, Float4 normal, float marg
 }
 
 bool feature_is_apart(const FeatureHulls *hulls, float margin, Float4 *normal) {
-    enum { TRIALS = 10 };
+    enum { TRIALS = 4 };
     Float4 v = {0};
     if (normal && feature_is_apart_along(hulls, *normal, margin)) return true;
 
@@ -221,7 +221,13 @@ static bool sweep_is_apart(const FeatureSweep *sweep, float margin) {
         }
     }
 
-    return feature_is_apart(&hulls, margin, sweep->normal);
+    // a plane along both, as the step begins, is what keeps layers apart
+    const Float4 *p = sweep->position;
+    const Float4 across =
+        sweep->edges ? float4_cross(p[1] - p[0], p[3] - p[2]) : float4_cross(p[2] - p[1], p[3] - p[1]);
+    if (!feature_is_apart_along(&hulls, across, margin)) return feature_is_apart(&hulls, margin, sweep->normal);
+    if (sweep->normal) *sweep->normal = across;
+    return true;
 }
 
 float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
