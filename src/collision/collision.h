@@ -48,14 +48,14 @@ typedef SingeResult CollisionOpen(Memory *memory, CollisionPlan *plan, const She
                                   Pool *pool, float h, bool first, const DynamicsState *dynamics);
 CollisionOpen collision_open, collision_open_v3;
 
-/// In how many turns a substep pushes points apart: 1, or 2 to 4 where sheets crowd. What a turn has strained is to be
+/// In how many turns a substep pushes points apart: 1, or 2 to 3 where sheets crowd. What a turn has strained is to be
 /// mended before the next.
 int repulsion_turns(const CollisionPlan *plan);
 
 /// A turn: pushes points apart that are too near, in a substep of h seconds that began at `predicted` less h times the
-/// velocities. False: there were none.
+/// velocities. All but the last turn push too far. False: there were none.
 typedef bool RepulsionApply(CollisionPlan *plan, const Shell *shell, Pool *pool, const float (*predicted)[4], float h,
-                            DynamicsState *dynamics);
+                            bool last, DynamicsState *dynamics);
 RepulsionApply repulsion_apply, repulsion_apply_v3;
 
 /// Closes the step: no cell of the drawn mesh has passed through another since collision_open.

@@ -11,11 +11,12 @@
 // nearer at rest than twice the thickness (the edges of a tear) are kept apart by four times CCD's gap only.
 //
 // One pass carries a push from a layer to the next. In a crowd, where layers lie on many others, there are several turns of
-// two passes, forwards and backwards: what they leave is work for CCD, which costs many times more. Between turns the
-// dynamics shorten the sides that pushes have stretched. A crowd's pairs are sorted into stripes across its longest axis,
-// each wider than twice what a pair's corners reach from its first corner. So stripes that are not beside each other share
-// no vertex: threads take the even ones, then the odd ones. Stripes follow from the positions alone, not from the number of
-// threads.
+// two passes, forwards and backwards: what they leave is work for CCD, which costs many times more. All turns but the last
+// push points CROWD_RELAX times as far as they must (over-relaxation), so that a pass carries a push through more layers.
+// Between turns the dynamics shorten the sides that pushes have stretched. A crowd's pairs are sorted into stripes across
+// its longest axis, each wider than twice what a pair's corners reach from its first corner. So stripes that are not beside
+// each other share no vertex: threads take the even ones, then the odd ones. Stripes follow from the positions alone, not
+// from the number of threads.
 #include "common/clock.h"
 #include "common/real.h"
 #include "collision/collision_plan.h"
@@ -25,7 +26,8 @@
 
 /// Repulsions per cell from which on there are more turns, and the most turns. Folds and heaps have up to .8, ten layers
 /// 2 to 5.
-enum { CROWD_FROM = 1, CROWD_TURNS = 4 };
+enum { CROWD_FROM = 1, CROWD_TURNS = 3 };
+#define CROWD_RELAX 1.7f
 
 typedef struct Push {
     CollisionPlan *plan;
@@ -33,7 +35,8 @@ typedef struct Push {
     const float (*predicted)[4];
     float h;
     DynamicsState *dynamics;
-    int odd; ///< stripes
+    float relax; ///< pushes go this many times as far as they must
+    int odd;     ///< stripes
 } Push;
 
 static inline Float4 repulsion_weights(const uint16_t weight[4]) {
@@ -92,7 +95,7 @@ static inline bool repulsion_push(const Push *push, const Repulsion *repulsion) 
     float weight = 0;
     for (int i = 0; i < 8; i++) weight += points.weight[i] * points.weight[i] * x[points.node[i]][3];
     if (weight <= 0) return false;
-    points_move(&points, x, -height / weight * normal);
+    points_move(&points, x, -push->relax * height / weight * normal);
     if (!(plan->def.friction > 0)) return true;
 
     // friction: take back slip across the normal since the substep began, at most `max`
@@ -173,10 +176,10 @@ int repulsion_turns(const CollisionPlan *plan) {
 }
 
 bool repulsion_apply(CollisionPlan *plan, const Shell *shell, Pool *pool, const float (*predicted)[4], float h,
-                     DynamicsState *dynamics) {
+                     bool last, DynamicsState *dynamics) {
     const double start = clock_seconds();
     const uint32_t count = plan->repulsion_count;
-    Push push = {plan, shell, predicted, h, dynamics, 0};
+    Push push = {plan, shell, predicted, h, dynamics, last ? 1 : CROWD_RELAX, 0};
     uint64_t pushed = 0;
 
     // both passes over a stripe while its vertices are in the processor's cache

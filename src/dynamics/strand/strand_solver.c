@@ -311,7 +311,8 @@ static SingeResult strands_project(DynamicsPlan *plan, const Substep *substep) {
     const int turns = plan->collision ? repulsion_turns(plan->collision) : 0;
     for (int turn = 0; turn < turns; turn++) {
         if (turn > 0) strand_project(plan, SINGE_BLUE, pool, h, dynamics, substep->counters);
-        if (!plan->kernels->push(plan->collision, shell, pool, predicted, h, dynamics)) break;
+        const bool last = turn + 1 == turns;
+        if (!plan->kernels->push(plan->collision, shell, pool, predicted, h, last, dynamics)) break;
     }
 
     contact_centroids(plan, shell, ablate, substep->collider_count, pool, h, dynamics);
