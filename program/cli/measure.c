@@ -24,7 +24,7 @@
 #include "common/float3.h"
 #include "common/store.h"
 
-enum { DRAWN_FRAMES = 4, EMBER_SCALE = 3, EMBER_WIDE = 4096, RUN = 64 };
+enum { DRAWN_FRAMES = 4, RUN = 64 };
 
 /// m at rest from all that has ignited, beyond which the sheet is cold.
 static const float cold_from = 0.09f;
@@ -491,14 +491,9 @@ int command_measure(int argc, char **argv) {
     code = folder_span(&measure.folder, &measure.console, &measure.first, &measure.last);
 
     SingeError error = {0};
-    const PreviewDef *preview = &measure.job.scene->preview.def;
-    int scale = EMBER_SCALE; // embers are thinner than a pixel, unless the pictures are large
-    while (scale > 1 && scale * (preview->width > preview->height ? preview->width : preview->height) > EMBER_WIDE)
-        scale--;
-
     if (!code && !options.no_preview &&
-        (pictures_open_sharp(&measure.job, scale, &measure.embers, &error) ||
-         pictures_open_sharp(&measure.job, 1, &measure.flames, &error))) {
+        (pictures_open_embers(&measure.job, &measure.embers, &error) ||
+         pictures_open_sharp(&measure.job, &measure.flames, &error))) {
         console_result(&measure.console, &error);
         code = EXIT_FAILED;
     }

@@ -1,6 +1,7 @@
 #include "cli/pictures.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,14 +66,11 @@ SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error
     return open_def(job, &def, pictures, error);
 }
 
-SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, SingeError *error) {
-    PreviewDef def = scene_def(job);
-    def.width *= scale;
-    def.height *= scale;
-    def.samples = 4;
-    def.camera.aperture = 0;
-    def.shutter = 0;
-    SingeResult result = open_def(job, &def, pictures, error);
+static SingeResult open_layers(const Job *job, PreviewDef *def, Pictures **pictures, SingeError *error) {
+    def->samples = 4;
+    def->camera.aperture = 0;
+    def->shutter = 0;
+    SingeResult result = open_def(job, def, pictures, error);
     if (!result) result = pictures_keep_layers(*pictures, error);
 
     if (result) {
@@ -81,6 +79,26 @@ SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, 
     }
 
     return result;
+}
+
+SingeResult pictures_open_sharp(const Job *job, Pictures **pictures, SingeError *error) {
+    PreviewDef def = scene_def(job);
+    return open_layers(job, &def, pictures, error);
+}
+
+SingeResult pictures_open_embers(const Job *job, Pictures **pictures, SingeError *error) {
+    enum { SCALE = 3, WIDE = 4096 }; // embers are thinner than a pixel, unless the pictures are large
+    PreviewDef def = scene_def(job);
+    const int longest = def.width > def.height ? def.width : def.height;
+    int scale = SCALE;
+    while (scale > 1 && scale * longest > WIDE) scale--;
+    def.width *= scale;
+    def.height *= scale;
+
+    // what glows is measured, and nothing that is lit
+    def.ground_height = def.wall_distance = -INFINITY;
+    for (int k = 0; k < 3; k++) def.sun_colour[k] = def.lamp_colour[k] = def.sky_colour[k] = 0;
+    return open_layers(job, &def, pictures, error);
 }
 
 const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time,

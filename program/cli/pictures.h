@@ -28,8 +28,11 @@ SINGE_NODISCARD SingeResult pictures_keep_layers(Pictures *pictures, SingeError 
 /// Writes the layers of the last frame drawn as an EXR (docs/formats.md).
 SINGE_NODISCARD SingeResult pictures_write_layers(const Pictures *pictures, const char *path, SingeError *error);
 
-/// The same, sharp and `scale` times as large, with its layers: for pictures_ember_width and pictures_flame_shares.
-SINGE_NODISCARD SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, SingeError *error);
+/// The same, sharp and with its layers: for pictures_flame_shares and pictures_flame_feet.
+SINGE_NODISCARD SingeResult pictures_open_sharp(const Job *job, Pictures **pictures, SingeError *error);
+
+/// Sheets and solids alone, in the dark and larger: for pictures_ember_width.
+SINGE_NODISCARD SingeResult pictures_open_embers(const Job *job, Pictures **pictures, SingeError *error);
 /// Draws a frame without gas and measures the width of the glowing line, m; NaN if nothing glows.
 SINGE_NODISCARD SingeResult pictures_ember_width(Pictures *pictures, const SingeSurface *surface, double time,
                                                  double *width, SingeError *error);
