@@ -209,7 +209,7 @@ static SingeResult plate_row(const Plate *plate, bool disc, BenchTable *table, S
 SingeResult bench_plate(const BenchOptions *options, BenchTable *table, SingeError *error) {
     static const double angles[] = {0, 15, 30, 45}, few_angles[] = {0, 45};
     static const int substeps[] = {3, 8, 24, 0};
-    const int angle_count = options->quick ? 2 : 4;
+    const int angle_count = options->quick ? 2 : 4, usual = options->cells.count ? (int)options->cells.values[0] : 24;
     SingeResult result = SINGE_OK;
     FILE *svg = options->drawing;
     if (svg) {
@@ -229,7 +229,7 @@ SingeResult bench_plate(const BenchOptions *options, BenchTable *table, SingeErr
 
     for (int isotropic = 0; isotropic < 2; isotropic++) {
         Plate plate = {.options = options, .isotropic = isotropic, .seed = 1};
-        plate.cells = options->cells.count ? (int)options->cells.values[0] : 24;
+        plate.cells = usual;
 
         // strips by angle and substeps
         for (int s = options->quick ? 2 : 0; s < (options->quick ? 3 : 4); s++)
@@ -251,7 +251,7 @@ SingeResult bench_plate(const BenchOptions *options, BenchTable *table, SingeErr
 
         // discs, whose noise stays while the mesh turns
         for (int a = 0; a < 4 && !result; a++) {
-            plate.cells = 24;
+            plate.cells = usual;
             plate.substeps = 0;
             plate.drawn = options->drawing;
             plate.angle = angles[a] * pi / 180;
