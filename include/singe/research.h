@@ -22,7 +22,7 @@ typedef struct SingeNetwork SingeNetwork;
 typedef struct SingeNetworkDef {
     size_t struct_size;
     SingeAllocator allocator;     ///< zeroed: libc's
-    SingeTasks tasks;             ///< zeroed: threads of the network's own
+    SingeTasks tasks;             ///< zeroed: the network's own threads
     int thread_count;             ///< 1 to 64; results do not depend on it
     uint32_t particle_count;      ///< at least 1
     const double *positions;      ///< [3 * particle_count] m, -1e9 to 1e9; needed

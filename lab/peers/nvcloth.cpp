@@ -83,7 +83,7 @@ int main(int argc, char **argv) {
     if (!fabric) return 1;
     Cloth *cloth = factory->createCloth(Range<const PxVec4>(particles.data(), particles.data() + particles.size()), *fabric);
 
-    // Only edges, as stiff as can be: with diagonals it takes 1.4 times as long for more strain. An iteration is a substep,
+    // Edges only, as stiff as possible: with diagonals it takes 1.4 times as long, for more strain. An iteration is a substep,
     // whose stiffness is 1 only if the stiffness's frequency is far above the substeps'.
     const float frequency = (float)std::atoi(argv[4]) / step;
     std::vector<PhaseConfig> phases;

@@ -36,7 +36,7 @@ typedef struct Block {
     bool settled[LIT_KINDS];            ///< whether all or none of a kind's rays were: no more are needed
     float spread;                 ///< pixels over which lens and shutter spread what is seen, the largest of the points
     Float3 lit[LIT_KINDS][LANES]; ///< light before occlusion, summed over samples
-    Float3 lit_other[LIT_KINDS][LANES]; ///< of that, what samples of other faces than the first have added
+    Float3 lit_other[LIT_KINDS][LANES]; ///< the part of it that samples of other faces than the first have added
     float lit_seen[LIT_KINDS][LANES], lit_asked[LIT_KINDS][LANES];      ///< luminance found visible, and tested
     Float3 lamp_position[LANES], lamp_normal[LANES], lamp_white[LANES]; ///< where lamps were last gathered; on white
     LayerSum layer[LANES];

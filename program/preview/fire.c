@@ -41,9 +41,10 @@
 #define SMOKE_HOT 650.0f   ///< K: what is hotter is none yet
 #define SMOKE_FOLLOWS 0.4f ///< m of the air's way from a flame, over which smoke that comes from it falls by e
 #define SMOKE_BESIDE 0.8f  ///< of what comes from a flame, what cells beside that have
-#define SMOKE_TIP 0.03f    ///< of a fire's brightest cell, what is a flame for smoke that is beside it and below
-#define SMOKE_TIPS 0.09f   ///< m below and beside it, by which that matters less by e
-#define SMOKE_BELOW 0.9f   ///< of its light that smoke does not show there: it would be a pale blob with no root
+#define SMOKE_TIP 0.03f ///< share of a fire's brightest cell from which smoke beside and below takes a cell for a flame
+#define SMOKE_TIPS 0.09f ///< m below and beside it over which that falls by a factor of e
+#define SMOKE_BELOW \
+    0.9f ///< share of its light that smoke there does not show: it would look like a pale blob without a root
 #define SMOKE_ADRIFT 0.25f ///< of smoke that comes from no flame, what is seen as long as there are flames
 #define SMOKE_FLAME 0.3f   ///< flame from which on it is full for smoke
 #define SMOKE_LEAVES 0.25f ///< of the gas's height, from the top down, in which smoke fades: there the gas is cut
@@ -534,7 +535,7 @@ void fire_light_smoke(Preview *preview) {
     Float3 sky = float3_add(sky_ambient(&preview->sky, float3(0, 0, 1)), sky_ambient(&preview->sky, float3(0, 0, -1)));
     fire->daylight = float3_mad(float3_scale(sky, 0.5f), preview->sun_light, 0.28f + 0.3f * behind * behind);
 
-    // from what is drawn of flames (flame_lamps.c) downwards and aside, layer by layer: where flames are above
+    // spread the drawn flames (flame_lamps.c) downwards and sideways, layer by layer, to know where flames are above
     const float tips = expf(-fire->cell / SMOKE_TIPS);
     float most = 0;
     for (size_t i = 0; i < fire->cell_capacity; i++) most = maxf(most, fire->cells[i].glow);

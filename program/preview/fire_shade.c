@@ -28,10 +28,10 @@
 // and a step of a ray takes its mean between the depths of its ends, by the integral of P: the shell is thinner than
 // a step. w is SHELL_RISE, or more where rays are further apart, as edges would have steps; the light of a flame
 // stays. It begins at the paper, is faint, clear and blue in the first millimetres, where there is little soot, then
-// pale in its core, and orange at its tips. Its foot, some two centimetres tall, is one low sheet along what burns, in which
-// soot begins by and by: dim, orange and so thin that the rim is seen through it. In tongues there is more of it, and sooner.
-// They are wide below: with narrow, hot feet they stood on points and seemed to hang.
-// Near its edge a flame is thinner than the shell alone would be: there rays run along it, and drew outlines.
+// pale in its core, and orange at its tips. Its foot, some two centimetres tall, is one low sheet along what burns. Soot
+// builds up in it gradually, dim, orange and so thin that the rim shows through; in tongues it builds up faster. Tongues
+// are wide at the bottom: with narrow, hot feet they seemed to hang in the air.
+// Near its edge a flame is thinner than the shell alone: rays run along the shell there and would draw outlines.
 // Soot glows as a black body between FLAME_COOL and FLAME_HOT, and hides as much as it glows. It is the hotter the
 // more heat is released around it (core) and the further it is from the edge (strong): so a flame of one or two
 // sheets has a pale core, too.
@@ -91,8 +91,8 @@
 #define SMOKE_THINS 2.0f    ///< by which its middle is thinner there
 #define SMOKE_CALM 0.5f     ///< of what eddies move, they do there
 #define SMOKE_FINE 0.65f    ///< of folds, the share of small eddies at the fire
-#define SMOKE_EVEN 0.35f    ///< of a fold's density, what lies between the threads in it
-#define SMOKE_THREADS 1.5f  ///< of it, what they add
+#define SMOKE_EVEN 0.35f    ///< share of a fold's density between its threads
+#define SMOKE_THREADS 1.5f  ///< share of it that the threads add
 #define SMOKE_COARSE 0.45f  ///< and far from it
 #define SMOKE_DARK 0.4f     ///< light of flames, of which fresh smoke, which is brown, swallows half
 #define SMOKE_SLOW 0.4f     ///< m/s, at which wide eddies rise
@@ -118,22 +118,22 @@
 #define HIGH_COOL 0.18f
 #define SPENT_COOL 0.25f
 #define SPENT_THIN 0.4f
-#define FOOT_CLEAR 0.004f   ///< m above the paper, from where on a flame is no longer a foot
-#define FOOT_FULL 0.027f    ///< m, where it is none
-#define FOOT_SOOT 0.009f    ///< m, where there is all of its soot in the middle of a tongue
-#define FOOT_BESIDE 0.017f  ///< m, and beside it
-#define FOOT_WARM 0.015f    ///< m, where that is as hot as above
-#define FOOT_LATE 0.030f    ///< m, beside
-#define FOOT_COOL 0.65f     ///< of the range of temperatures, what soot has where it begins
-#define FOOT_GLOWS 0.8f     ///< more soot
-#define FOOT_HIDES 0.4f     ///< less than it glows: what burns is seen through it
-#define FOOT_HAZE 0.22f     ///< of the soot, beside tongues
-#define TONGUE_MIDDLE 0.05f ///< of the noise whose creases tongues are
+#define FOOT_CLEAR 0.004f   ///< m above the paper, up to which a flame is all foot
+#define FOOT_FULL 0.027f    ///< m, from which none of it is foot
+#define FOOT_SOOT 0.009f    ///< m, at which a tongue's middle has all its soot
+#define FOOT_BESIDE 0.017f  ///< m, the same beside tongues
+#define FOOT_WARM 0.015f    ///< m, at which a tongue's middle is as hot as above
+#define FOOT_LATE 0.030f    ///< m, the same beside tongues
+#define FOOT_COOL 0.65f     ///< share of the temperature range that fresh soot has
+#define FOOT_GLOWS 0.8f     ///< soot glows that much more there
+#define FOOT_HIDES 0.4f     ///< and hides that much less: what burns shows through
+#define FOOT_HAZE 0.22f     ///< share of the soot that is beside tongues
+#define TONGUE_MIDDLE 0.05f ///< value of the noise whose creases are tongues
 #define TONGUE_ENDS 0.33f
-#define TONGUE_ROOTED 0.6f ///< in the foot they are wide
-#define BORDER_WIDE 0.003f ///< m inside of its edge, in which a flame is thinner: a sheet seen edge-on is no outline
+#define TONGUE_ROOTED 0.6f ///< the same in the foot, where they are wide
+#define BORDER_WIDE 0.003f ///< m inside its edge over which a flame thins out: seen edge-on it must not draw an outline
 #define BORDER_THIN 0.4f
-#define BORDER_GAIN 1.25f   ///< of soot, for what the border has lost
+#define BORDER_GAIN 1.25f   ///< factor on soot that makes up for what the border loses
 #define CORE_BEGINS 0.0030f ///< m
 #define CORE_FULL 0.0240f
 #define CORE_HIDES 0.22f ///< more than it glows
@@ -256,8 +256,8 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
 
     const float foot = rise + 0.0012f * fine.d + 0.0016f * wide.d;
 
-    // the foot, which is lower where flames are small, is one sheet along what burns: first it is clear and blue, then soot
-    // begins in it, dim and orange, in the middle of tongues sooner than beside them
+    // the foot, lower where flames are small, is one sheet along what burns: at first clear and blue; then dim orange soot
+    // builds up, in the middle of tongues sooner than beside them
     const float small_foot = minf(fire->scale, 1);
     const float above = stepf(small_foot * FOOT_CLEAR, small_foot * FOOT_FULL, rise);
     const float tongue =

@@ -10,8 +10,8 @@
 //
 // both about an axis that itself turns slowly. f follows from f d / w, which differs little between plates.
 //
-// It is a scrap of burnt paper (shade_ash.c), bent and creased, so that its parts take the light as they lie. What is drawn
-// are points of it, each a soft dot, at moments while the shutter is open.
+// It is a scrap of burnt paper (shade_ash.c), bent and creased, and each part is lit by its own slope. It is drawn as soft
+// dots, one for each of its points, at several moments while the shutter is open.
 
 #include "preview/airborne.h"
 #include "preview/ground.h"
@@ -29,14 +29,14 @@ enum {
 #define LYING 0.3f            ///< s, of what came to the ground: what lies there is the stain's
 #define SHOWS 0.5f            ///< of the exposure: a plate that turns shows its face for a part of it, or is a grey bar
 #define STARTING 0.06f        ///< s, within which it falls at its speed
-#define FLAKES_A_METRE 190.0f ///< 1/(m s), of sites that glow along a few cm
+#define FLAKES_A_METRE 190.0f ///< 1/(m s), from sites that glow over a few cm
 #define FLAKES_CROWD 0.25f    ///< m of glowing line above which flakes become rarer
 #define FLAKE_DEPTH 3.2f      ///< optical depth across: 0.96 of what is behind is hidden
 #define FLAKE_AIR_DENSITY 1.2f
 #define FLAKE_COLD 600.0f ///< K: nothing of it glows
-#define FLAKE_BENT 1.4f   ///< times as a scrap that lies
+#define FLAKE_BENT 1.4f   ///< factor on the bend of a scrap that lies on the ground
 
-/// What reaches a flake along the axes, and against them: what an albedo of 1 reflects that faces so.
+/// Light that reaches a flake along each axis and against it: what a white surface reflects that faces that way.
 typedef struct FlakeLight {
     Float3 from[6];
 } FlakeLight;
@@ -87,7 +87,7 @@ static Plate flake_at(const Flake *flake, float age) {
 /// The height of a flake over its plate.
 static float flake_height(float u, float v, uint32_t seed) { return FLAKE_BENT * (scrap_height(u, v, seed) - 0.14f); }
 
-/// Draws the flake as it is at the age; `share` of the exposure. `apart`: pixels from one such moment to the next.
+/// Draws the flake at an age, for a `share` of the exposure. `apart`: pixels that it moves between two such moments.
 static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *lit, float age, float share,
                        float apart) {
     const Plate plate = flake_at(flake, age);
@@ -110,7 +110,7 @@ static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *l
             const float inside = scrap_depth(u, v, seed);
             if (inside <= 0) continue;
 
-            // as it is bent there; edge on, it is as thick as it is creased
+            // by the slope of its bend there; edge-on, its creases make it thick
             const float e = 0.08f, high = flake_height(u, v, seed);
             const float slope[2] = {(flake_height(u + e, v, seed) - high) / e,
                                     (flake_height(u, v + e, seed) - high) / e};
@@ -122,7 +122,7 @@ static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *l
             const float facing = float3_dot(normal, to), seen = 0.07f + 0.93f * fabsf(facing);
             if (facing < 0) normal = float3_scale(normal, -1);
 
-            // pale at its rim and in patches; embers last at the rim, in threads
+            // pale at its rim and in patches; embers last longest at the rim, as threads
             const float patch = noise2(2.3f * u + 5, 2.3f * v + 5, seed + 1);
             const float rim = expf(-inside / 0.13f),
                         pale = clampf(0.85f * flake->ash + 0.4f * rim + 0.32f * patch, 0, 1);

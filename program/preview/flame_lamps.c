@@ -88,7 +88,7 @@ static int longest(const Float3 *points, int count) {
     return size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
 }
 
-/// Puts points that are near each other one after another: then a few that are evenly spaced stand for all.
+/// Orders points so that neighbours follow each other: evenly spaced ones then represent them all.
 static void order(Float3 *points, int count) {
     if (count < 3) return;
     sort(points, count, longest(points, count));

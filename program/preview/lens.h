@@ -27,7 +27,7 @@ void sample_square(uint32_t index, float a, float b, float out[2]);
 void sample_lens(uint32_t index, uint32_t key, float out[2]);
 float sample_time(uint32_t index, uint32_t key);
 
-/// A number from 0 to 1 that is independent of all of these, as it is no multiple of an irrational one: 0, 1/2, 1/4, 3/4, 1/8 ...
+/// A number from 0 to 1, independent of all of these because it is no multiple of an irrational one: 0, 1/2, 1/4, 3/4, 1/8 ...
 float sample_half(uint32_t index);
 
 /// A pixel's own random number.

@@ -48,10 +48,10 @@ enum { SOFT_COLOUR, SOFT_SHOWN };
 /// The light of a pixel by its kind, before occlusion.
 typedef struct Lit {
     Float3 light[LIT_KINDS]; ///< as it reaches the eye
-    Float3 other[LIT_KINDS]; ///< of that, what comes from other faces than the first
+    Float3 other[LIT_KINDS]; ///< the part of it that comes from other faces than the first
     float seen[LIT_KINDS];   ///< visible share, by few rays; -1: none were traced
     Float3 normal;           ///< of the last sample
-    float distance;          ///< m, the same; negative: the pixel shows several faces, the first at minus that
+    float distance;          ///< m, the same; negative: the pixel shows several faces, and the first is at minus that
     float noise;             ///< variance of the mean of the samples, as l / (1 + l)
     float blur;              ///< pixels over which lens and shutter spread what is seen here
     float burnt;             ///< share of the samples that is char

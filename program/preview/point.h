@@ -21,12 +21,12 @@ typedef struct Point {
     Float3 position, normal, geometric, view; ///< view: unit, towards the eye
     Float3 albedo, glow;                      ///< glow: its own emission
     float transmission;                       ///< share of the light from behind that is transmitted
-    Float3 through;                           ///< and its colour, over the albedo
+    Float3 through;                           ///< its colour, divided by the albedo
     bool back;                                ///< of a sheet, where its picture is mirrored
     float bent;                               ///< 1/m, how much it bends
     float gloss, shininess;                   ///< Blinn-Phong lobe of the sun
     float mirror;                             ///< reflectance for the blurred sky
-    float fuzz;          ///< cosine by which lamps light more of what is round: fibres scatter light
+    float fuzz;          ///< added to the cosine of lamps on round things: their fibres scatter light
     Float3 shine, brush; ///< of a shape: what it mirrors seen from above, and along its scratches
     float rough[2];      ///< widths of that lobe along them and across
     Float3 across[2];    ///< unit, across the warp and the weft of woven sheets
@@ -37,7 +37,7 @@ typedef struct Point {
     bool lit;            ///< false: glow only
     float distance;      ///< m, from the lens; infinite: nothing
     float temperature, burn;
-    float moved;          ///< m, its way across the view while the shutter is open
+    float moved;          ///< m that it moves across the view while the shutter is open
     int32_t sheet, piece; ///< -1: none
     bool hit;             ///< a sheet or a shape
 } Point;

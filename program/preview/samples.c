@@ -44,8 +44,8 @@ static void layers_write(const Preview *preview, size_t pixel, const LayerSum *s
     }
 }
 
-/// Adds a lane's point to its sums for the layers; `fire` is before it, and lets the share `clear` through. Whether the point
-/// is of another sheet than the pixel's first one, or far from it.
+/// Adds a lane's point to its sums for the layers; `fire` is in front of it and lets the share `clear` through. True if the
+/// point is on another sheet than the pixel's first one, or far from it.
 static bool add_to_layers(const Preview *preview, Block *block, int lane, Float3 fire, float clear) {
     const Point *point = &block->point[lane];
     LayerSum *sum = &block->layer[lane];
@@ -64,7 +64,7 @@ static bool add_to_layers(const Preview *preview, Block *block, int lane, Float3
     if (!point->hit) return other;
     sum->hits++;
 
-    // a sample of the piece counts if that is among the first that the pixel has met
+    // a sample counts if its piece is among the first that the pixel has met
     for (int k = 0; k < PREVIEW_MATTES && preview->layers.mattes && point->sheet >= 0; k++) {
         PreviewMatte *matte = &sum->mattes[k];
         if (matte->share > 0 && (matte->sheet != point->sheet || matte->piece != point->piece)) continue;

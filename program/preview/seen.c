@@ -10,7 +10,7 @@
 /// Of each kind of light, the share that what lies deep in a gap does not get.
 static const float gap_hides[LIT_KINDS] = {[LIT_SUN] = 0.6f, [LIT_SKY] = 0.6f, [LIT_LAMPS] = 0.78f};
 
-enum { EDGE_REACH = 3 }; ///< pixels around one that shows several faces, in which it looks for each alone
+enum { EDGE_REACH = 3 }; ///< pixels around a pixel of several faces that are searched for each face alone
 
 void seen_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples, bool mixed) {
     const Point *point = &block->point[lane];
@@ -78,8 +78,8 @@ void seen_smooth(Preview *preview, Block *block) {
     }
 }
 
-/// The light of a pixel that shows several faces. Of sky and lamps, which have the softest shadows, each face takes its share
-/// from pixels around that show it alone: from the few rays of one pixel, bright edges had teeth.
+/// The light of a pixel that shows several faces. For sky and lamps, whose shadows are the softest, each face takes its
+/// light from pixels around that show it alone: with the few rays of one pixel, bright edges had teeth.
 static Float3 light_of_faces(const Preview *preview, const Lit *lit, int x, int y) {
     enum { FIRST, OTHER, FACES };
     const int w = preview->def.width, h = preview->def.height;

@@ -1,25 +1,25 @@
 // Ash on the ground: what came down from burnt sheets, as it lies where the ground is stained.
 //
-// Burnt paper breaks into few leaves, more scraps and many crumbs, which lie together in drifts, with dust between them. A
-// leaf is thin and bent about a line, on which it lies, so that its sides stand off the ground; it is creased, dark as char
-// in its middle and pale at its rim. Its height over the ground is h(x, y). A ray of sight comes down to the ground, and
-// sees the leaf where its own height passes h within the leaf's outline; otherwise it sees the ground in the leaf's shadow.
+// Burnt paper breaks into a few leaves, more scraps and many crumbs, which lie together in drifts with dust between them. A
+// leaf is thin and bent about a line, on which it rests, so its sides stand off the ground. It is creased, dark as char in
+// its middle and pale at its rim. Its height over the ground is h(x, y). A view ray descends to the ground and sees the
+// leaf where the ray's height falls below h inside the outline; otherwise it sees the ground, in the leaf's shadow.
 
 #include "preview/ground.h"
 #include "preview/internal.h"
 
 enum {
     ASH_SIDES = 5, ///< of an outline
-    ASH_STEPS = 9, ///< of a ray of sight down to the ground
+    ASH_STEPS = 9, ///< of a view ray down to the ground
     ASH_KINDS = 4, ///< leaves, scraps, crumbs and grains
 };
-#define ASH_ASIDE 5.0f ///< m aside for a metre of height, at most, of a ray of sight
+#define ASH_ASIDE 5.0f ///< m that a view ray moves sideways for each metre of height, at most
 
-/// What lies in the squares of a lattice, one or none in each.
+/// One kind of ash: at most one piece in each square of a lattice.
 typedef struct AshKind {
     float square;            ///< m
     float smallest, largest; ///< m, half of their length
-    float often, alone;      ///< shares of squares that have one, in a drift and outside
+    float often, alone;      ///< share of squares that have one, in drifts and outside
 } AshKind;
 
 static const AshKind ash_kinds[ASH_KINDS] = {{0.026f, 0.0038f, 0.0110f, 0.62f, 0.03f},
@@ -27,16 +27,16 @@ static const AshKind ash_kinds[ASH_KINDS] = {{0.026f, 0.0038f, 0.0110f, 0.62f, 0
                                              {0.0027f, 0.00028f, 0.0010f, 0.62f, 0.04f},
                                              {0.0011f, 0.00012f, 0.00032f, 0.70f, 0.03f}};
 
-/// A leaf as a point sees it.
+/// A leaf, seen from a point.
 typedef struct Leaf {
     uint32_t key;    ///< 0: there is none
     float size;      ///< m
-    float x, y;      ///< from its middle to the point, along it and across, in units of its size
-    float turn[2];   ///< the cosine and sine of the way that it lies
+    float x, y;      ///< the point from its middle, along it and across, in units of its size
+    float turn[2];   ///< cosine and sine of its direction
     float middle[2]; ///< m
 } Leaf;
 
-/// How much ash lies around a place: 0 beside drifts to 1.
+/// How much ash lies around a place, from 0 between drifts to 1.
 static float ash_drift(uint32_t seed, float x, float y) {
     return stepf(-0.1f, 0.7f, noise2(x * 21, y * 21, seed) + 0.55f * noise2(x * 57, y * 57, seed + 310));
 }
@@ -115,10 +115,10 @@ float scrap_height(float x, float y, uint32_t key) {
     return clampf(0.03f + bent * off * off + twist + 0.20f * folds + 0.05f * fine, 0.01f, SCRAP_FLAT);
 }
 
-/// Whether a leaf of its size is seen, 0 to 1.
+/// Whether a leaf of that size is visible, 0 to 1.
 static float leaf_shown(const Leaf *leaf, float footprint) { return visible(1.2f * leaf->size, footprint); }
 
-/// Lays a part of a leaf, or of its shadow, over what is seen at a position.
+/// Lays a share of a leaf or of its shadow over what a position already shows.
 static void leaf_over(const Leaf *leaf, Float3 position, float albedo, const float tilt[2], float cover, Ash *ash) {
     const float from[2] = {leaf->middle[0] - position.x, leaf->middle[1] - position.y};
     ash->cover += (1 - ash->cover) * cover;
@@ -129,7 +129,7 @@ static void leaf_over(const Leaf *leaf, Float3 position, float albedo, const flo
     }
 }
 
-/// The albedo of a leaf at a point of it, and its tilt as it is seen. `view`: m aside for a metre up.
+/// The albedo and the visible tilt of a leaf at one of its points. `view`: m sideways for each metre of height.
 static float leaf_look(const Leaf *leaf, float depth, const float view[2], float footprint, float tilt[2]) {
     const uint32_t key = leaf->key;
     const float e = 0.06f, h = scrap_height(leaf->x, leaf->y, leaf->key);
@@ -140,7 +140,7 @@ static float leaf_look(const Leaf *leaf, float depth, const float view[2], float
     const float faces = 1 - slope[0] * view[0] - slope[1] * view[1], steep = hypotf(slope[0], slope[1]);
     for (int d = 0; d < 2; d++) tilt[d] = slope[d] * (faces < 0 ? 0.2f : -1) / maxf(1, 0.8f * steep);
 
-    // most are char, some have turned to ash; it pales from the rim and in patches, and along its creases
+    // most are char, some have turned to ash, which begins at the rim, in patches and along creases
     const float burnt = hash_unit(key + 6), turned = 0.8f * burnt * burnt;
     const float patch = noise2(1.5f * leaf->x + 3, 1.5f * leaf->y, key >> 5 & 255);
     const float rim = expf(-maxf(depth, 0) / (0.09f + 0.09f * patch));
@@ -157,7 +157,7 @@ void ash_look(const Preview *preview, Float3 position, float footprint, Ash *ash
     const float most = ASH_ASIDE / maxf(hypotf(to.x, to.y), 1e-6f), up = maxf(to.z, 1e-6f);
     const float view[2] = {to.x * minf(1 / up, most), to.y * minf(1 / up, most)};
 
-    // dust, then what is larger over what is smaller
+    // dust first, then larger pieces over smaller ones
     const float drift = ash_drift(seed, position.x, position.y);
     const float dust = 0.22f * drift * stepf(-0.5f, 0.9f, noise2(position.x * 240, position.y * 240, seed + 312));
     *ash = (Ash){.cover = dust, .albedo = 0.10f * dust};
@@ -172,7 +172,7 @@ void ash_look(const Preview *preview, Float3 position, float footprint, Ash *ash
                       dark * stepf(-soft, 0.1f, scrap_depth(below.x, below.y, below.key)), ash);
         }
 
-        // down the ray of sight
+        // down the view ray
         const int steps = kind < 2 ? ASH_STEPS : 1;
         const float top = SCRAP_FLAT * ash_kinds[kind].largest;
         float above = 0, last = top;

@@ -225,7 +225,7 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
 #define LEAF_STARVES 0.2f ///< how much less of it is alive below a flame
 #define LEAF_FRONT 1.1f   ///< alive along the front of char that feeds a flame; above 1 it has no gaps
 #define LEAF_DULL 1.7f
-#define LEAF_SCATTERS 0.4f ///< how much coals differ where little is alive
+#define LEAF_SCATTERS 0.4f ///< spread of the coals' brightness where few still glow
 #define LEAF_COOLER 150.0f ///< K, how much cooler it is between coals
 #define LEAF_BRIGHT 1.2f
 #define LEAF_DIM 150.0f      ///< K, how much cooler a coal's sides are

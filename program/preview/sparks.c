@@ -4,8 +4,8 @@
 //
 //     p(a) = p0 + w (a - g) + u g + eddies,   g = LAG (1 - exp(-a / LAG)) at the age a,
 //
-// is drawn with the air towards the middle of the fire around it, winds about its way with the eddies that rise in the plume,
-// and cools, T(a) = SPARK_COLD + (T0 - SPARK_COLD) exp(-COOLING a / life), so that it turns from yellow to orange to red
+// is drawn with the air towards the middle of the fire around it, is swirled by the eddies that rise in the plume, and
+// cools, T(a) = SPARK_COLD + (T0 - SPARK_COLD) exp(-COOLING a / life), so that it turns from yellow to orange to red
 // and goes out. What the film sees is its way while the shutter is open: light that is spread over a streak.
 //
 // Crumbs break as stones do: sizes and light are log-normal, so few sparks are bright and many are hardly seen, and most
@@ -13,15 +13,15 @@
 
 #include "preview/airborne.h"
 
-enum { SPARKS_A_SLOT = 6 }; ///< that a site may throw in a slot
+enum { SPARKS_A_SLOT = 6 }; ///< at most, from a site in a slot
 #define SPARK_CELL 0.012f   ///< m, of the sites
 #define SLOT 0.05f          ///< s
 #define LIFE 1.05f          ///< s, the longest
 #define LAG 0.09f           ///< s
 #define CURL 0.0016f        ///< m, the widest
-#define SWIRL 0.034f        ///< m from one eddy of the plume to the next
-#define SWIRL_RISE 0.28f    ///< m/s: sparks pass them
-#define SWIRL_WIDE 0.009f   ///< m, by which they carry a spark aside, at most
+#define SWIRL 0.034f        ///< m between eddies of the plume
+#define SWIRL_RISE 0.28f    ///< m/s, slower than sparks, which pass them
+#define SWIRL_WIDE 0.009f   ///< m that they carry a spark sideways, at most
 #define TAIL_COLD 0.22f     ///< by which share what it leaves behind is colder
 #define SPARK_COLD 900.0f   ///< K
 #define COOLING 3.8f
@@ -32,12 +32,12 @@ enum { SPARKS_A_SLOT = 6 }; ///< that a site may throw in a slot
 #define BLUR_MOST 2.0f          ///< pixels
 #define WIDE_MOST 1.25f         ///< pixels
 #define STREAK_MOST 0.03f       ///< of the picture's height
-#define STREAK_SHORT 23.0f      ///< pixels, which no streak is too long with
-#define BUSY_RATE 2.1f          ///< 1/s, at which embers that crackle throw many and then none
-#define BUSY_WIDE 0.03f         ///< m from embers that crackle to others that do not
-#define BUSY 13.0f              ///< times as many, at most
-#define BUSY_LEAST 0.15f        ///< and those of others
-#define SPARKS_A_METRE 6000.0f  ///< 1/(m s), of sites that glow along a few cm
+#define STREAK_SHORT 23.0f      ///< pixels, below which no streak is cut
+#define BUSY_RATE 2.1f          ///< 1/s, how often crackling embers change between many sparks and none
+#define BUSY_WIDE 0.03f         ///< m between embers that crackle and others that do not
+#define BUSY 13.0f              ///< factor on the sparks of embers that crackle, at most
+#define BUSY_LEAST 0.15f        ///< the same of the others
+#define SPARKS_A_METRE 6000.0f  ///< 1/(m s), from sites that glow over a few cm
 #define SPARKS_CROWD 0.25f      ///< m of glowing line above which sparks become rarer
 
 /// A spark's flight.
@@ -46,7 +46,7 @@ typedef struct Spark {
     float life, hot, size;    ///< s, K, m
     float wander, turn[2];    ///< m/s, and the phases of its eddies
     float pull[2];            ///< m, along x and y, to the middle of the fire
-    float eddy[2], winds;     ///< rad: their phases when it leaves; and m, aside with them
+    float eddy[2], winds;     ///< rad, their phases as it leaves; m, how far they carry it
     float curl, spin;         ///< m, 1/s: crumbs spin, and their way curls
     float shows;              ///< times the exposure, while its glowing side does
     float comet;              ///< 0: both of its ends fade alike; 1: it has a bright head
@@ -61,7 +61,7 @@ static Float3 spark_at(const Spark *spark, float age) {
     p.x += aside * (sinf(spark->turn[0] + 7.3f * age) - sinf(spark->turn[0]));
     p.y += aside * (sinf(spark->turn[1] + 6.1f * age) - sinf(spark->turn[1]));
 
-    // eddies rise more slowly than sparks, which so pass through them: their ways are arcs, and neighbours' ways are alike
+    // sparks rise through slower eddies: their paths are arcs, and similar to those of their neighbours
     const float rise = maxf(p.z - spark->from.z, 0), winds = spark->winds * rise / (rise + 0.5f * SWIRL);
     const float passed = 2 * PI_F * (rise - SWIRL_RISE * age) / SWIRL;
     p.x += winds * sinf(spark->eddy[0] + passed);
@@ -97,7 +97,7 @@ static void spark_draw(Preview *preview, const Spark *spark, float begin, float 
     // a wide lens would draw those that pass before the focus as capsules, which no eye takes for sparks
     const float radius = maxf(1.1f, minf(camera_blur(&preview->camera, depth), BLUR_MOST));
     const int dots = 1 + (int)minf(streak / 0.5f, 400);
-    // a lens spreads any point, and film bears only so much of a near one: no spark is a lamp
+    // a lens spreads any point, and a near spark must not look like a lamp: its brightness has a limit
     const float wide = clampf(spark->size / pixel, 0.6f, WIDE_MOST);
     for (int k = 0; k < dots; k++) {
         float part = ((float)k + 0.5f) / (float)dots, age = mixf(begin, end, part);

@@ -25,7 +25,7 @@ SingeResult texture_create(Preview *preview, Texture *texture, const Image *imag
         texture->levels[level] = out;
         texture->count++;
 
-        // each pixel is the mean of four
+        // each pixel averages four samples
         const uint8_t *in = texture->levels[level - 1];
         for (int y = 0; y < texture->height[level]; y++) {
             int y0 = 2 * y < h ? 2 * y : h - 1, y1 = y0 + 1 < h ? y0 + 1 : y0;

@@ -6,8 +6,8 @@
 //     p(a) = p0 + z h(a) + (N1(s), N2(s), N3(s)) g(a),   g = 0 up to the age LAMINAR, then growing:
 //
 // a thread sways little for some centimetres, then buckles, and rolls where what left later overtakes what left before. A
-// wisp is a ribbon of THREADS of these, dense in its middle and thin at its sides, that leaves up to a centimetre of its rim
-// in streams, which pulse each for itself, narrow while it rises, and spread unlike each other. Their
+// wisp is a ribbon of THREADS of these, dense in its middle and thin at its sides. It leaves up to a centimetre of the rim
+// in streams, each of which pulses by itself, narrows as it rises, and spreads in its own way. Their
 // swings differ more and more, so it breaks into veils: where one turns its edge or folds there is a bright thin line beside
 // a soft fill. It is bent across, so that it has a width from every side. Each thread is a row of soft dots. As much smoke
 // passes each height, but for what condenses near the ember and is lost at last: where a wisp is wider it is fainter.
@@ -21,7 +21,7 @@ enum {
     FEWER = 4,   ///< of which one is drawn where all are within a few pixels
     KNOTS = 150, ///< of a thread, between which it is straight
     SIGHTS = 3,  ///< times SIGHT_POINTS places of a thread where it is known whether it is seen; most are low
-    FADES = 5,   ///< of these, over which it fades to each side of what hides it
+    FADES = 5,   ///< of these on each side of an obstacle, over which it fades
     LIGHTS = 12, ///< places of a wisp where its light is known
 };
 #define WISP_CELL 0.025f  ///< m, of the sites
@@ -30,21 +30,21 @@ enum {
 #define SPEEDING 0.13f    ///< m/s2
 #define RIBBON 0.0006f    ///< m, half of its width at the ember
 #define LAMINAR 0.19f     ///< s, in the mean
-#define SWAY 0.006f       ///< m, by which it does before it buckles
+#define SWAY 0.006f       ///< m that it sways before it buckles
 #define CURL 0.036f       ///< m, by which curls move it at most
 #define CURLING 0.19f     ///< s after it has buckled, by which half of that
-#define EDDY 0.010f       ///< m, by which small eddies move threads then
-#define RIM 0.003f        ///< m of it to each side at most, from which a wisp comes
-#define CLUMPED 0.5f      ///< of its width along the rim, by which threads keep together there
-#define NARROWS 0.4f      ///< of that width, what is left of it
-#define JOINED 0.8f       ///< s, when
-#define BURNT_SOON 0.30f  ///< s, of smoke that is not seen
-#define BURNT_LATE 0.8f   ///< that is seen wholly
+#define EDDY 0.010f       ///< m that small eddies move threads after that
+#define RIM 0.003f        ///< m of the rim on each side, at most, that feed a wisp
+#define CLUMPED 0.5f      ///< share of its width along the rim by which threads cluster there
+#define NARROWS 0.4f      ///< share of that width that remains
+#define JOINED 0.8f       ///< s, until then
+#define BURNT_SOON 0.30f  ///< s, age: smoke that comes to a flame before that is not seen
+#define BURNT_LATE 0.8f   ///< s, the same: and smoke that comes later is seen whole
 #define THREAD 0.0005f    ///< m, radius at the ember
 #define WISP_DEPTH 19e-3f ///< m, optical depth across a wisp times its width
-#define FRESH 0.35f       ///< of that at the ember: most vapours have not condensed
+#define FRESH 0.35f       ///< share of that at the ember: most vapours have not condensed yet
 #define STRONG 1.2f       ///< by which strong wisps are weakened, or they would be white cords
-#define AMID 0.55f        ///< light of a wisp that is amid flames, which burn most of it; of a third it is whole
+#define AMID 0.55f        ///< share of a wisp's light among flames, which burn most of it
 #define FLAME_FAINT 0.08f ///< of a cell whose flame burns smoke
 #define AHEAD 0.5f        ///< of what it takes from the light behind it, that goes on nearly straight is not missed
 #define SMOKING 10.0f     ///< sites of which half smoke
@@ -53,7 +53,7 @@ enum {
 typedef struct Wisp {
     Float3 path[KNOTS + 1]; ///< m, where the air carries what leaves the ember
     Float3 across;
-    Float3 from[2]; ///< m from the first of the path, where its first and its last thread leave the rim
+    Float3 from[2]; ///< m from the first point of its path: where its first and last threads leave the rim
     float strength, now;
     float laminar; ///< s
     float burnt;   ///< s, age at which it comes to a flame
@@ -162,7 +162,7 @@ static void thread_draw(Preview *preview, const Wisp *wisp, float place, bool fi
         airborne_sight(preview, points, SIGHT_POINTS, sharp + k * SIGHT_POINTS);
     }
 
-    // it fades towards where it passes behind what is seen, as it may drift through a sheet there
+    // it fades before it passes behind something, because it may drift through a sheet there
     for (int k = 0; k < SIGHTS * SIGHT_POINTS; k++) {
         const int from = k < FADES ? 0 : k - FADES;
         const int last = k + FADES < SIGHTS * SIGHT_POINTS ? k + FADES : SIGHTS * SIGHT_POINTS - 1;

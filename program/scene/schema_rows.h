@@ -10,7 +10,7 @@
 #define DEGREE (3.14159265358979323846 / 180)
 #define ROWS(table) .rows = (table), .row_count = (int)(sizeof(table) / sizeof *(table))
 
-// ranges, in held units: those of the library's tables, up to 1e9
+// ranges, in the units that scenes are stored in: those of the library's tables, up to 1e9
 #define MUCH 1e9
 #define ANY .min = 0, .max = 0 // any number of the type
 #define SPACE .min = -1e6, .max = 1e6

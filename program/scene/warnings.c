@@ -32,7 +32,7 @@ const char *source_heats_nothing(const Scene *scene, const SceneSource *source) 
     return scene->frames > 1 && (double)def->start >= end ? "it starts after the last frame" : NULL;
 }
 
-/// Of meshes that are much too large, and of those too far away.
+/// Warns of meshes that are much too large or too far away.
 static void warn_of_meshes(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
     // files that most likely are in cm or mm
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
@@ -70,7 +70,7 @@ static void warn_of_meshes(const Scene *scene, const SceneAssets *assets, const 
     }
 }
 
-/// Of blankets that reach no farther than contact lets other sheets come.
+/// Warns of blankets whose reach is within the distance that contact keeps.
 static void warn_of_blankets(const Scene *scene, const SingeLog *log) {
     float thickest = 0;
     for (uint32_t i = 0; i < scene->sheet_count; i++) {

@@ -100,7 +100,7 @@ static void air_go(BurnAir *air, BurnAirNear *near, const Float4Mask middle[3], 
         near->known && (by == 1 || by == -1) && middle[1][k] == near->middle[1] && middle[2][k] == near->middle[2];
     for (int d = 0; d < 3; d++) near->middle[d] = middle[d][k];
 
-    // mostly one node farther along x than those before: then only nine are new
+    // usually one node farther along x than before, so that only nine are new
     uint32_t fresh = (1u << 27) - 1;
     if (follows) {
         fresh = by < 0 ? 0x1249249 : 0x1249249 << 2; // bits of the nine nodes at -1 along x, or at 1

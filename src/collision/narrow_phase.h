@@ -1,4 +1,4 @@
-// The features of two cells that are near each other.
+// The features of two cells in proximity.
 #pragma once
 
 #include "collision/collision_plan.h"

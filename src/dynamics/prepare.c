@@ -20,7 +20,7 @@ typedef struct Prepare {
     const SingeWindDef *wind;
     const SourceList *sources; ///< that move air; or NULL
     DynamicsState *dynamics;   ///< its positions get the inverse mass
-    bool known;                ///< what the last step has left holds for particles that have lost no mass since
+    bool known;                ///< values of the last step still hold for particles that have lost no mass since
 } Prepare;
 
 /// Marks a spring, if it is in a strand, to be prepared again. Several threads may mark one.

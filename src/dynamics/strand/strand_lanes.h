@@ -52,7 +52,7 @@ typedef struct StrandSet {
     float *compliance;     ///< [row_count STRAND_LANES] m/N
     float *bend_limit;     ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
     float bend_share;      ///< of a bend beyond its limit that a substep removes
-    _Atomic bool bends;    ///< some limit is, or has been, finite
+    _Atomic bool bends;    ///< some limit is finite, or has been
     float *pull;           ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: not needed
     uint32_t run_count;    ///< of springs: PREPARE_RUN each, in the springs' order
     uint8_t *stale;        ///< [run_count] 1: some of the run's springs change in this step
@@ -60,7 +60,7 @@ typedef struct StrandSet {
     uint8_t *creased;      ///< [run_count] 1: a crease had changed a length of the run
     _Atomic uint8_t *seen; ///< [run_count PREPARE_RUN] the springs' flags that the weights are for, or PREPARE_STALE
     bool rings;            ///< some strands are rings
-    float compliance_all;  ///< m/N, that of every spring; negative where they differ
+    float compliance_all;  ///< m/N, of every spring; negative if they differ
     void *block;           ///< memory of the five arrays
 } StrandSet;
 

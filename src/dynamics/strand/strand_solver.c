@@ -238,9 +238,9 @@ static void project_range(void *task, int begin, int end) {
     atomic_fetch_and(&strands->taken, ~((uint64_t)1 << room));
 }
 
-/// One of `count` projections of a colour, which share what its compliances give. Sheets that tear share the regularisation,
-/// too: what cannot be satisfied, as an edge that is straight between two pins, is pulled in each projection, and the
-/// line force there would grow with their number.
+/// One of `count` projections of a colour, among which its compliance is divided. In sheets that tear, so is the
+/// regularisation: a constraint that cannot be satisfied, such as a straight edge between two pins, is pulled in each
+/// projection, and its line force would grow with their number.
 static void strands_project_colour(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h, int count,
                                    DynamicsState *dynamics, DynamicsCounters *counters) {
     Strands *strands = &plan->strands;
