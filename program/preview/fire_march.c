@@ -8,11 +8,10 @@
 #include <string.h>
 
 #define FIRE_SHORT 0.18f ///< step near an edge, relative to the usual one: .35 leaves ribs in thin sheets
-#define FIRE_LEAP 0.5f   ///< of the way to an edge, that a step outside of it may go: the depth is not quite a distance
-#define FIRE_DEEP 0.0015f  ///< m inside of an edge: from there on steps are two short ones; four leave ribs, too
-#define FIRE_NOTED 0.8f    ///< of the usual step, which what is noted is longer than
-#define FIRE_NEAR 5.0f     ///< short steps from an edge, in usual ones: with 2, arcs are seen inside of tongues
-#define FIRE_JUMP 0.5f     ///< of a step: by more the depth changes only near edges that eddies have bent
+#define FIRE_LEAP 0.3f   ///< of the way to an edge, that a step outside of it may go: the depth is not quite a distance
+#define FIRE_NOTED 0.8f  ///< of the usual step, which what is noted is longer than
+#define FIRE_NEAR 5.0f   ///< short steps from an edge, in usual ones: with 2, arcs are seen inside of tongues
+#define FIRE_JUMP 0.5f   ///< of a step: by more the depth changes only near edges that eddies have bent
 #define SMOKE_APART 0.005f ///< m, between rays that have smoke
 #define SMOKE_STEP 0.010f  ///< m, distance at most between the places of a ray where its smoke is looked up
 #define FIRE_SOFT 6.0f     ///< pixels, over which the edges of flames begin: rays are two apart, depths rough
@@ -118,10 +117,9 @@ static bool guide_near(const Guide *guide, float t, int *run, float *until) {
     return false;
 }
 
-/// How many short steps a step is long that begins at a depth: the more, the further the edge is. Powers of two, so that
-/// what is at an edge is at the same places whatever came before.
+/// How many short steps a step is long that begins at a depth: outside the more, the further the edge is. Powers of two, so
+/// that what is at an edge is at the same places whatever came before.
 static float steps_to_edge(float depth, float little) {
-    if (depth > FIRE_DEEP) return 2;
     float times = 1;
     while (2 * times * little <= -FIRE_LEAP * depth) times *= 2;
     return times;
@@ -222,8 +220,7 @@ static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile
             again = next; // the same distance in short steps: else the long ones of rays side by side are bars
             continue;
         }
-        const bool meets = here.depth > 0 ? there.depth < 0.5f * FIRE_DEEP : there.depth > -FIRE_SHORT * fine;
-        if (times > 1 && meets) {
+        if (times > 1 && there.depth > -FIRE_SHORT * fine) {
             again = next;
             continue;
         }
