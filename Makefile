@@ -213,8 +213,8 @@ mutations:
 	scripts/setup.sh
 	tests/mutations/mutations.py
 
-# a swinging and a falling sheet in other solvers and in this one, and the tables of docs/performance.md; NVCLOTH=FOLDER: also
-# in NvCloth, whose sources are there
+# measures a swinging and a falling sheet in this solver and in others, and prints the tables of docs/performance.md;
+# NVCLOTH=FOLDER, where NvCloth's sources are, measures them in NvCloth as well
 bench-peers: build
 	scripts/bench_peers.py build/singe --table $(if $(NVCLOTH),--nvcloth $(NVCLOTH))
 
