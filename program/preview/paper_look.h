@@ -117,8 +117,8 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 #define EMBER_WIDTH 0.00042f ///< m, of the glowing line
 #define EMBER_GAIN 3.4f
 #define EMBER_MOST 6.0f       ///< radiance of the brightest channel, which none reaches
-#define LEAF_LIT 0.024f       ///< a leaf's mean radiance, of one that glows all over at its temperature
-#define LEAF_BORDER_LIT 0.18f ///< the same along its border
+#define LEAF_LIT 0.014f       ///< a leaf's mean radiance, of one that glows all over at its temperature
+#define LEAF_BORDER_LIT 0.13f ///< the same along its border
 #define LEAF_FED_LIT 0.35f    ///< of that, what is left where it feeds a flame
 #define LEAF_BORDER 0.003f    ///< m
 #define CLOTH_LIT 0.027f      ///< the same of cloth

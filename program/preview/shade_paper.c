@@ -305,7 +305,7 @@ static float leaf_alive(const Preview *preview, const PaperState *state, const B
     Float3 p = float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 0.5e-3f);
     const float stretch = noise3(float3_mad(float3(0.05f * t, -0.08f * t, 0.11f * t), p, 1 / 17e-3f), 61);
     const float rim = stepf(-0.3f, 0.5f, stretch + 0.9f * patch);
-    const float behind = rim * expf(-border / maxf(0.4f + 2.4f * rim * (0.8f + 0.7f * patch), 0.3f));
+    const float behind = rim * expf(-border / maxf(0.7f + 2.8f * rim * (0.9f + 0.6f * patch), 0.3f));
 
     const float creeps = stepf(-0.1f, 0.5f, 0.35f * patch - stretch);
     if (creeps <= 0) return behind;

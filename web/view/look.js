@@ -228,7 +228,7 @@ float leaf_alive(PaperState state, Bent bent, float patch_) {
     vec3 p = float3_mad(bent.position, vec3(bent.medium, bent.coarse, bent.fine), 0.5e-3);
     float stretch = noise3(float3_mad(vec3(0.05 * t, -0.08 * t, 0.11 * t), p, 1.0 / 17e-3), 61.0);
     float rim = stepf(-0.3, 0.5, stretch + 0.9 * patch_);
-    float behind = rim * exp(-border / max(0.4 + 2.4 * rim * (0.8 + 0.7 * patch_), 0.3));
+    float behind = rim * exp(-border / max(0.7 + 2.8 * rim * (0.9 + 0.6 * patch_), 0.3));
     float creeps = stepf(-0.1, 0.5, 0.35 * patch_ - stretch);
     if (creeps <= 0.0) return behind;
     float phase = 1.9 * noise3(float3_mad(vec3(0.0, 0.04 * t, 0.0), p, 1.0 / 24e-3), 63.0) +
@@ -304,15 +304,15 @@ void char_shade(Bent bent, vec3 burnt, float ink, inout Point point) {
         mix(vec3(0.034, 0.020, 0.012), vec3(0.0125, 0.0125, 0.0132), stepf(0.22, 0.62, bent.burn));
     float craze = paper_cracks(bent, 3.1, 0.04, point.footprint);
     vec3 colour = float3_scale(soot, value * (1.0 - 0.6 * craze));
-    point.albedo = mix(burnt, float3_mad(colour, vec3(0.060, 0.060, 0.063), ink), black);
+    point.albedo = mix(burnt, float3_mad(colour, vec3(0.078, 0.078, 0.082), ink), black);
     float tar = clamp(0.75 + 0.5 * bent.coarse - 0.5 * ink, 0.2, 1.2);
     point.gloss = 0.06 * black * tar;
     point.shininess = 14.0;
     point.mirror = 0.45 * black * tar;
     vec3 cockled = float3_mad(bent.position, vec3(bent.medium, bent.coarse, bent.fine), 0.7e-3);
-    tilt(cockled, 13.0, 0.30 * black, true, 33.0, point);
-    tilt(cockled, 5.2, 0.45 * black, true, 32.0, point);
-    tilt(bent.position, 1.6, 0.15 * black, true, 31.0, point);
+    tilt(cockled, 13.0, 0.17 * black, true, 33.0, point);
+    tilt(cockled, 5.2, 0.29 * black, true, 32.0, point);
+    tilt(bent.position, 1.6, 0.09 * black, true, 31.0, point);
     float away = 1.0 - max(dot(point.normal, point.view), 0.0);
     float sheen =
         SHEEN * black * away * away * away * away * (1.0 - 0.5 * craze) * max(0.8 + 0.5 * bent.coarse, 0.2);
