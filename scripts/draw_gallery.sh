@@ -5,11 +5,11 @@
 # Usage: scripts/draw_gallery.sh [EXAMPLE...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
-declare -A best=([letter]=0087 [letter-hanging]=0145 [hot-sphere]=0044 [page-hot]=0048 [newspaper]=0094
-    [curtain]=0097 [stack-edge]=0072 [stack]=0067 [crumpled-ball]=0118 [hot-iron]=0098 [tear]=0030 [shirt]=0109
-    [burning-torus]=0072 [macro]=0035 [note]=0080 [title]=0112)
+declare -A best=([letter]=0087 [letter-hanging]=0146 [hot-sphere]=0044 [page-hot]=0042 [newspaper]=0094
+    [curtain]=0097 [stack-edge]=0080 [stack]=0112 [crumpled-ball]=0104 [hot-iron]=0098 [tear]=0024 [shirt]=0109
+    [burning-torus]=0046 [macro]=0032 [note]=0080 [title]=0090)
 declare -A measured=([letter]=50-59 [letter-hanging]=100-109 [hot-sphere]=50-59 [page-hot]=40-49 [newspaper]=80-89
-    [curtain]=100-109 [stack-edge]=60-69 [stack]=0066-79 [crumpled-ball]=100-109 [hot-iron]=70-79 [tear]=30-39
+    [curtain]=100-109 [stack-edge]=60-69 [stack]=66-79 [crumpled-ball]=100-109 [hot-iron]=70-79 [tear]=30-39
     [shirt]=60-69 [burning-torus]=60-69 [macro]=40-49 [note]=70-79 [title]=70-79)
 order=(note letter macro letter-hanging hot-sphere page-hot newspaper curtain stack-edge stack crumpled-ball hot-iron tear
     shirt burning-torus title)

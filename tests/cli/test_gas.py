@@ -52,20 +52,20 @@ class Gas(Case):
     def test_render_reads_it(self):
         self.run_scene("o", "--quiet", preview=True)
         shutil.rmtree(self.path("o", "gas"), ignore_errors=True)
-        png = self.path("o", "frames", "tiny.0002.png")
-        self.singe("render", self.path("o"), "--frames", "2")
+        png = self.path("o", "frames", "tiny.0003.png")
+        self.singe("render", self.path("o"), "--frames", "3")
         without = self.read(png)
-        self.put_gas(2)
-        self.singe("render", self.path("o"), "--frames", "2", "--threads", "2")
+        self.put_gas(3)
+        self.singe("render", self.path("o"), "--frames", "3", "--threads", "2")
         burning = self.read(png)
         self.assertNotEqual(burning, without)
-        self.singe("render", self.path("o"), "--frames", "2", "--threads", "1")
+        self.singe("render", self.path("o"), "--frames", "3", "--threads", "1")
         self.assertEqual(self.read(png), burning)
-        with open(self.vdb(2), "r+b") as file:
+        with open(self.vdb(3), "r+b") as file:
             file.truncate(9000)
-        self.assertIn("tiny.0002.vdb", self.singe("render", self.path("o"), "--frames", "2", expect=2)[1])
-        os.remove(self.vdb(2))
-        self.singe("render", self.path("o"), "--frames", "2")
+        self.assertIn("tiny.0003.vdb", self.singe("render", self.path("o"), "--frames", "3", expect=2)[1])
+        os.remove(self.vdb(3))
+        self.singe("render", self.path("o"), "--frames", "3")
         self.assertEqual(self.read(png), without)
 
     def test_left_overs(self):
