@@ -28,7 +28,7 @@ src/mesh         common materials
 src/materials    common
 program/formats  $files
 program/windows  $files cli/spawn.h cli/text.h
-program/preview  $files common/cpu.h common/float4.h
+program/preview  $files common/cpu.h common/float4.h world/triangle.h
 program/scene    $files mesh/to_quads.h preview/preview.h preview/preview.def
 program/analysis $files common/float3.h mesh/to_quads.h
 program/cli      $program

@@ -8,6 +8,8 @@
 #include "preview/ground.h"
 #include "preview/shape_look.h"
 
+#include "world/triangle.h"
+
 /// Where a point is among the fibres, and what it is cut through.
 typedef struct Grain {
     float u, v;   ///< m, along the fibres and across them
@@ -150,11 +152,17 @@ void wood_singe(Preview *preview) {
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         PreviewShape *shape = &preview->shapes[k];
         if (!shape->grips) continue;
+        // the nearest points of triangles: vertices of a coarse sheet may all be farther away
         float burnt = 0, count = 0;
-        for (uint32_t i = 0; i < scene->vertex_count; i++) {
-            const Float3 to = float3_sub(float3_load(scene->positions[i]), float3_load(shape->position));
-            if (float3_dot(to, to) > SINGED * SINGED) continue;
-            burnt += scene->vertices[i].burn;
+        for (uint32_t i = 0; i < scene->triangle_count; i++) {
+            const uint32_t *v = scene->triangles[i];
+            const TriangleClosest near =
+                triangle_closest(float3_load(shape->position), float3_load(scene->positions[v[0]]),
+                                 float3_load(scene->positions[v[1]]), float3_load(scene->positions[v[2]]));
+            if (near.square > (double)SINGED * (double)SINGED) continue;
+            const float s = (float)near.s, t = (float)near.t;
+            burnt += (1 - s - t) * scene->vertices[v[0]].burn + s * scene->vertices[v[1]].burn +
+                     t * scene->vertices[v[2]].burn;
             count++;
         }
         shape->singed = count > 0 ? stepf(0.1f, 0.6f, burnt / count) : 1; // nothing is left of it

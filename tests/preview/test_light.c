@@ -111,7 +111,7 @@ TEST(a_sheet_before_a_flame_shines_through) {
     print_message("through the sheet: %.4f %.4f %.4f, of ink %.4f\n", (double)white[0], (double)white[1],
                   (double)white[2], (double)ink);
     assert_true(white[0] < 0.05f * white[1] && white[1] > 0.06f); // .01: what flames cast was less, and spread further
-    assert_float_equal(white[2] / white[1], 2, 0.1);
+    assert_float_equal(white[2] / white[1], 2, 0.1);              // farther up it is 1.85: what is bright adds less
     assert_true(ink < 0.4f * white[2]);
 }
 

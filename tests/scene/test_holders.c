@@ -239,15 +239,15 @@ TEST(pictures_show_what_holds_a_sheet) {
 /// Pegs whose sheet has burnt are black where they held it, and wood where it has not.
 TEST(pegs_are_singed_where_their_sheet_burns) {
     static uint8_t rgb[BYTES];
-    double light[3];
-    for (int k = 0; k < 3; k++) { // fresh, burnt, and nothing left of it
+    double light[4];
+    for (int k = 0; k < 4; k++) { // fresh, burnt, nothing left of it, and fresh, a strip of one coarse cell
         PreviewDef def;
         Preview *preview = NULL;
         PreviewShape shapes[16];
         Hung hung = hang("pins: [{points: [[0, 0, 0.15]], radius: 8 mm, holder: peg}]");
         Float4 q;
         quad_make(&q, 0.004f, k == 2 ? -0.5f : 0.15f);
-        for (int i = 0; i < 4; i++) q.burn[i] = k == 1;
+        for (int i = 0; i < 4; i++) q.burn[i] = k == 1, q.position[i][0] *= k == 3 ? 25 : 1;
         scene_preview(hung.scene, &hung.assets, &def);
         def.width = W;
         def.height = H;
@@ -264,6 +264,8 @@ TEST(pegs_are_singed_where_their_sheet_burns) {
             for (int x = W * 2 / 5; x < W * 3 / 5; x++) light[k] += rgb[3 * (y * W + x)] / (0.25 * H * 0.2 * W);
         let_go(&hung);
     }
-    print_message("red of the jaws: %.0f, burnt %.0f, nothing left %.0f\n", light[0], light[1], light[2]);
+    print_message("red of the jaws: %.0f, burnt %.0f, nothing left %.0f, of a coarse strip %.0f\n", light[0], light[1],
+                  light[2], light[3]);
     assert_true(light[0] > 60 && light[1] < 0.5 * light[0] && light[2] < 0.5 * light[0]);
+    assert_true(light[3] > 0.8 * light[0]); // black where vertices were looked for
 }
