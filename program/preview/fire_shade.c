@@ -101,11 +101,11 @@
 #define FLAME_COOL 1200.0f ///< K
 #define FLAME_HOT 2000.0f
 #define FLAME_DIM 0.26f ///< radiance of a thick flame at its coolest and its hottest
-#define FLAME_BRIGHT 6.5f
+#define FLAME_BRIGHT 5.9f
 #define FLAME_CAST 0.875f       ///< of that range, 1900 K: the colour of the light that they cast
 #define FLAME_BAKED 3.0f        ///< radiance of what is 1 where gas is baked
 #define SOOT_DENSE 198.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
-#define BLUE_DENSE 4.5f         ///< 1/m: radiance of the root per metre
+#define BLUE_DENSE 3.6f         ///< 1/m: radiance of the root per metre
 #define BLUE_ENDS 0.005f        ///< m above the paper
 #define SHELL_RISE 0.0005f      ///< m, w
 #define SHELL_RISE_MOST 0.0016f ///< more would dim thin tongues
@@ -114,6 +114,7 @@
 #define TAPER 0.55f             ///< what is added to it above a flame's height
 #define STAND_OFF 0.0006f       ///< m above the paper, below which nothing is visible
 #define JOINED_HOT 0.15f
+#define LARGE_HOT 0.14f ///< more where flames are twice as large: more soot glows in them
 #define FILAMENT_HOT 0.55f
 #define HIGH_COOL 0.18f
 #define SPENT_COOL 0.25f
@@ -291,6 +292,7 @@ static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, flo
     float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.138f;
     hot += FILAMENT_HOT * filament + 0.15f * pane * (1 - clear) - HIGH_COOL * stepf(0.1f, 1.5f, tall);
     hot += JOINED_HOT * stepf(1.1f, 1.6f, flame); // where tongues have joined
+    hot += LARGE_HOT * clampf(fire->scale - 1, 0, 1);
     hot *= mixf(FOOT_COOL, 1, warm);
 
     // what is above a body of flame without its noise, is cooler and thinner: tongues end faint
