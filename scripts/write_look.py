@@ -17,7 +17,7 @@ import write_types
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 FILE = ROOT / "web/view/look.js"
 CONSTANTS = ("ember.h", "paper_look.h", "fire.h", "shade_paper.c", "fire_shade.c", "fire_march.c", "airborne.c", "sparks.c", "light.h", "fire.c", "fire_feet.c",
-             "shade_ground.c", "shade_metal.c")
+             "shade_ground.c", "shade_metal.c", "lamps.c")
 PARTS = {
     "PAPER": {
         "structs": {"paper_look.h": ["PaperState"], "shade_paper.c": ["Bent"]},

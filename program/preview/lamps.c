@@ -18,6 +18,9 @@
 
 enum { GRID = 10, CELLS = GRID * GRID * GRID, FLAME_LIGHTS = 8 };
 
+#define LAMP_WRAP 0.3f ///< cosine over which the least of lamps sets on what turns away from it
+#define LAMP_WRAP_MOST 0.7f
+
 typedef struct Cluster {
     Float3 position, strength;
     float weight;
@@ -26,8 +29,6 @@ typedef struct Cluster {
 /// Embers are drawn on the film's scale, which compresses bright parts (blackbody.c). The light they cast is not
 /// compressed, and an eye in the dark sees it better than a camera set for daylight. Flames dazzle it.
 static const float EMBER_CAST = 5;
-static const float LAMP_WRAP = 0.3f; ///< cosine over which the least of lamps sets on what turns away from it
-static const float LAMP_WRAP_MOST = 0.7f;
 static const float DAZZLED = 0.3f; ///< the share of it that is left beside flames that light far more
 
 static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster *clusters) {

@@ -31,12 +31,12 @@ vec3 shaded(vec3 albedo, vec3 through, float gloss, float power, vec3 p, vec3 n,
     bool thin = through.g > 0.0;
     if (thin) sum += through * skyLight(-n);
     if (gloss > 0.0) high = sunLight * seen * pow(max(dot(n, normalize(sunTo + v)), 0.0), power) + 0.4 * skyLight(reflect(-v, n));
-    // sheets are wrapped, as flames have an extent; what lies below them is not, in place of the shadow that sheets cast
-    float wrap = thin ? 0.2 : 0.0;
+    // lamps set bit by bit on sheets (lamps.c), and at once on what lies below them, in place of the shadow that these cast
     for (int k = 0; k < lampCount; k++) {
         vec3 f = lampPlace[k].xyz - p, light = lampStrength[k].rgb;
         float r2 = dot(f, f), d2 = r2 + lampPlace[k].w, c = dot(n, f) * inversesqrt(d2);
-        float before = max((c + wrap) / (1.0 + wrap), 0.0);
+        float wrap = min(float(${LOOK.LAMP_WRAP}) + sqrt(lampPlace[k].w / d2), float(${LOOK.LAMP_WRAP_MOST}));
+        float up = clamp((c + wrap) / (2.0 * wrap), 0.0, 1.0), before = thin ? wrap * up * up + max(c - wrap, 0.0) : max(c, 0.0);
         sum += light * ((before + max(-through * c - before, 0.0)) / d2);
         if (gloss > 0.0) high += light * (pow(max(dot(n, normalize(f * inversesqrt(r2) + v)), 0.0), power) / d2);
     }
