@@ -6,8 +6,8 @@
 
 // The halo around overexposed parts: light scattered in a lens.
 //
-// out = picture + k1 G(s1) * over + k2 G(s2) * over, with over = max(picture - 1, 0) at a quarter of the resolution and
-// G a Gaussian with a width relative to the picture's height.
+// out = picture + sum of k G(s) * over, with over = max(picture - 1, 0) at a quarter of the resolution and G a Gaussian
+// with a width relative to the picture's height. The widest is faint: dust and haze around a fire, that join it to its room.
 
 enum { SHRINK = 4, RADIUS_LIMIT = 64 };
 
@@ -81,11 +81,12 @@ void bloom_apply(Preview *preview) {
         }
     if (!any) return;
 
-    float near = 0.005f * (float)height / SHRINK, far = 0.022f * (float)height / SHRINK;
-    film_blur(glow, scratch, w, h, maxf(near, 0.4f));
-    bloom_add(preview, glow, w, h, 0.14f);
-    film_blur(glow, scratch, w, h, maxf(far, 0.8f));
-    bloom_add(preview, glow, w, h, 0.10f);
+    static const float halo[3][3] = {
+        {0.005f, 0.4f, 0.14f}, {0.022f, 0.8f, 0.10f}, {0.065f, 0.8f, 0.06f}}; // s, its least, k
+    for (int k = 0; k < 3; k++) {
+        film_blur(glow, scratch, w, h, maxf(halo[k][0] * (float)height / SHRINK, halo[k][1]));
+        bloom_add(preview, glow, w, h, halo[k][2]);
+    }
 }
 
 // ---- the film

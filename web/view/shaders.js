@@ -475,7 +475,7 @@ uniform float sigma; // in pixels
 out vec4 colour;
 void main() {
     vec3 sum = texture(map, at).rgb;
-    float weight = 1.0, radius = min(ceil(2.5 * sigma), 40.0);
+    float weight = 1.0, radius = min(ceil(2.5 * sigma), 60.0);
     for (float k = 1.0; k <= radius; k += 1.0) {
         float w = exp(-0.5 * k * k / (sigma * sigma));
         sum += w * (texture(map, at + along * k).rgb + texture(map, at - along * k).rgb);
@@ -486,7 +486,7 @@ void main() {
 
 /** The halo and the film's curve (film.c). */
 export const FILM = /* glsl */ `${FIRE_SEEN}
-uniform sampler2D halo, glare;
+uniform sampler2D halo, glare, haze;
 uniform float exposure, vignette;
 uniform vec2 resolution;
 out vec4 colour;
@@ -498,7 +498,8 @@ float curve(float x) {
 }
 void main() {
     vec4 fire = fireSeen(0.5);
-    vec3 c = (texture(sceneMap, at).rgb * fire.a + fire.rgb) * exposure + 0.14 * texture(halo, at).rgb + 0.10 * texture(glare, at).rgb;
+    vec3 c = (texture(sceneMap, at).rgb * fire.a + fire.rgb) * exposure;
+    c += 0.14 * texture(halo, at).rgb + 0.10 * texture(glare, at).rgb + 0.06 * texture(haze, at).rgb;
     vec2 d = (at - 0.5) * vec2(resolution.x / resolution.y, 1.0);
     c *= 1.0 - vignette * smoothstep(0.35, 1.05, length(d));
     float over = max(max(c.r, max(c.g, c.b)) - 1.0, 0.0), leak = 0.02 + 0.14 * over * over / (over * over + 9.0);

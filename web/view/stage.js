@@ -64,7 +64,7 @@ export class Stage extends Card {
         this.canvas.height = h;
         this.target("scene", w, h);
         this.target("fire", half, Math.ceil(h / 2));
-        for (const name of ["bright", "across", "halo", "glare"]) this.target(name, quarter, Math.ceil(h / 4));
+        for (const name of ["bright", "across", "halo", "glare", "haze"]) this.target(name, quarter, Math.ceil(h / 4));
         for (const old of [this.colourBuffer, this.depthBuffer]) if (old) gl.deleteRenderbuffer(old);
         for (const old of [this.many, this.depthFrame]) if (old) gl.deleteFramebuffer(old);
         if (this.depth) gl.deleteTexture(this.depth);
@@ -220,14 +220,14 @@ export class Stage extends Card {
         }
         copy(this.depthFrame, gl.DEPTH_BUFFER_BIT);
         this.drawFire(camera, matrix, shared);
-        const { fire, bright, across, halo, glare } = this.targets, seen = { sceneMap: scene.texture, fireMap2: fire.texture, exposure: room.exposure };
+        const { fire, bright, across, halo, glare, haze } = this.targets, seen = { sceneMap: scene.texture, fireMap2: fire.texture, exposure: room.exposure };
         this.pass("bright", bright, { ...seen, pixel: [1 / scene.width, 1 / scene.height] });
-        for (const [to, sigma] of [[halo, 0.005], [glare, 0.022]]) {
+        for (const [to, sigma] of [[halo, 0.005], [glare, 0.022], [haze, 0.065]]) {
             const wide = Math.max((sigma * scene.height) / 4, 0.5);
             this.pass("blur", across, { map: bright.texture, along: [1 / bright.width, 0], sigma: wide });
             this.pass("blur", to, { map: across.texture, along: [0, 1 / bright.height], sigma: wide });
         }
-        this.pass("film", null, { ...seen, halo: halo.texture, glare: glare.texture, vignette: 0, resolution: [scene.width, scene.height] });
+        this.pass("film", null, { ...seen, halo: halo.texture, glare: glare.texture, haze: haze.texture, vignette: 0, resolution: [scene.width, scene.height] });
     }
 
     /** An upright plane across the look, `this.slice` of the way through the gas. */
