@@ -25,10 +25,10 @@
 #define RIM_HOT 1190.0f  ///< K, of that line at most
 
 #define CREASE_WIDE 0.052f ///< m, from one of the largest creases to the next
-#define CREASE_STEEP 0.56f ///< slope of their sides
+#define CREASE_STEEP 0.44f ///< slope of their sides
 #define CREASE_MOST 0.60f  ///< slope that none reaches where they cross
 #define CREASE_LONG 3.2f   ///< their length over their width
-#define FUZZ_WRAP 0.12f    ///< cosine by which light goes around what is round, by its fibres
+#define FUZZ_WRAP 0.35f    ///< cosine by which light goes around what is round, by its fibres
 #define FUZZ_MOST 0.42f    ///< share of fibres that stand out in what is seen, where cloth turns away
 
 #define SCORCH_FIRST 2.5f  ///< K, at which cloth yellows
@@ -271,6 +271,8 @@ float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *clot
     const float facing = maxf(float3_dot(point->geometric, point->view), 0.2f);
     const Creases creases = cloth_creases(weave, state, point->footprint / facing);
     const float whole = 1 - cloth->burnt, side = point->back ? whole : -whole;
+    // what the fibres hide is by the cloth as it hangs: sides of creases were pale streaks across its print
+    const float away = 1 - maxf(float3_dot(point->normal, point->view), 0);
     Float3 creased = float3_mad(float3_mad(point->normal, point->across[0], side * creases.slope[0]), point->across[1],
                                 side * creases.slope[1]);
     creased = float3_unit_or(creased, point->normal);
@@ -279,7 +281,6 @@ float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *clot
     const float hollow = 1 + 0.16f * clampf(point->back ? -creases.height : creases.height, -1, 1) * whole;
 
     point->fuzz = FUZZ_WRAP * whole;
-    const float away = 1 - maxf(float3_dot(point->normal, point->view), 0);
     const float fuzz = FUZZ_MOST * whole * away * away * away;
     point->albedo = float3_mix(point->albedo, float3(0.80f, 0.79f, 0.77f), fuzz);
 
