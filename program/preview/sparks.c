@@ -30,7 +30,7 @@ enum { SPARKS_A_SLOT = 6 }; ///< at most, from a site in a slot
 #define FIRE_AROUND 0.05f       ///< m, from a site, of which the fire is around it
 #define SPARK_OPEN (1 / 120.0f) ///< s, the shortest exposure of a spark: eye and film keep it
 #define BLUR_MOST 2.0f          ///< pixels
-#define WIDE_MOST 1.25f         ///< pixels
+#define WIDE_MOST 0.8f          ///< pixels
 #define STREAK_MOST 0.03f       ///< of the picture's height
 #define STREAK_SHORT 23.0f      ///< pixels, below which no streak is cut
 #define BUSY_RATE 2.1f          ///< 1/s, how often crackling embers change between many sparks and none
@@ -95,7 +95,8 @@ static void spark_draw(Preview *preview, const Spark *spark, float begin, float 
 
     const float pixel = preview->camera.pixel * depth;
     // a wide lens would draw those that pass before the focus as capsules, which no eye takes for sparks
-    const float radius = maxf(1.1f, minf(camera_blur(&preview->camera, depth), BLUR_MOST));
+    const float blur = camera_blur(&preview->camera, depth), radius = maxf(1.1f, minf(blur, BLUR_MOST));
+    strength *= BLUR_MOST / maxf(blur, BLUR_MOST); // or the light of a wide disc would be in a thin streak, with a halo
     const int dots = 1 + (int)minf(streak / 0.5f, 400);
     // a lens spreads any point, and a near spark must not look like a lamp: its brightness has a limit
     const float wide = clampf(spark->size / pixel, 0.6f, WIDE_MOST);

@@ -10,7 +10,8 @@
 // in streams, each of which pulses by itself, narrows as it rises, and spreads in its own way. Their
 // swings differ more and more, so it breaks into veils: where one turns its edge or folds there is a bright thin line beside
 // a soft fill. It is bent across, so that it has a width from every side. Each thread is a row of soft dots. As much smoke
-// passes each height, but for what condenses near the ember and is lost at last: where a wisp is wider it is fainter.
+// passes each height, but for what condenses near the ember and is lost at last: where a wisp is wider it is fainter. At its
+// foot threads thin out one by one, over millimetres to centimetres.
 //
 // Of smoke that comes to a flame soon only the straight part would be seen, a rod: such an ember has no wisp.
 
@@ -21,34 +22,37 @@ enum {
     FEWER = 4,   ///< of which one is drawn where all are within a few pixels
     KNOTS = 150, ///< of a thread, between which it is straight
     SIGHTS = 3,  ///< times SIGHT_POINTS places of a thread where it is known whether it is seen; most are low
-    FADES = 5,   ///< of these on each side of an obstacle, over which it fades
     LIGHTS = 12, ///< places of a wisp where its light is known
 };
-#define WISP_CELL 0.025f  ///< m, of the sites
-#define WISP_LIFE 1.5f    ///< s
-#define RISE 0.12f        ///< m/s
-#define SPEEDING 0.13f    ///< m/s2
-#define RIBBON 0.0006f    ///< m, half of its width at the ember
-#define LAMINAR 0.19f     ///< s, in the mean
-#define SWAY 0.006f       ///< m that it sways before it buckles
-#define CURL 0.036f       ///< m, by which curls move it at most
-#define CURLING 0.19f     ///< s after it has buckled, by which half of that
-#define EDDY 0.010f       ///< m that small eddies move threads after that
-#define RIM 0.003f        ///< m of the rim on each side, at most, that feed a wisp
-#define CLUMPED 0.5f      ///< share of its width along the rim by which threads cluster there
-#define NARROWS 0.4f      ///< share of that width that remains
-#define JOINED 0.8f       ///< s, until then
-#define BURNT_SOON 0.30f  ///< s, age: smoke that comes to a flame before that is not seen
-#define BURNT_LATE 0.8f   ///< s, the same: and smoke that comes later is seen whole
-#define THREAD 0.0005f    ///< m, radius at the ember
-#define WISP_DEPTH 19e-3f ///< m, optical depth across a wisp times its width
-#define FRESH 0.35f       ///< share of that at the ember: most vapours have not condensed yet
-#define STRONG 1.2f       ///< by which strong wisps are weakened, or they would be white cords
-#define AMID 0.55f        ///< share of a wisp's light among flames, which burn most of it
-#define FLAME_FAINT 0.08f ///< of a cell whose flame burns smoke
-#define AHEAD 0.5f        ///< of what it takes from the light behind it, that goes on nearly straight is not missed
-#define SMOKING 10.0f     ///< sites of which half smoke
-#define WISP_AREA 1.0e-5f ///< m2 that smoulder and give half of the densest wisp
+#define WISP_CELL 0.025f    ///< m, of the sites
+#define WISP_LIFE 1.5f      ///< s
+#define RISE 0.12f          ///< m/s
+#define SPEEDING 0.13f      ///< m/s2
+#define RIBBON 0.0006f      ///< m, half of its width at the ember
+#define LAMINAR 0.14f       ///< s, in the mean
+#define SWAY 0.009f         ///< m that it sways before it buckles
+#define CURL 0.036f         ///< m, by which curls move it at most
+#define CURLING 0.23f       ///< s after it has buckled, by which half of that
+#define EDDY 0.010f         ///< m that small eddies move threads after that
+#define RIM 0.0016f         ///< m of the rim on each side, at most, that feed a wisp
+#define CLUMPED 0.5f        ///< share of its width along the rim by which threads cluster there
+#define NARROWS 0.4f        ///< share of that width that remains
+#define JOINED 0.8f         ///< s, until then
+#define BURNT_SOON 0.30f    ///< s, age: smoke that comes to a flame before that is not seen
+#define BURNT_LATE 0.8f     ///< s, the same: and smoke that comes later is seen whole
+#define EMERGES_SOON 0.006f ///< m, over which threads thin from nothing at their foot: some of them
+#define EMERGES_LATE 0.040f ///< m, others
+#define HIDES 0.012f        ///< m, over which they fade before they are hidden
+#define PULSES 1.6f         ///< powers of 2, by which all threads thicken and thin together
+#define THREAD 0.0005f      ///< m, radius at the ember
+#define WISP_DEPTH 19e-3f   ///< m, optical depth across a wisp times its width
+#define FRESH 0.35f         ///< share of that at the ember: most vapours have not condensed yet
+#define STRONG 1.2f         ///< by which strong wisps are weakened, or they would be white cords
+#define AMID 0.55f          ///< share of a wisp's light among flames, which burn most of it
+#define FLAME_FAINT 0.08f   ///< of a cell whose flame burns smoke
+#define AHEAD 0.35f         ///< of what it takes from the light behind it, that goes on nearly straight is not missed
+#define SMOKING 10.0f       ///< sites of which half smoke
+#define WISP_AREA 1.0e-5f   ///< m2 that smoulder and give half of the densest wisp
 
 typedef struct Wisp {
     Float3 path[KNOTS + 1]; ///< m, where the air carries what leaves the ember
@@ -112,7 +116,7 @@ static Float3 wisp_at(const Wisp *wisp, float age, float place) {
     const float moment = wisp->now - age, loose = maxf(age - wisp->laminar, 0);
     const float curled = loose * loose / (CURLING * CURLING), roll = CURL * curled / (1 + curled);
     const float bend = SWAY * stepf(-0.05f, 0.3f, age) + 0.11f * loose * loose / (0.08f + loose);
-    const float turn = 3 * age + 1.8f * noise2(moment * 1.3f, 3, wisp->seed), c = cosf(turn), s = sinf(turn);
+    const float turn = 3 * age + 3.4f * noise2(moment * 2.3f, 3, wisp->seed), c = cosf(turn), s = sinf(turn);
     const float half = wisp_half(wisp, age), drift = 0.045f * age;
     const float side = half * place, deep = 0.7f * half * noise2(1.3f * place + 5, 2.1f * moment, wisp->seed + 31);
     const float u = c * side - s * deep, v = s * side + c * deep;
@@ -151,6 +155,30 @@ static int place_of(float age, int count, float *part) {
     return i;
 }
 
+/// The height over its ember at an age, m.
+static float risen(float age) { return RISE * age + SPEEDING * age * age; }
+
+/// How much of a thread is seen at its places, of which `sharp` says whether something hides them. It thins from nothing where
+/// it leaves the ember or comes out from behind something, over `most` m, or its foot would be cut off; and it fades before it
+/// passes behind something, because it may drift through a sheet there.
+static void wisp_emerge(float most, const float *sharp, float *seen) {
+    enum { COUNT = SIGHTS * SIGHT_POINTS };
+    float open = 0, high = 0;
+    for (int k = 0; k < COUNT; k++) {
+        const float h = risen(age_of(k, COUNT));
+        open = minf(open + (h - high) / most, 1) * sharp[k];
+        seen[k] = open;
+        high = h;
+    }
+    open = 1;
+    for (int k = COUNT - 1; k >= 0; k--) {
+        const float h = risen(age_of(k, COUNT));
+        open = minf(open + (high - h) / HIDES, 1) * sharp[k];
+        seen[k] = stepf(0, 1, minf(seen[k], open));
+        high = h;
+    }
+}
+
 /// `first`: of FEWER.
 static void thread_draw(Preview *preview, const Wisp *wisp, float place, bool first) {
     Float3 knots[KNOTS + 1], points[SIGHT_POINTS];
@@ -162,18 +190,12 @@ static void thread_draw(Preview *preview, const Wisp *wisp, float place, bool fi
         airborne_sight(preview, points, SIGHT_POINTS, sharp + k * SIGHT_POINTS);
     }
 
-    // it fades before it passes behind something, because it may drift through a sheet there
-    for (int k = 0; k < SIGHTS * SIGHT_POINTS; k++) {
-        const int from = k < FADES ? 0 : k - FADES;
-        const int last = k + FADES < SIGHTS * SIGHT_POINTS ? k + FADES : SIGHTS * SIGHT_POINTS - 1;
-        float sum = 0;
-        for (int i = from; i <= last; i++) sum += sharp[i];
-        seen[k] = sharp[k] * maxf(2 * sum / (float)(last - from + 1) - 1, 0);
-    }
+    wisp_emerge(
+        mixf(EMERGES_SOON, EMERGES_LATE, hash_unit(hash_u32(wisp->seed + 2) + (uint32_t)(THREADS * (place + 1)))),
+        sharp, seen);
 
     const float edge = 1.75f * expf(-2.2f * place * place); // the mean is 1
     const float rim = maxf(float3_length(wisp->from[0]), float3_length(wisp->from[1]));
-    const float starts = 0.02f + 0.10f * hash_unit(hash_u32(wisp->seed + 1) + (uint32_t)(THREADS * (place + 1)));
     const float mist = hash_unit(hash_u32(wisp->seed) + (uint32_t)(THREADS * (place + 1))), spread = mist * mist;
     for (float age = 0.002f; age < WISP_LIFE;) {
         const float x = age * (KNOTS / WISP_LIFE);
@@ -201,13 +223,14 @@ static void thread_draw(Preview *preview, const Wisp *wisp, float place, bool fi
         const float stands = mixf(first ? FEWER : 0, 1, apart);
         const float moment = wisp->now - age;
         const float puff = 1.4f * swing(wisp, moment, 5, 2.2f * place, 18) +
-                           1.3f * noise2(1.7f * moment, 2.7f * place, wisp->seed + 19);
+                           1.3f * noise2(1.7f * moment, 2.7f * place, wisp->seed + 19) +
+                           PULSES * noise2(4.3f * moment, 0, wisp->seed + 24);
         const float strand =
             1.5f * noise2(2 * moment, 4 * place + noise2(1.9f * moment, 0, wisp->seed + 21), wisp->seed + 20);
         float dense = 0.75f * WISP_DEPTH * wisp->strength * edge * left * sqrtf(left) * exp2f(puff + strand);
         dense *= open * stands;
         if (wisp->burnt < WISP_LIFE) dense *= 1 - stepf(0.15f * wisp->burnt, wisp->burnt, age);
-        dense *= stepf(0, starts, age) * mixf(FRESH, 1, stepf(0, 0.7f, age)) * RISE / fast;
+        dense *= mixf(FRESH, 1, stepf(0, 0.7f, age)) * RISE / fast;
         dense *= fast * step / (pixel * pixel * THREADS);
         if (dense > 0) airborne_dot(preview, at, radius, float3_scale(light, dense), AHEAD * dense);
         age += step;
@@ -258,7 +281,7 @@ void wisps_draw(Preview *preview) {
             if (k <= LIGHTS / 2) lit = maxf(lit, float3_luminance(wisp.light[k]));
         }
         const float amid = stepf(AMID / 3, AMID, lit);
-        wisp.strength *= 1 - 0.75f * amid;
+        wisp.strength *= 1 - 0.85f * amid;
         wisp.laminar *= 1 - 0.7f * amid; // fires stir the air around them
         for (int k = 0; k < THREADS; k++)
             thread_draw(preview, &wisp, 2 * ((float)k + 0.5f) / THREADS - 1, k % FEWER == FEWER / 2);
