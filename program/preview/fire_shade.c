@@ -77,7 +77,7 @@
 #define GROUP 0.35f
 #define GROUP_UNLIKE 1.5f   ///< octaves
 #define FED_WHOLLY 0.3f     ///< what burns less gains and loses less
-#define SMOKE_SEEN_AS 60.0f ///< times its extinction, in the middle of a fold; what lies between folds is clear
+#define SMOKE_SEEN_AS 76.0f ///< times its extinction, in the middle of a fold; what lies between folds is clear
 #define SMOKE_FULL 0.6f     ///< 1/m, from which on it is wholly
 #define SMOKE_FILLS 0.03f   ///< m: dense smoke has less clear air
 #define SMOKE_EDDY 0.032f   ///< m across
@@ -85,16 +85,16 @@
 #define SMOKE_BEND 0.5f     ///< by small eddies, of that by wide ones
 #define SMOKE_FOLD 0.055f   ///< width of a fold's sharp side, of the noise whose zeros folds are
 #define SMOKE_SOFT 2.0f     ///< times as wide is the other one
-#define SMOKE_GREY 0.09f    ///< light of flames, of which smoke is half as warm as they are
+#define SMOKE_GREY 0.05f    ///< light of flames, of which smoke is half as warm as they are
 #define SMOKE_SOFTEST 8.0f  ///< far from the fire
 #define SMOKE_WIDENS 1.0f   ///< by which the sharp side is wider there
 #define SMOKE_THINS 2.0f    ///< by which its middle is thinner there
 #define SMOKE_CALM 0.5f     ///< of what eddies move, they do there
 #define SMOKE_FINE 0.65f    ///< of folds, the share of small eddies at the fire
-#define SMOKE_EVEN 0.35f    ///< share of a fold's density between its threads
+#define SMOKE_EVEN 0.50f    ///< share of a fold's density between its threads
 #define SMOKE_THREADS 1.5f  ///< share of it that the threads add
 #define SMOKE_COARSE 0.45f  ///< and far from it
-#define SMOKE_DARK 0.4f     ///< light of flames, of which fresh smoke, which is brown, swallows half
+#define SMOKE_DARK 0.25f    ///< light of flames, of which fresh smoke, which is brown, swallows half
 #define SMOKE_SLOW 0.4f     ///< m/s, at which wide eddies rise
 #define SMOKE_SPEED 0.5f    ///< m/s, small ones
 
@@ -448,7 +448,8 @@ Smoke fire_smoke_at(const Fire *fire, Float3 p) {
     const Float3 warm = float3_mix(float3(0.78f, 0.8f, 0.83f), float3(1, 0.45f, 0.14f), near);
     const Float3 glow = float3_scale(warm, cell.glow / (1 + cell.glow / SMOKE_DARK));
     Smoke smoke;
-    smoke.light = float3_mad(float3_scale(fire->daylight, 0.33f - 0.2f * down), glow, 1.8f + 1.5f * down);
+    const Float3 day = float3_mul(fire->daylight, float3_mix(float3(1, 1, 1), float3(0.62f, 0.46f, 0.34f), near));
+    smoke.light = float3_mad(float3_scale(day, 0.33f - 0.2f * down), glow, 1.8f + 1.5f * down);
     smoke.dense = SMOKE_SEEN_AS * cell.smoke * stepf(SMOKE_THIN, SMOKE_FULL, cell.smoke) *
                   stepf(-0.35f, 0.35f, wide.d + SMOKE_FILLS * cell.smoke) * (1 - stepf(0.05f, 0.4f, cell.flame));
     smoke.dense *= SMOKE_EVEN + SMOKE_THREADS * maxf(1 - 2.2f * fabsf(curl.d), 0);
