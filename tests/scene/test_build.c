@@ -504,8 +504,8 @@ TEST(faces_of_many_corners_are_cut) {
 }
 
 TEST(materials_follow_keys_and_numbered_pictures) {
-#define HOT                                                                                                                                                 \
-    "fps: 10\nsteps: 4\npace: 5\nsheets:\n  - grid: {size: [0.1, 0.1], cells: [6, 6]}\n    material: {temperature: 300 C, convection: 0, emissivity: 0, \n" \
+#define HOT                                                                                                                                                          \
+    "fps: 10\nsteps: 4\npace: 5\ngas: no\nsheets:\n  - grid: {size: [0.1, 0.1], cells: [6, 6]}\n    material: {temperature: 300 C, convection: 0, emissivity: 0, \n" \
     "        diffusivity: 0, air_supply: inf, "
     double burnt[7][2] = {{0}};
     burn_frames(HOT "ignition_temperature: [{time: 0.1, value: 240 C}, {time: 0.2, value: 9000 C}]}\n", NULL, 4, burnt);
@@ -529,7 +529,7 @@ TEST(materials_follow_keys_and_numbered_pictures) {
     remove(path[1]);
     SceneMessages messages = refused(text, folder);
     assert_non_null(strstr(messages.items[0].text, "matte.0002.png: there is no such file, but the next one exists"));
-    assert_int_equal(messages.items[0].location.line, 8);
+    assert_int_equal(messages.items[0].location.line, 9);
     scene_messages_free(&messages);
     remove_folder(folder);
 }
