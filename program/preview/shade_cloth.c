@@ -13,7 +13,7 @@
 
 #include "preview/shape_look.h"
 
-#define FRAY 12.0f       ///< threads, depth to which a burnt edge loses them
+#define FRAY 15.0f       ///< threads, depth to which a burnt edge loses them
 #define REACH 22.0f      ///< threads, to which the longest stand out at it
 #define STRANDS 11.0f    ///< threads from strand to strand
 #define STRAND 1.2f      ///< threads, half of its width
@@ -296,9 +296,9 @@ float cloth_scorch(const Weave *weave, const PaperState *state, Point *point) {
     const float above = maxf(state->peak, state->temperature) - CLOTH_WARM, wide = point->footprint / weave->pitch;
     if (above <= 0) return 0;
     const float at[2] = {state->uv[0] * weave->threads[0], state->uv[1] * weave->threads[1]};
-    float uneven = 0.5f * oblique(at, 90, wide, 211) + 0.2f * oblique(at, 30, wide, 212);
+    float uneven = 0.8f * oblique(at, 90, wide, 211) + 0.5f * oblique(at, 30, wide, 212);
     for (int k = 0; k < 2; k++)
-        uneven += 0.3f * resolved(4, wide) * noise2(at[k] / 4, at[1 - k] / 60, 213 + (uint32_t)k);
+        uneven += 0.45f * resolved(4, wide) * noise2(at[k] / 4, at[1 - k] / 60, 213 + (uint32_t)k);
     const float facing = maxf(float3_dot(point->geometric, point->view), 0.2f);
     const float height = cloth_creases(weave, state, point->footprint / facing).height;
     uneven += 1.1f * (point->back ? -height : height);
@@ -347,7 +347,8 @@ float cloth_char(const Weave *weave, const PaperState *state, const Cloth *cloth
                 up = top - 0.25f + 0.35f * wrinkle;
     const float cold = charred * (1 - stepf(520, 760, state->temperature));
     const float ash = cold * stepf(0.42f, 0.7f, burn) * stepf(0.15f, 0.95f, top);
-    const float torn = charred * (1 - stepf(0.5f, 5, cloth->left)) * stepf(-0.3f, 0.3f, wrinkle); // rims are paler
+    // rims are paler, but where they are hot: there the ash was a line that seemed drawn
+    const float torn = cold * (1 - stepf(0.5f, 5, cloth->left)) * stepf(-0.3f, 0.3f, wrinkle);
     const float brown = charred * (1 - stepf(0.45f, 0.75f, burn)) * stepf(-0.4f, 0.6f, up);
     point->albedo = float3_mix(point->albedo, float3(0.060f, 0.030f, 0.015f), 0.7f * brown);
     point->albedo = float3_scale(point->albedo, 1 + charred * clampf(0.5f * up, -0.5f, 0.6f));
