@@ -174,7 +174,7 @@ static float leaf_since(const Preview *preview, Float3 p) {
 /// How far a leaf that glows has turned to ash behind its fronts: soon after them, in patches, until the next one comes.
 static float ash_on_leaf(const Preview *preview, const PaperState *state, const Bent *bent, float cloud, float strand) {
     const float alone = ember_activity(state->glowing), glow = alone + ember_starved(state->starved, bent->burn, alone);
-    const float glows = stepf(0, 0.2f, glow) * stepf(-0.3f, 0.9f, cloud + 0.45f * strand);
+    const float glows = stepf(0, 0.2f, glow) * stepf(0.05f, 0.8f, cloud + 0.45f * strand);
     if (glows <= 0) return 0;
     const float since =
         leaf_since(preview, float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 0.5e-3f));

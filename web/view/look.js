@@ -143,7 +143,7 @@ float leaf_since(vec3 p) {
 }
 float ash_on_leaf(PaperState state, Bent bent, float cloud, float strand) {
     float alone = ember_activity(state.glowing), glow = alone + ember_starved(state.starved, bent.burn, alone);
-    float glows = stepf(0.0, 0.2, glow) * stepf(-0.3, 0.9, cloud + 0.45 * strand);
+    float glows = stepf(0.0, 0.2, glow) * stepf(0.05, 0.8, cloud + 0.45 * strand);
     if (glows <= 0.0) return 0.0;
     float since =
         leaf_since(float3_mad(bent.position, vec3(bent.medium, bent.coarse, bent.fine), 0.5e-3));
