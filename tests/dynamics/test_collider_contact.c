@@ -206,11 +206,12 @@ static double rests(SingeColliderDef def, const char *name, float height) {
     bench_add_collider(&bench, def, 1, &key);
     const float turned[4] = {0, 0, 0.2588f, 0.9659f};
     position(&bench, turned, float3_add(float3(0, 0, height), quat_rotate(turned, float3(-0.04f, -0.04f, 0))));
-    for (int step = 0; step < 480; step++) bench_step(&bench, STEP);
+    for (int step = 0; step < 192; step++) bench_step(&bench, STEP);
     double speed, worst = deepest(&bench, &speed);
-    printf("%s: after 1 s the deepest point of the sheet is %.3f mm in (%.1f %% of a cell), mean speed %.1f mm/s\n",
+    printf("%s: after 0.4 s the deepest point of the sheet is %.3f mm in (%.1f %% of a cell), mean speed %.1f mm/s\n",
            name, 1e3 * worst, 100 * worst / (double)cell, 1e3 * speed);
     bench_close(&bench);
+    assert_true(speed < 1e-3); // m/s: one that has fallen past is not in it either
     return worst / (double)cell;
 }
 
