@@ -26,7 +26,7 @@ PARTS = {
             "paper_look.h": ["ember_temperature"],
             "noise.h": ["noise3_gradient"],
             "shade_paper.c": ["paper_noise", "ridge", "scorch_colour", "askew", "shade_paper_bend", "paper_cracks", "tilt",
-                              "ash_amount", "border_bite", "border_bay", "border_distance", "near_border", "ash_along", "ash_on_char", "leaf_since", "ash_on_leaf", "ash_lace", "ash_shade", "ember_air", "ember_seen",
+                              "ash_amount", "border_bite", "border_bay", "border_distance", "near_border", "ash_along", "ash_on_char", "ash_lace", "ash_shade", "ember_air", "ember_seen",
                               "line_life", "ember_line", "sparks", "border_glow", "leaf_alive", "leaf_glow", "ember_shade", "is_hole",
                               "flocks_of", "print_seen", "scorch_amount", "char_shade"],
             "lighting.c": ["light_mirrored"],
@@ -101,7 +101,7 @@ def translated(text, structs):
     head, body = text.split("{", 1)
     head = re.sub(r"const (?:Preview|Fire) \*\w+, ", "", head)
     head = re.sub(r"\bconst (\w+) \*(\w+)", r"\1 \2", head)
-    head = re.sub(r"(?<=[(,])(\s*)(\w+) \*(\w+)", r"\1inout \2 \3", head)
+    head = re.sub(r"(?<=[(,])( ?)(\w+) \*(\w+)", r"\1inout \2 \3", head)
     head = re.sub(r"\bfloat (\w+)\[2\]", r"inout float \1[2]", head)
     for gone in DROPPED:
         body = re.sub(r"(?<=\()%s, " % re.escape(gone), "", body)

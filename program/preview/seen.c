@@ -100,15 +100,17 @@ static Float3 light_of_faces(const Preview *preview, const Lit *lit, int x, int 
             }
         }
 
-    // of two faces the one behind lies in the gap, and the rim before it is as dark
-    const float gap = gap_at(preview, x, y, &(Lit){.distance = INFINITY});
+    // of two faces the one behind lies in the gap
+    const float first = gap_at(preview, x, y, lit);
+    const float gap[FACES] = {first, gap_at(preview, x, y, &(Lit){.distance = INFINITY}) - first};
     Float3 colour = {0, 0, 0};
     for (int k = 0; k < LIT_KINDS; k++) {
         const Float3 light[FACES] = {float3_sub(lit->light[k], lit->other[k]), lit->other[k]};
         const float own = lit->seen[k] < 0 ? 1 : lit->seen[k];
         for (int face = 0; face < FACES; face++)
-            colour = float3_mad(colour, light[face],
-                                (total[face][k] > 0 ? sum[face][k] / total[face][k] : own) * (1 - gap_hides[k] * gap));
+            colour =
+                float3_mad(colour, light[face],
+                           (total[face][k] > 0 ? sum[face][k] / total[face][k] : own) * (1 - gap_hides[k] * gap[face]));
     }
     return colour;
 }

@@ -100,8 +100,7 @@ static void tilt(Float3 position, float millimetres, float height, bool folded, 
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
 }
 
-#define LEAF_ASH 0.55f ///< of a leaf that still glows, what is ash behind its fronts
-#define BAY 0.0055f    ///< m, depth of the deepest bay of a burnt border
+#define BAY 0.0055f ///< m, depth of the deepest bay of a burnt border
 
 // ---- ash
 
@@ -161,41 +160,18 @@ static float ash_on_char(const PaperState *state, const Bent *bent, float cloud,
     return cold * clampf(maxf(fringe, skin), 0, 1);
 }
 
-static float seconds(const Preview *preview) { return (float)fmod(preview->time, 4096.0); }
-
-/// How long ago a front has crept over a place of a leaf that glows, of the time between two fronts.
-static float leaf_since(const Preview *preview, Float3 p) {
-    const float t = seconds(preview);
-    const float phase = 1.9f * noise3(float3_mad(float3(0, 0.04f * t, 0), p, 1 / 24e-3f), 63) +
-                        0.6f * noise3(float3_scale(p, 1 / 7e-3f), 64) + 0.11f * t;
-    return phase - floorf(phase);
-}
-
-/// How far a leaf that glows has turned to ash behind its fronts: soon after them, in patches, until the next one comes.
-static float ash_on_leaf(const Preview *preview, const PaperState *state, const Bent *bent, float cloud, float strand) {
-    const float alone = ember_activity(state->glowing), glow = alone + ember_starved(state->starved, bent->burn, alone);
-    const float glows = stepf(0, 0.2f, glow) * stepf(0.05f, 0.8f, cloud + 0.45f * strand);
-    if (glows <= 0) return 0;
-    const float since =
-        leaf_since(preview, float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 0.5e-3f));
-    return LEAF_ASH * glows * stepf(0.04f, 0.3f, since) * (1 - stepf(0.7f, 1, since));
-}
-
 /// Noise that wears ash to lace: holes above 0.7.
 static float ash_lace(const Bent *bent, float footprint) {
     return paper_noise(bent->position, 2.6f, footprint, 15) + 0.25f * bent->fine - 0.45f * bent->coarse;
 }
 
-/// `woven`: threads of cloth, which have no leaf of ash while they glow.
-static void ash_shade(const Preview *preview, const PaperState *state, const Bent *bent, float ink, bool woven,
-                      Point *point) {
+static void ash_shade(const PaperState *state, const Bent *bent, float ink, Point *point) {
     const float size = point->footprint;
     if (bent->burn < PAPER_WHOLE) return;
     Float3 along = ash_along(bent);
     const float cloud = 1.2f * paper_noise(bent->position, 12, size, 19), strand = paper_noise(along, 1.5f, size, 20);
     const float fibre = clampf(1.6f - size * 1400, 0, 1) * ridge(noise3(float3_scale(along, 2100), 12), 0.5f);
-    const float leaf = woven ? 0 : ash_on_leaf(preview, state, bent, cloud, strand);
-    const float plate = maxf(ash_on_char(state, bent, cloud, strand, fibre), leaf);
+    const float plate = ash_on_char(state, bent, cloud, strand, fibre);
     const float whole = ash_amount(bent);
     const float amount = maxf(whole, minf(2.2f * plate, 0.92f));
     const float dry = 1 - 0.4f * stepf(2, 9, state->age); // tar dries
@@ -209,7 +185,7 @@ static void ash_shade(const Preview *preview, const PaperState *state, const Ben
     float small = ridge(paper_noise(float3_mad(bowed, float3(1, -1, 1), 2e-3f * bent->coarse), 3.4f, size, 18), 0.13f);
     float vein = maxf(large, 0.55f * small);
 
-    float pale = maxf(whole * stepf(1, 13, state->age + 4 * cloud), maxf(0.85f * plate * plate, 0.9f * leaf));
+    float pale = maxf(whole * stepf(1, 13, state->age + 4 * cloud), 0.85f * plate * plate);
     float rim = whole * stepf(0.25f, 0.6f, ash_lace(bent, size));
     const float thin = maxf(rim, stepf(0.35f, 0.95f, state->rim + 0.25f * bent->fine));
     float value = mixf(0.030f, 0.38f, pale) * (1 + 0.22f * strand + 0.22f * (fibre - 0.4f) + 0.1f * bent->fine) +
@@ -256,6 +232,8 @@ static void ash_shade(const Preview *preview, const PaperState *state, const Ben
 #define LEAF_CORE 60.0f      ///< K, how much hotter its core is
 #define STARVED_COOLER 90.0f ///< K, how much cooler threads and border of char below a flame are
 #define STARVED_BORDER 0.42f ///< the burn value of its line
+
+static float seconds(const Preview *preview) { return (float)fmod(preview->time, 4096.0); }
 
 float ember_air(const Preview *preview, Float3 p) {
     float t = seconds(preview);
@@ -331,7 +309,9 @@ static float leaf_alive(const Preview *preview, const PaperState *state, const B
 
     const float creeps = stepf(-0.1f, 0.5f, 0.35f * patch - stretch);
     if (creeps <= 0) return behind;
-    const float since = leaf_since(preview, p);
+    const float phase = 1.9f * noise3(float3_mad(float3(0, 0.04f * t, 0), p, 1 / 24e-3f), 63) +
+                        0.6f * noise3(float3_scale(p, 1 / 7e-3f), 64) + 0.11f * t;
+    const float since = phase - floorf(phase);
     return maxf(behind, creeps * stepf(0, 0.05f, since) * (0.75f * expf(-14 * since) + 0.25f * expf(-3 * since)));
 }
 
@@ -564,7 +544,7 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     point->transmission *= 1 - stepf(0.1f, 0.7f, scorch);
     char_shade(&bent, burnt, print, point);
     if (coating > 0) coat(coating, &bent, point);
-    ash_shade(preview, state, &bent, print, weave, point);
+    ash_shade(state, &bent, print, point);
     if (!weave) ember_shade(preview, state, &bent, point);
     else cloth_glow(preview, weave, state, &cloth, cloth_char(weave, state, &cloth, bent.burn, threads, point), point);
     return true;

@@ -12,7 +12,6 @@ const float PAPER_WHOLE = 0.35;
 const float EMBER_WIDTH = 0.00042;
 const float EMBER_GAIN = 3.4;
 const float EMBER_MOST = 6.0;
-const float LEAF_ASH = 0.55;
 const float BAY = 0.0055;
 const float EMBER_HOT = 1180.0;
 const float LEAF_SPREAD = 1.35;
@@ -135,32 +134,16 @@ float ash_on_char(PaperState state, Bent bent, float cloud, float strand, float 
         0.75 * stepf(0.53, 0.62, bent.burn) * stepf(2.0, 9.0, state.age) * stepf(-0.1, 1.25, cloud + 0.9 * threads);
     return cold * clamp(max(fringe, skin), 0.0, 1.0);
 }
-float leaf_since(vec3 p) {
-    float t = seconds();
-    float phase = 1.9 * noise3(float3_mad(vec3(0.0, 0.04 * t, 0.0), p, 1.0 / 24e-3), 63.0) +
-                        0.6 * noise3(float3_scale(p, 1.0 / 7e-3), 64.0) + 0.11 * t;
-    return phase - floor(phase);
-}
-float ash_on_leaf(PaperState state, Bent bent, float cloud, float strand) {
-    float alone = ember_activity(state.glowing), glow = alone + ember_starved(state.starved, bent.burn, alone);
-    float glows = stepf(0.0, 0.2, glow) * stepf(0.05, 0.8, cloud + 0.45 * strand);
-    if (glows <= 0.0) return 0.0;
-    float since =
-        leaf_since(float3_mad(bent.position, vec3(bent.medium, bent.coarse, bent.fine), 0.5e-3));
-    return LEAF_ASH * glows * stepf(0.04, 0.3, since) * (1.0 - stepf(0.7, 1.0, since));
-}
 float ash_lace(Bent bent, float footprint) {
     return paper_noise(bent.position, 2.6, footprint, 15.0) + 0.25 * bent.fine - 0.45 * bent.coarse;
 }
-void ash_shade(PaperState state, Bent bent, float ink, bool woven,
-                      inout Point point) {
+void ash_shade(PaperState state, Bent bent, float ink, inout Point point) {
     float size = point.footprint;
     if (bent.burn < PAPER_WHOLE) return;
     vec3 along = ash_along(bent);
     float cloud = 1.2 * paper_noise(bent.position, 12.0, size, 19.0), strand = paper_noise(along, 1.5, size, 20.0);
     float fibre = clamp(1.6 - size * 1400.0, 0.0, 1.0) * ridge(noise3(float3_scale(along, 2100.0), 12.0), 0.5);
-    float leaf = woven ? 0.0 : ash_on_leaf(state, bent, cloud, strand);
-    float plate = max(ash_on_char(state, bent, cloud, strand, fibre), leaf);
+    float plate = ash_on_char(state, bent, cloud, strand, fibre);
     float whole = ash_amount(bent);
     float amount = max(whole, min(2.2 * plate, 0.92));
     float dry = 1.0 - 0.4 * stepf(2.0, 9.0, state.age);
@@ -171,7 +154,7 @@ void ash_shade(PaperState state, Bent bent, float ink, bool woven,
     float large = ridge(paper_noise(bowed, 8.5, size, 14.0), 0.10);
     float small = ridge(paper_noise(float3_mad(bowed, vec3(1.0, -1.0, 1.0), 2e-3 * bent.coarse), 3.4, size, 18.0), 0.13);
     float vein = max(large, 0.55 * small);
-    float pale = max(whole * stepf(1.0, 13.0, state.age + 4.0 * cloud), max(0.85 * plate * plate, 0.9 * leaf));
+    float pale = max(whole * stepf(1.0, 13.0, state.age + 4.0 * cloud), 0.85 * plate * plate);
     float rim = whole * stepf(0.25, 0.6, ash_lace(bent, size));
     float thin = max(rim, stepf(0.35, 0.95, state.rim + 0.25 * bent.fine));
     float value = mix(0.030, 0.38, pale) * (1.0 + 0.22 * strand + 0.22 * (fibre - 0.4) + 0.1 * bent.fine) +
@@ -248,7 +231,9 @@ float leaf_alive(PaperState state, Bent bent, float patch_) {
     float behind = rim * exp(-border / max(0.7 + 2.8 * rim * (0.9 + 0.6 * patch_), 0.3));
     float creeps = stepf(-0.1, 0.5, 0.35 * patch_ - stretch);
     if (creeps <= 0.0) return behind;
-    float since = leaf_since(p);
+    float phase = 1.9 * noise3(float3_mad(vec3(0.0, 0.04 * t, 0.0), p, 1.0 / 24e-3), 63.0) +
+                        0.6 * noise3(float3_scale(p, 1.0 / 7e-3), 64.0) + 0.11 * t;
+    float since = phase - floor(phase);
     return max(behind, creeps * stepf(0.0, 0.05, since) * (0.75 * exp(-14.0 * since) + 0.25 * exp(-3.0 * since)));
 }
 vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
