@@ -9,7 +9,7 @@
 // out = picture + sum of k G(s) * over, with over = max(picture - 1, 0) at a quarter of the resolution and G a Gaussian
 // with a width relative to the picture's height. The widest is faint: dust and haze around a fire, that join it to its room.
 
-enum { SHRINK = 4, RADIUS_LIMIT = 64 };
+enum { SHRINK = 4, RADIUS_LIMIT = 800 }; // three widths of the widest, in a picture of 16,384 rows
 
 /// One direction of a separable Gaussian; `step` is the distance between neighbours, `length` their number.
 static void blur_line(const Float3 *in, Float3 *out, int length, size_t step, const float *weight, int radius) {

@@ -448,6 +448,7 @@ Smoke fire_smoke_at(const Fire *fire, Float3 p) {
     const Float3 warm = float3_mix(float3(0.78f, 0.8f, 0.83f), float3(1, 0.45f, 0.14f), near);
     const Float3 glow = float3_scale(warm, cell.glow / (1 + cell.glow / SMOKE_DARK));
     Smoke smoke;
+    // fresh smoke is brown by day, too
     const Float3 day = float3_mul(fire->daylight, float3_mix(float3(1, 1, 1), float3(0.62f, 0.46f, 0.34f), near));
     smoke.light = float3_mad(float3_scale(day, 0.33f - 0.2f * down), glow, 1.8f + 1.5f * down);
     smoke.dense = SMOKE_SEEN_AS * cell.smoke * stepf(SMOKE_THIN, SMOKE_FULL, cell.smoke) *

@@ -475,7 +475,7 @@ uniform float sigma; // in pixels
 out vec4 colour;
 void main() {
     vec3 sum = texture(map, at).rgb;
-    float weight = 1.0, radius = min(ceil(2.5 * sigma), 60.0);
+    float weight = 1.0, radius = min(ceil(2.5 * sigma), 100.0);
     for (float k = 1.0; k <= radius; k += 1.0) {
         float w = exp(-0.5 * k * k / (sigma * sigma));
         sum += w * (texture(map, at + along * k).rgb + texture(map, at - along * k).rgb);
