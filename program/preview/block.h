@@ -6,9 +6,10 @@
 /// Sums for the layers of a pixel.
 typedef struct LayerSum {
     Float3 normal, glow, fire;
+    Float3 facing; ///< of the first sample's face
     float fire_hides, temperature, burn, depth;
     int hits, samples;
-    bool mixed; ///< they met several sheets, or one at distances that differ
+    bool mixed; ///< they met several sheets, or one at distances that differ, or a blurred crease
     int32_t sheet, piece;
     PreviewMatte mattes[PREVIEW_MATTES]; ///< their shares are numbers of samples
 } LayerSum;

@@ -11,8 +11,9 @@
 
 #include <string.h>
 
-static const float CALM = 0.026f;  ///< range of a pixel's first samples, as l / (1 + l), that needs no more of them
-static const float UNEVEN = 0.15f; ///< range of a block's, beyond which its pixels need more
+static const float CALM = 0.026f;      ///< range of a pixel's first samples, as l / (1 + l), that needs no more of them
+static const float UNEVEN = 0.15f;     ///< range of a block's, beyond which its pixels need more
+static const float SAME_FACING = 0.8f; ///< cosine between the normals of one face
 static const float BLURRED = 0.3f; ///< the same where lens and shutter spread what is seen: all pixels get all samples
 
 static void store(float (*layer)[3], size_t pixel, Float3 value) {
@@ -52,8 +53,11 @@ static bool add_to_layers(const Preview *preview, Block *block, int lane, Float3
     const float depth = point->distance * float3_dot(block->direction[lane], preview->camera.forward);
     const bool first = !sum->samples++;
     const bool other = !first && (point->sheet != sum->sheet || fabsf(depth - sum->depth) > 0.02f * depth);
-    if (other) sum->mixed = true;
+    // a pixel that lens and shutter spread over a crease has many faces, too
+    if (other || (!first && block->spread > 1 && float3_dot(point->geometric, sum->facing) < SAME_FACING))
+        sum->mixed = true;
     if (first) {
+        sum->facing = point->geometric;
         sum->depth = depth;
         sum->sheet = point->sheet;
         sum->piece = point->piece;
