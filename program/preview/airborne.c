@@ -190,7 +190,12 @@ void airborne_draw(Preview *preview) {
     wisps_draw(preview);
     flakes_draw(preview);
     sparks_draw(preview);
-    for (size_t i = 0; i < pixels; i++) {
+}
+
+void airborne_lay(Preview *preview, Block *block) {
+    for (int k = 0; k < LANES; k++) {
+        if (block->x[k] >= preview->def.width || block->y[k] >= preview->def.height) continue;
+        const size_t i = block_pixel(preview, block, k);
         const Veil *veil = &preview->veil[i];
         if (veil->depth + veil->light.x <= 0) continue;
         float clear = expf(-veil->depth), part = veil->depth > 1e-3f ? (1 - clear) / veil->depth : 1;

@@ -4,7 +4,7 @@
 // by the moment at which it left: the same hash of both gives the same flight in every frame that shows it.
 #pragma once
 
-#include "preview/internal.h"
+#include "preview/block.h"
 
 enum {
     SITE_LIMIT = 512, ///< a power of two
@@ -47,8 +47,11 @@ void airborne_sight(const Preview *preview, const Float3 *points, int count, flo
 /// Adds to the veil around a pixel what is spread over a soft disc: `light` and `depth` times pixels^2.
 void airborne_dot(Preview *preview, const float at[2], float radius, Float3 light, float depth);
 
-/// Draws sparks and wisps over the picture, which is finished but for the halo and the film.
+/// Draws sparks, flakes and wisps into the veil. It needs nothing of the picture.
 void airborne_draw(Preview *preview);
+
+/// Lays the veil over a block of the picture, which is finished but for the halo and the film.
+void airborne_lay(Preview *preview, Block *block);
 
 void sparks_draw(Preview *preview);
 void wisps_draw(Preview *preview);

@@ -5,6 +5,7 @@
 #include "common/allocator.h"
 #include "preview/render_math.h"
 #include "preview/bvh_packets.h"
+#include "preview/share.h"
 
 enum {
     BVH_BINS = 16,
@@ -17,17 +18,21 @@ typedef struct BvhBox {
     float low[3], high[3];
 } BvhBox;
 
-/// A node that waits: its triangles are order[first] up to order[end].
+/// A node that waits: its triangles are order[first] up to order[end]. Of n triangles come at most 2 n - 2 nodes below it: so
+/// many are kept for them from `below` on, and it does not matter which thread makes them.
 typedef struct BvhRange {
-    uint32_t node, first, end;
+    uint32_t node, below, first, end;
     int depth;
 } BvhRange;
+
+enum { BVH_PARTS = 64 }; ///< of a BVH, for threads
 
 typedef struct BvhBuild {
     Bvh *bvh;
     BvhBox *boxes;   ///< [triangle_count]
     uint32_t *order; ///< [triangle_count]
-    uint32_t nodes;
+    BvhRange parts[BVH_PARTS];
+    int part_count;
 } BvhBuild;
 
 /// Where to part a range; `axis` < 0: it stays whole.
@@ -112,15 +117,19 @@ static BvhPlane find_plane(const BvhBuild *build, const BvhRange *range, const B
     return plane;
 }
 
-static void build_nodes(BvhBuild *build) {
+/// Makes a node and those below it. Nodes of at most so many triangles become parts, as long as there is room.
+static void build_nodes(BvhBuild *build, BvhRange top, uint32_t most_of_part) {
     BvhRange waiting[BVH_DEPTH];
     int count = 0;
-    waiting[count++] = (BvhRange){0, 0, build->bvh->triangle_count, 0};
-    build->nodes = 1;
+    waiting[count++] = top;
 
     while (count) {
         const BvhRange range = waiting[--count];
         const uint32_t all = range.end - range.first;
+        if (all <= most_of_part && build->part_count < BVH_PARTS) {
+            build->parts[build->part_count++] = range;
+            continue;
+        }
         BvhNode *node = &build->bvh->nodes[range.node];
         BvhBox bounds = EMPTY;
         for (uint32_t i = range.first; i < range.end; i++) box_add(&bounds, &build->boxes[build->order[i]]);
@@ -146,12 +155,17 @@ static void build_nodes(BvhBuild *build) {
                 build->order[end] = triangle;
             }
         }
-        node->first = build->nodes;
+        node->first = range.below;
         node->axis = (uint16_t)(plane.axis < 0 ? 0 : plane.axis);
-        waiting[count++] = (BvhRange){build->nodes, range.first, middle, range.depth + 1};
-        waiting[count++] = (BvhRange){build->nodes + 1, middle, range.end, range.depth + 1};
-        build->nodes += 2;
+        const uint32_t below = range.below + 2, beyond = range.below + 2 * (middle - range.first);
+        waiting[count++] = (BvhRange){range.below, below, range.first, middle, range.depth + 1};
+        waiting[count++] = (BvhRange){range.below + 1, beyond, middle, range.end, range.depth + 1};
     }
+}
+
+static void build_part(void *context, int k) {
+    BvhBuild *build = context;
+    build_nodes(build, build->parts[k], 0);
 }
 
 static void corners_of(const BvhMesh *mesh, int end, uint32_t triangle, float corners[3][3]) {
@@ -198,7 +212,8 @@ bool bvh_build(Bvh *bvh, SingeAllocator allocator, const BvhMesh *mesh) {
 
     if (room) {
         bvh->triangle_count = count;
-        build_nodes(&build);
+        build_nodes(&build, (BvhRange){0, 1, 0, count, 0}, mesh->threads > 1 ? count / 12 : 0);
+        share_out(mesh->threads, build.part_count, build_part, &build);
         for (uint32_t i = 0; i < count; i++) {
             bvh->triangles[i].triangle = build.order[i];
             corners_of(mesh, 0, build.order[i], bvh->triangles[i].corners);

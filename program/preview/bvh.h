@@ -34,6 +34,7 @@ typedef struct BvhMesh {
     size_t stride;             ///< floats from a vertex to the next
     const uint32_t (*triangles)[3];
     uint32_t triangle_count;
+    int threads; ///< that may build it; 0: one
 } BvhMesh;
 
 typedef struct BvhNode {

@@ -6,6 +6,7 @@
 // their mean, some more than others, as of a cone, and change at its walls. Small dents are left between the creases.
 
 #include "preview/internal.h"
+#include "preview/share.h"
 
 #include <string.h>
 
@@ -35,15 +36,30 @@ static uint32_t facet_key(Float3 rest, int32_t sheet, float *wall) {
     return hash_u32(key + 3 * part) | 1;
 }
 
-void crumple_load(PreviewScene *scene) {
+/// What a vertex weighs in the mean of its facet.
+static float facet_weight(const PaperVertex *v) { return crumple_amount(v->bent) * v->spacing * v->spacing; }
+
+enum { PARTS = 32 }; ///< of vertices, for threads
+
+static void find_facets(void *context, int part) {
+    PreviewScene *scene = context;
+    const uint32_t end = share_first(scene->vertex_count, part + 1, PARTS);
     float wall;
+    for (uint32_t i = share_first(scene->vertex_count, part, PARTS); i < end; i++) {
+        PaperVertex *v = &scene->vertices[i];
+        v->facet = facet_weight(v) > 0 ? facet_key(float3_load(v->rest), v->sheet, &wall) : 0;
+    }
+}
+
+void crumple_load(Preview *preview) {
+    PreviewScene *scene = &preview->scene;
     memset(scene->facets, 0, sizeof scene->facets);
+    share_out(preview->def.thread_count, PARTS, find_facets, scene);
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
         const PaperVertex *v = &scene->vertices[i];
-        const float weight = crumple_amount(v->bent) * v->spacing * v->spacing;
-        if (!(weight > 0)) continue;
-        const uint32_t key = facet_key(float3_load(v->rest), v->sheet, &wall);
-        for (uint32_t k = 0; k < PROBES; k++) {
+        const float weight = facet_weight(v);
+        const uint32_t key = v->facet;
+        for (uint32_t k = 0; k < PROBES && key; k++) {
             CrumpleFacet *facet = &scene->facets[(key / 2 + k) % CRUMPLE_FACETS];
             if (facet->key && facet->key != key) continue;
             facet->key = key;

@@ -3,9 +3,8 @@
 
 #include "preview/ground.h"
 #include "preview/airborne.h"
-#include "preview/block.h"
+#include "preview/share.h"
 
-#include <pthread.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -15,7 +14,8 @@
 typedef struct Job {
     Preview *preview;
     void (*draw)(Preview *preview, Block *block); ///< one block
-    atomic_int next, threads;
+    void (*beside)(Preview *preview); ///< what needs nothing of the blocks, and nothing of them needs; or NULL
+    atomic_int next;
     int across, count;
     bool fire; ///< flame and smoke are drawn
 } Job;
@@ -145,14 +145,18 @@ static void fill_table(Preview *preview, Block *block) {
     }
 }
 
-static void *draw_tiles(void *context) {
+static void draw_tiles(void *context, int thread) {
     Job *job = context;
     Block block = {.tile = NULL};
     const PreviewDef *def = &job->preview->def;
-    FireTile *fire = job->fire ? &job->preview->fire.tiles[atomic_fetch_add(&job->threads, 1)] : NULL;
+    FireTile *fire = job->fire ? &job->preview->fire.tiles[thread] : NULL;
 
     for (int tile; (tile = atomic_fetch_add(&job->next, 1)) < job->count;) {
         if (def->stop && def->stop()) break;
+        if (tile < 0) {
+            job->beside(job->preview);
+            continue;
+        }
         int x0 = tile % job->across * TILE, y0 = tile / job->across * TILE;
         if (fire) fire_see(job->preview, x0, y0, fire);
         block.tile = fire && !fire->empty ? fire : NULL;
@@ -165,24 +169,34 @@ static void *draw_tiles(void *context) {
                 job->draw(job->preview, &block);
             }
     }
-
-    return NULL;
 }
 
-static void draw_all(Preview *preview, void (*draw)(Preview *, Block *)) {
+/// Draws all blocks; `beside`, if any, is done first by one of the threads, as it is longer than a tile.
+static void draw_all(Preview *preview, void (*draw)(Preview *, Block *), void (*beside)(Preview *)) {
     int across = (preview->def.width + TILE - 1) / TILE, down = (preview->def.height + TILE - 1) / TILE;
-    Job job = {.preview = preview, .draw = draw, .across = across, .count = across * down};
+    Job job = {.preview = preview, .draw = draw, .beside = beside, .across = across, .count = across * down};
     job.fire = draw == block_draw && preview->fire.visible;
-    atomic_init(&job.next, 0);
-    atomic_init(&job.threads, 0);
-    pthread_t threads[THREAD_LIMIT];
-    int started = 0;
+    atomic_init(&job.next, beside ? -1 : 0);
+    const int threads = preview->def.thread_count;
+    share_out(threads, threads, draw_tiles, &job);
+}
 
-    // a thread that cannot be created only makes it slower
-    while (started < preview->def.thread_count - 1 && !pthread_create(&threads[started], NULL, draw_tiles, &job))
-        started++;
-    draw_tiles(&job);
-    for (int i = 0; i < started; i++) pthread_join(threads[i], NULL);
+/// What is made of a frame's surface before anything is seen, in parts that do not need each other.
+enum { READY_FIRE, READY_MASK, READY_GROUND, READY_PARTS };
+
+static void ready_part(void *context, int part) {
+    Preview *preview = context;
+    switch (part) {
+    case READY_FIRE: fire_raise(preview); break;
+    case READY_MASK: mask_fill(preview); break;
+    default: wood_singe(preview); stain_fill(preview);
+    }
+}
+
+/// Blurred pixels are smoothed before the veil comes over them.
+static void finish_block(Preview *preview, Block *block) {
+    soften(preview, block);
+    airborne_lay(preview, block);
 }
 
 SingeResult preview_draw(Preview *preview, const SingeSurface *surface, double time, uint8_t *rgb, SingeError *error) {
@@ -193,31 +207,26 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
                                 const PreviewLayers *layers, SingeError *error) {
     if (!isfinite(time)) return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the time is not finite");
     preview->time = time;
-    SingeResult result = tracer_load(preview, surface, error);
-    if (result) return result;
+    TRY(tracer_load(preview, surface, error));
 
     preview->layers = *layers;
-    wood_singe(preview);
-    fire_raise(preview);
+    share_out(preview->def.thread_count, READY_PARTS, ready_part, preview);
     light_gather(preview);
     fire_light_smoke(preview);
-    mask_fill(preview);
-    if (!preview->table_known) draw_all(preview, fill_table);
+    if (!preview->table_known) draw_all(preview, fill_table, NULL);
     preview->table_known = !(preview->def.stop && preview->def.stop());
-    stain_fill(preview);
-    draw_all(preview, draw_mirrored);
+    draw_all(preview, draw_mirrored, NULL);
     // further down: what is rough draws lights out towards the eye
     for (int pass = 0; pass < 2 && preview->mirrored[0]; pass++)
         mirror_smooth(preview, preview->mirrored, 2 + preview->def.height / 90);
-    draw_all(preview, glints_draw);
-    draw_all(preview, block_draw);
-    draw_all(preview, seen_smooth);
+    draw_all(preview, glints_draw, NULL);
+    draw_all(preview, block_draw, airborne_draw);
+    draw_all(preview, seen_smooth, NULL);
     gaps_fill(preview);
-    draw_all(preview, seen_finish);
-    draw_all(preview, soften);
+    draw_all(preview, seen_finish, NULL);
+    draw_all(preview, finish_block, NULL);
     if (preview->def.stop && preview->def.stop())
         return preview_fail(error, SINGE_ERROR_STATE, -1, "the picture was given up");
-    airborne_draw(preview);
 
     const size_t pixels = (size_t)preview->def.width * (size_t)preview->def.height;
     for (size_t i = 0; layers->beauty && i < pixels; i++) float3_store(layers->beauty[i], preview->picture[i]);

@@ -13,6 +13,7 @@
 // which is `burn` if there is one reaction, without char.
 
 #include "preview/internal.h"
+#include "preview/share.h"
 
 #include <string.h>
 
@@ -81,6 +82,19 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
         if (!near_enough(moved)) memcpy(moved, position, 3 * sizeof *moved);
         moved[3] = 0;
     }
+}
+
+enum { PARTS = 32 }; ///< of vertices, for threads
+
+typedef struct Packing {
+    const Preview *preview;
+    const SingeSurface *surface;
+} Packing;
+
+static void pack_part(void *context, int k) {
+    const Packing *packing = context;
+    const uint32_t all = packing->surface->vertex_count, end = share_first(all, k + 1, PARTS);
+    for (uint32_t i = share_first(all, k, PARTS); i < end; i++) pack_vertex(packing->preview, packing->surface, i);
 }
 
 /// Gradient of a field with these values at the corners, times |N|^2.
@@ -170,31 +184,41 @@ static void measure(Preview *preview) {
     }
 }
 
+/// Lists the sides of triangles that burn: only what is burnt has loose threads, embers and ash. Returns how many.
+static uint32_t list_sides(PreviewScene *scene) {
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < scene->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            const uint32_t i = scene->triangles[t][k], j = scene->triangles[t][(k + 1) % 3];
+            const PaperVertex *a = &scene->vertices[i], *b = &scene->vertices[j];
+            if (maxf(a->burn, b->burn) < BURNT_EDGE || (a->edge <= 0 && b->edge <= 0)) continue;
+            const Float3 side = float3_sub(float3_load(a->rest), float3_load(b->rest));
+            scene->sides[count++] = (SurfaceSide){{i, j}, float3_length(side)};
+        }
+    return count;
+}
+
 /// The distance from the border of a piece, along sides of triangles, on what burns of a sheet.
-static void find_edges(const Preview *preview) {
-    const PreviewScene *scene = &preview->scene;
-    bool burns = false;
+static void find_edges(Preview *preview) {
+    PreviewScene *scene = &preview->scene;
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
         PaperVertex *v = &scene->vertices[i];
         const Weave *weave = cloth_weave(preview, v->sheet);
         v->edge = v->rim >= 0.5f ? 0 : weave ? CLOTH_EDGE * weave->pitch : PAPER_EDGE;
-        burns = burns || v->burn >= BURNT_EDGE;
     }
 
-    // forwards and backwards by turns; only what is burnt has loose threads, embers and ash
-    bool changes = burns;
-    const uint32_t sides = 3 * scene->triangle_count;
+    // forwards and backwards by turns
+    const uint32_t sides = list_sides(scene);
+    bool changes = sides > 0;
     for (uint32_t pass = 0; changes; pass++) {
         changes = false;
         for (uint32_t i = 0; i < sides; i++) {
-            const uint32_t k = pass & 1 ? sides - 1 - i : i, *t = scene->triangles[k / 3];
-            PaperVertex *a = &scene->vertices[t[k % 3]], *b = &scene->vertices[t[(k + 1) % 3]];
-            if (maxf(a->burn, b->burn) < BURNT_EDGE || fabsf(a->edge - b->edge) < 1e-6f) continue;
-            Float3 side = float3_sub(float3_load(a->rest), float3_load(b->rest));
-            PaperVertex *far = a->edge > b->edge ? a : b, *near = a->edge > b->edge ? b : a;
-            float edge = near->edge + float3_length(side);
-            if (!(edge < far->edge)) continue;
-            far->edge = edge;
+            const SurfaceSide *side = &scene->sides[pass & 1 ? sides - 1 - i : i];
+            float *a = &scene->vertices[side->ends[0]].edge, *b = &scene->vertices[side->ends[1]].edge;
+            if (fabsf(*a - *b) < 1e-6f) continue;
+            float *far = *a > *b ? a : b, edge = (*a > *b ? *b : *a) + side->length;
+            if (!(edge < *far)) continue;
+            *far = edge;
             changes = true;
         }
     }
@@ -224,16 +248,18 @@ SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError 
     const uint32_t vertices = surface->vertex_count;
     const size_t position = sizeof *scene->positions;
     bool moves = preview->def.shutter > 0;
-    bool room = mesh_in_grow(preview, &scene->vertices, &scene->vertex_capacity, vertices, sizeof *scene->vertices) &&
-                mesh_in_grow(preview, &scene->positions, &scene->position_capacity, vertices, position) &&
-                mesh_in_grow(preview, &scene->triangles, &scene->triangle_capacity, surface->triangle_count,
-                             sizeof *scene->triangles);
+    bool room =
+        mesh_in_grow(preview, &scene->vertices, &scene->vertex_capacity, vertices, sizeof *scene->vertices) &&
+        mesh_in_grow(preview, &scene->positions, &scene->position_capacity, vertices, position) &&
+        mesh_in_grow(preview, &scene->triangles, &scene->triangle_capacity, surface->triangle_count,
+                     sizeof *scene->triangles) &&
+        mesh_in_grow(preview, &scene->sides, &scene->side_capacity, 3 * surface->triangle_count, sizeof *scene->sides);
     for (int i = 0; room && moves && i < 2; i++)
         room = mesh_in_grow(preview, &scene->moved[i], &scene->moved_capacity[i], vertices, position);
     if (!room)
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a surface of %u vertices", vertices);
 
-    for (uint32_t i = 0; i < vertices; i++) pack_vertex(preview, surface, i);
+    share_out(preview->def.thread_count, PARTS, pack_part, &(Packing){preview, surface});
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
         const uint32_t *from = surface->triangles[t];
         const float *p = surface->position[from[0]], *q = surface->position[from[1]], *r = surface->position[from[2]];
@@ -262,7 +288,7 @@ SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError 
         for (int end = 0; moves && end < 2; end++) memset(scene->moved[end][i], 0, sizeof *scene->moved[end]);
     }
 
-    crumple_load(scene);
+    crumple_load(preview);
     find_edges(preview);
     rumple_char(preview);
     measure(preview);
@@ -309,5 +335,6 @@ void tracer_free(Preview *preview) {
         allocator_resize(preview->allocator, scene->moved[end], scene->moved_capacity[end] * sizeof *scene->moved[end],
                          0);
     allocator_resize(preview->allocator, scene->triangles, scene->triangle_capacity * sizeof *scene->triangles, 0);
+    allocator_resize(preview->allocator, scene->sides, scene->side_capacity * sizeof *scene->sides, 0);
     *scene = (PreviewScene){0};
 }

@@ -33,8 +33,9 @@ typedef struct PaperVertex {
     float spacing;       ///< m, size of the surrounding triangles at rest
     float age;           ///< s of the fire's real time since ignition; 0: not yet
     int32_t piece;
-    float water; ///< over the mass before it burns
-    float bent;  ///< 1/m, how much its normals differ from its neighbours'
+    float water;    ///< over the mass before it burns
+    float bent;     ///< 1/m, how much its normals differ from its neighbours'
+    uint32_t facet; ///< key of that in which it lies where it is bent sharply; 0: nowhere
     float
         edge; ///< m at rest, to the nearest border of a piece where it burns: at most PAPER_EDGE, or CLOTH_EDGE threads
 } PaperVertex;

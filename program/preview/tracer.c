@@ -38,7 +38,8 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
     BvhMesh mesh = {.positions = {*(moves ? ends[0] : scene->positions), *(moves ? ends[1] : scene->positions)},
                     .stride = 4,
                     .triangles = (const uint32_t(*)[3])scene->triangles,
-                    .triangle_count = scene->triangle_count};
+                    .triangle_count = scene->triangle_count,
+                    .threads = preview->def.thread_count};
     if (bvh_build(&scene->bvh, preview->allocator, &mesh)) return SINGE_OK;
     return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a surface of %u triangles",
                         scene->triangle_count);

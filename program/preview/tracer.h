@@ -15,14 +15,21 @@ typedef struct CrumpleFacet {
 enum { CRUMPLE_FACETS = 4096 }; ///< room for them: beyond that sheets are smooth
 
 /// The sheets that are drawn, and the lamps.
+/// A side of a triangle: its vertices, and its length at rest (m).
+typedef struct SurfaceSide {
+    uint32_t ends[2];
+    float length;
+} SurfaceSide;
+
 typedef struct PreviewScene {
     Bvh bvh;
     PaperVertex *vertices;
     float (*positions)[4]; ///< in the centre of the exposure
     float (*moved[2])[4];  ///< at its beginning and end; not used without a shutter
     uint32_t (*triangles)[3];
+    SurfaceSide *sides; ///< scratch, of triangles that burn
     uint32_t vertex_count, triangle_count;
-    uint32_t vertex_capacity, position_capacity, moved_capacity[2], triangle_capacity;
+    uint32_t vertex_capacity, position_capacity, moved_capacity[2], triangle_capacity, side_capacity;
     Float3 low, high; ///< bounds of the drawn triangles
     float epsilon;    ///< m, distance by which secondary rays leave a surface
     CrumpleFacet facets[CRUMPLE_FACETS];
@@ -53,7 +60,7 @@ typedef struct Facets {
 
 // crumple.c
 /// Gathers the facets of crumpled sheets. The vertices have been loaded.
-void crumple_load(PreviewScene *scene);
+void crumple_load(Preview *preview);
 
 /// How crumpled a sheet is that is bent so much (1/m), 0 to 1.
 float crumple_amount(float bent);

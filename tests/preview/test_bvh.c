@@ -37,7 +37,8 @@ static BvhMesh soup_mesh(const Soup *soup, bool moves) {
     return (BvhMesh){.positions = {soup->ends[0][0], soup->ends[moves ? 1 : 0][0]},
                      .stride = 3,
                      .triangles = soup->triangles,
-                     .triangle_count = SOUP};
+                     .triangle_count = SOUP,
+                     .threads = moves ? 3 : 1};
 }
 
 /// Rays from outside through the middle; one lane in five rests.
@@ -176,7 +177,7 @@ TEST(no_ray_slips_through_an_edge) {
     }
 
     Bvh bvh = {0};
-    BvhMesh mesh = {{positions[0], positions[0]}, 3, triangles, 2 * GRID * GRID};
+    BvhMesh mesh = {{positions[0], positions[0]}, 3, triangles, 2 * GRID * GRID, 1};
     assert_true(bvh_build(&bvh, (SingeAllocator){0}, &mesh));
     const Float3 eye = float3(0.3f, 0.7f, 2);
     for (int y = 1; y + 1 < GRID; y++)
@@ -232,7 +233,7 @@ TEST(meshes_of_any_kind_are_built) {
     Bvh bvh = {0};
     for (int kind = 0; kind < 3; kind++) {
         const uint32_t count = (const uint32_t[]){SAME, 1, 0}[kind];
-        BvhMesh mesh = {{positions[0], positions[0]}, 3, (const uint32_t(*)[3])triangles, count};
+        BvhMesh mesh = {{positions[0], positions[0]}, 3, (const uint32_t(*)[3])triangles, count, 2};
         assert_true(bvh_build(&bvh, (SingeAllocator){0}, &mesh));
         Rays rays;
         int passed[LANES] = {0};
