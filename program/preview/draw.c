@@ -97,6 +97,7 @@ static void draw_mirrored(Preview *preview, Block *block) {
 static void fill_table(Preview *preview, Block *block) {
     Table sum[LANES] = {{.polish = 0}};
     int count[LANES] = {0};
+    AshSquares squares = {0};
     for (int i = 0; i < LANES; i++)
         block->key[i] = 0x80008000u; // the same points of the lens, or a soft table were speckled
 
@@ -117,7 +118,7 @@ static void fill_table(Preview *preview, Block *block) {
             Table look;
             Float3 position = float3_mad(block->origin[i], block->direction[i], distance);
             if (distance < ground) wall_look(preview, position, wide * preview->camera.pixel * distance, &look);
-            else ground_look(preview, position, block->direction[i].z, wide * distance, &look);
+            else ground_look(preview, position, block->direction[i].z, wide * distance, &squares, &look);
             sum[i].albedo = float3_add(sum[i].albedo, look.albedo);
             sum[i].polish += look.polish;
             sum[i].ash.albedo += look.ash.albedo;

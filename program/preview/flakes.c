@@ -85,12 +85,15 @@ static Plate flake_at(const Flake *flake, float age) {
 }
 
 /// The height of a flake over its plate.
-static float flake_height(float u, float v, uint32_t seed) { return FLAKE_BENT * (scrap_height(u, v, seed) - 0.14f); }
+static float flake_height(const Scrap *scrap, float u, float v) {
+    return FLAKE_BENT * (scrap_height(scrap, u, v) - 0.14f);
+}
 
 /// Draws the flake at an age, for a `share` of the exposure. `apart`: pixels that it moves between two such moments.
 static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *lit, float age, float share,
                        float apart) {
     const Plate plate = flake_at(flake, age);
+    const Scrap scrap = scrap_make(flake->seed);
     const Float3 to = float3_unit_or(float3_sub(preview->camera.eye, plate.centre), plate.normal);
     float at[2], depth;
     if (!airborne_project(preview, plate.centre, at, &depth)) return;
@@ -107,13 +110,13 @@ static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *l
             const uint32_t dither = hash_u32(seed ^ (uint32_t)(i + across * j) ^ (uint32_t)(age * 65536) * 0x8da6b343u);
             const float u = 2 * ((float)i + 0.25f + 0.5f * hash_unit(dither)) / (float)across - 1;
             const float v = 2 * ((float)j + 0.25f + 0.5f * hash_unit(dither + 1)) / (float)across - 1;
-            const float inside = scrap_depth(u, v, seed);
+            const float inside = scrap_depth(&scrap, u, v);
             if (inside <= 0) continue;
 
             // by the slope of its bend there; edge-on, its creases make it thick
-            const float e = 0.08f, high = flake_height(u, v, seed);
-            const float slope[2] = {(flake_height(u + e, v, seed) - high) / e,
-                                    (flake_height(u, v + e, seed) - high) / e};
+            const float e = 0.08f, high = flake_height(&scrap, u, v);
+            const float slope[2] = {(flake_height(&scrap, u + e, v) - high) / e,
+                                    (flake_height(&scrap, u, v + e) - high) / e};
             Float3 normal = float3_mad(plate.normal, plate.along, -slope[0] / flake->size);
             normal = float3_mad(normal, plate.across, -slope[1] / (flake->size * flake->narrow * flake->narrow));
             const float stretched = float3_length(normal); // of what is seen, and so from dot to dot

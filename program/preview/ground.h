@@ -33,21 +33,51 @@ void wood_look(const Plank *plank, float x, float y, uint32_t seed, float footpr
 // shade_ash.c
 #define SCRAP_FLAT 0.5f ///< in units of its size, above any part of a scrap
 
-/// How far inside a scrap of burnt paper a point of the plane lies, in units of its size (half its length); negative
-/// outside. The outline has torn sides, bites and frays. `key`: which scrap.
-float scrap_depth(float x, float y, uint32_t key);
+enum {
+    SCRAP_SIDES = 5, ///< of an outline
+    ASH_KINDS = 4,   ///< leaves, scraps, crumbs and grains
+    ASH_KEPT = 4,    ///< squares of a kind, two by two
+};
 
-/// Its height at the point, in units of its size: it is bent about its long axis, and creased.
-float scrap_height(float x, float y, uint32_t key);
+/// A scrap of burnt paper; lengths are in units of its size (half its length).
+typedef struct Scrap {
+    uint32_t key;
+    float sides[SCRAP_SIDES][3]; ///< unit and outward, and how far it lies from the middle
+    float bent, aside, twist;
+} Scrap;
 
-/// The ash at a point of the ground, of which a pixel covers `footprint` m.
-void ash_look(const Preview *preview, Float3 position, float footprint, Ash *ash);
+Scrap scrap_make(uint32_t key);
+
+/// How far inside it a point of its plane lies; negative outside. The outline has torn sides, bites and frays.
+float scrap_depth(const Scrap *scrap, float x, float y);
+
+/// Its height at the point: it is bent about its long axis, and creased.
+float scrap_height(const Scrap *scrap, float x, float y);
+
+/// What lies in the square of a lattice, or nothing.
+typedef struct LeafSquare {
+    int i, j;
+    bool known, taken;
+    float size;           ///< m
+    float turn[2], at[2]; ///< as of a Leaf; its middle within the square
+    Scrap scrap;
+} LeafSquare;
+
+/// Squares that were looked up: points that are looked up in turn mostly lie in the same ones.
+typedef struct AshSquares {
+    LeafSquare kept[ASH_KINDS][ASH_KEPT];
+} AshSquares;
+
+/// The ash at a point of the ground, of which a pixel covers `footprint` m. `squares` begin as zeros.
+void ash_look(const Preview *preview, Float3 position, float footprint, AshSquares *squares, Ash *ash);
 
 /// Lays it on a point of the ground if its leaf has already landed.
 void ash_lay(const Preview *preview, const Ash *ash, Point *point);
 
 // shade_ground.c
-void ground_look(const Preview *preview, Float3 position, float cosine, float distance, Table *table);
+/// `squares` begin as zeros, and may be kept from point to point.
+void ground_look(const Preview *preview, Float3 position, float cosine, float distance, AshSquares *squares,
+                 Table *table);
 void ground_shade(const Preview *preview, float distance, const Table *table, Point *point);
 Float3 background_colour(const Preview *preview, Float3 direction);
 

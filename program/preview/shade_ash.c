@@ -9,9 +9,7 @@
 #include "preview/internal.h"
 
 enum {
-    ASH_SIDES = 5, ///< of an outline
     ASH_STEPS = 9, ///< of a view ray down to the ground
-    ASH_KINDS = 4, ///< leaves, scraps, crumbs and grains
 };
 #define ASH_ASIDE 5.0f ///< m that a view ray moves sideways for each metre of height, at most
 
@@ -29,11 +27,11 @@ static const AshKind ash_kinds[ASH_KINDS] = {{0.026f, 0.0038f, 0.0110f, 0.62f, 0
 
 /// A leaf, seen from a point.
 typedef struct Leaf {
-    uint32_t key;    ///< 0: there is none
-    float size;      ///< m
-    float x, y;      ///< the point from its middle, along it and across, in units of its size
-    float turn[2];   ///< cosine and sine of its direction
-    float middle[2]; ///< m
+    const Scrap *scrap; ///< NULL: there is none
+    float size;         ///< m
+    float x, y;         ///< the point from its middle, along it and across, in units of its size
+    float turn[2];      ///< cosine and sine of its direction
+    float middle[2];    ///< m
 } Leaf;
 
 /// How much ash lies around a place, from 0 between drifts to 1.
@@ -41,28 +39,25 @@ static float ash_drift(uint32_t seed, float x, float y) {
     return stepf(-0.1f, 0.7f, noise2(x * 21, y * 21, seed) + 0.55f * noise2(x * 57, y * 57, seed + 310));
 }
 
-/// What lies in the square of a lattice, or nothing. Points that are looked up in turn are mostly in the same one.
-typedef struct LeafSquare {
-    int i, j;
-    bool known;
-    uint32_t key; ///< 0: nothing
-    float size;
-    float turn[2], at[2]; ///< as of a Leaf; its middle within the square
-} LeafSquare;
+/// How far the lattice of a kind is moved, in squares.
+static const float ash_aside[2] = {0.37f, 0.61f};
 
-/// Fills a square whose middle is (x, y).
-static void leaf_lay(uint32_t seed, uint32_t kind, float x, float y, LeafSquare *square) {
+/// Fills a square.
+static void leaf_lay(uint32_t seed, uint32_t kind, LeafSquare *square) {
     const AshKind *of = &ash_kinds[kind];
     const uint32_t key = sample_key(square->i, square->j, seed + 311 + kind) | 1;
     const float chance = hash_unit(key);
-    square->key = 0;
+    square->taken = false;
     if (chance > of->often) return;
+    const float x = ((float)square->i + 0.5f - ash_aside[0] * (float)kind) * of->square;
+    const float y = ((float)square->j + 0.5f - ash_aside[1] * (float)kind) * of->square;
     float drift = ash_drift(seed, x, y);
     if (kind > 0) drift *= stepf(-0.35f, 0.6f, noise2(x * 105, y * 105, seed + 320));
     if (chance > mixf(of->alone, of->often, drift)) return;
 
     const float share = hash_unit(key + 4), turn = 2 * PI_F * hash_unit(key + 3);
-    square->key = key;
+    square->taken = true;
+    square->scrap = scrap_make(key);
     square->size = mixf(of->smallest, of->largest, share * share);
     square->turn[0] = cosf(turn);
     square->turn[1] = sinf(turn);
@@ -71,21 +66,30 @@ static void leaf_lay(uint32_t seed, uint32_t kind, float x, float y, LeafSquare 
     square->at[1] = mixf(room, 1 - room, hash_unit(key + 2));
 }
 
-/// `square`: that of the point before, of the same kind.
-static Leaf leaf_find(uint32_t seed, uint32_t kind, float x, float y, LeafSquare *square) {
+static const LeafSquare *leaf_square(uint32_t seed, uint32_t kind, float x, float y, AshSquares *squares) {
     const AshKind *of = &ash_kinds[kind];
-    float fx, fy;
-    const int i = noise_floor(x / of->square + 0.37f * (float)kind, &fx);
-    const int j = noise_floor(y / of->square + 0.61f * (float)kind, &fy);
-    if (!square->known || square->i != i || square->j != j) {
-        *square = (LeafSquare){.i = i, .j = j, .known = true};
-        leaf_lay(seed, kind, x + (0.5f - fx) * of->square, y + (0.5f - fy) * of->square, square);
-    }
-    if (!square->key) return (Leaf){.key = 0};
+    float within;
+    const int i = noise_floor(x / of->square + ash_aside[0] * (float)kind, &within);
+    const int j = noise_floor(y / of->square + ash_aside[1] * (float)kind, &within);
+    LeafSquare *square = &squares->kept[kind][(i & 1) + 2 * (j & 1)];
+    if (square->known && square->i == i && square->j == j) return square;
+    square->i = i;
+    square->j = j;
+    square->known = true;
+    leaf_lay(seed, kind, square);
+    return square;
+}
 
+/// The leaf of the square that a point lies in.
+static Leaf leaf_find(uint32_t kind, float x, float y, const LeafSquare *square) {
+    if (!square->taken) return (Leaf){.scrap = NULL};
+    const AshKind *of = &ash_kinds[kind];
+    const float within[2] = {x / of->square + ash_aside[0] * (float)kind - (float)square->i,
+                             y / of->square + ash_aside[1] * (float)kind - (float)square->j};
     const float size = square->size, c = square->turn[0], s = square->turn[1];
-    const float dx = (fx - square->at[0]) * of->square / size, dy = (fy - square->at[1]) * of->square / size;
-    return (Leaf){.key = square->key,
+    const float dx = (within[0] - square->at[0]) * of->square / size,
+                dy = (within[1] - square->at[1]) * of->square / size;
+    return (Leaf){.scrap = &square->scrap,
                   .size = size,
                   .x = c * dx + s * dy,
                   .y = c * dy - s * dx,
@@ -93,26 +97,41 @@ static Leaf leaf_find(uint32_t seed, uint32_t kind, float x, float y, LeafSquare
                   .middle = {x - size * dx, y - size * dy}};
 }
 
-float scrap_depth(float x, float y, uint32_t key) {
+Scrap scrap_make(uint32_t key) {
+    Scrap scrap = {.key = key,
+                   .bent = 0.16f + 0.5f * hash_unit(key + 9),
+                   .aside = 0.9f * (hash_unit(key + 10) - 0.5f),
+                   .twist = 0.5f * (hash_unit(key + 11) - 0.5f)};
+    for (uint32_t s = 0; s < SCRAP_SIDES; s++) {
+        const float turn = 2 * PI_F * ((float)s + 0.8f * hash_unit(key + 20 + s)) / SCRAP_SIDES;
+        float *side = scrap.sides[s];
+        side[0] = cosf(turn);
+        side[1] = sinf(turn);
+        side[2] = mixf(0.55f, 1, hash_unit(key + 30 + s)) * (0.6f + 0.4f * fabsf(side[0]));
+    }
+    return scrap;
+}
+
+float scrap_depth(const Scrap *scrap, float x, float y) {
+    const uint32_t key = scrap->key;
     const float warp = noise2(1.9f * x, 1.9f * y, key & 255), bend = noise2(1.9f * x, 1.9f * y, key >> 8 & 255);
     float depth = 1;
     x += 0.22f * warp;
     y += 0.22f * bend;
-    for (uint32_t s = 0; s < ASH_SIDES; s++) {
-        const float turn = 2 * PI_F * ((float)s + 0.8f * hash_unit(key + 20 + s)) / ASH_SIDES, c = cosf(turn);
-        const float far = mixf(0.55f, 1, hash_unit(key + 30 + s)) * (0.6f + 0.4f * fabsf(c));
-        depth = minf(depth, far - c * x - sinf(turn) * y);
+    for (int s = 0; s < SCRAP_SIDES; s++) {
+        const float *side = scrap->sides[s];
+        depth = minf(depth, side[2] - side[0] * x - side[1] * y);
     }
     const float bites = maxf(noise2(2.6f * x, 2.6f * y, key >> 4 & 255) - 0.15f, 0);
     return depth - 0.45f * bites * (1 - minf(depth, 1)) + 0.07f * noise2(7 * x, 7 * y, key >> 16 & 255);
 }
 
-float scrap_height(float x, float y, uint32_t key) {
-    const float bent = 0.16f + 0.5f * hash_unit(key + 9), off = y - 0.9f * (hash_unit(key + 10) - 0.5f);
-    const float twist = 0.5f * (hash_unit(key + 11) - 0.5f) * x * off;
+float scrap_height(const Scrap *scrap, float x, float y) {
+    const uint32_t key = scrap->key;
+    const float off = y - scrap->aside, twist = scrap->twist * x * off;
     const float folds = fabsf(noise2(1.7f * x, 1.7f * y, key >> 3 & 255));
     const float fine = noise2(4.3f * x, 4.3f * y, key >> 7 & 255);
-    return clampf(0.03f + bent * off * off + twist + 0.20f * folds + 0.05f * fine, 0.01f, SCRAP_FLAT);
+    return clampf(0.03f + scrap->bent * off * off + twist + 0.20f * folds + 0.05f * fine, 0.01f, SCRAP_FLAT);
 }
 
 /// Whether a leaf of that size is visible, 0 to 1.
@@ -131,10 +150,10 @@ static void leaf_over(const Leaf *leaf, Float3 position, float albedo, const flo
 
 /// The albedo and the visible tilt of a leaf at one of its points. `view`: m sideways for each metre of height.
 static float leaf_look(const Leaf *leaf, float depth, const float view[2], float footprint, float tilt[2]) {
-    const uint32_t key = leaf->key;
-    const float e = 0.06f, h = scrap_height(leaf->x, leaf->y, leaf->key);
-    const float along = (scrap_height(leaf->x + e, leaf->y, leaf->key) - h) / e,
-                across = (scrap_height(leaf->x, leaf->y + e, leaf->key) - h) / e;
+    const uint32_t key = leaf->scrap->key;
+    const float e = 0.06f, h = scrap_height(leaf->scrap, leaf->x, leaf->y);
+    const float along = (scrap_height(leaf->scrap, leaf->x + e, leaf->y) - h) / e,
+                across = (scrap_height(leaf->scrap, leaf->x, leaf->y + e) - h) / e;
     const float slope[2] = {leaf->turn[0] * along - leaf->turn[1] * across,
                             leaf->turn[1] * along + leaf->turn[0] * across};
     const float faces = 1 - slope[0] * view[0] - slope[1] * view[1], steep = hypotf(slope[0], slope[1]);
@@ -151,7 +170,61 @@ static float leaf_look(const Leaf *leaf, float depth, const float view[2], float
     return value * (1 + 0.2f * grain) * (faces < 0 ? 0.55f : 1);
 }
 
-void ash_look(const Preview *preview, Float3 position, float footprint, Ash *ash) {
+/// A view ray at a height over the ground, and the leaf under or over it.
+typedef struct AshRay {
+    Leaf leaf;
+    float z;    ///< m
+    float over; ///< m over the leaf, if it is known; else it is higher than any part of it
+    bool known;
+} AshRay;
+
+static void ash_ray_measure(AshRay *ray) {
+    if (!ray->known) ray->over = ray->z - ray->leaf.size * scrap_height(ray->leaf.scrap, ray->leaf.x, ray->leaf.y);
+    ray->known = true;
+}
+
+/// Whether a leaf was met between two heights, and where. Heights are measured only if they may matter.
+static bool ash_ray_meets(AshRay *before, AshRay *ray, float *z) {
+    if (!ray->leaf.scrap || ray->leaf.scrap != before->leaf.scrap) return false;
+    const bool high = ray->z > SCRAP_FLAT * ray->leaf.size, was_high = !before->known;
+    if (high && was_high) return false;
+    ash_ray_measure(ray);
+    ash_ray_measure(before);
+    if (!(ray->over * before->over < 0)) return false;
+    *z = mixf(ray->z, before->z, ray->over / (ray->over - before->over));
+    return true;
+}
+
+/// Looks for leaves of a kind down the view ray to a point of the ground. `view`: m sideways for each metre of height;
+/// `only`: the square that the ray does not leave, or NULL.
+static void ash_descend(uint32_t seed, uint32_t kind, Float3 position, const float view[2], float footprint,
+                        const LeafSquare *only, AshSquares *squares, Ash *ash) {
+    const int steps = kind < 2 ? ASH_STEPS : 1;
+    const float top = SCRAP_FLAT * ash_kinds[kind].largest;
+    AshRay before = {.z = top, .known = true};
+    for (int k = 0; k <= steps; k++) {
+        AshRay ray = {.z = top * (1 - (float)k / (float)steps)};
+        const float x = position.x + ray.z * view[0], y = position.y + ray.z * view[1];
+        ray.leaf = leaf_find(kind, x, y, only ? only : leaf_square(seed, kind, x, y, squares));
+        if (ray.leaf.scrap && !(ray.z > SCRAP_FLAT * ray.leaf.size)) ash_ray_measure(&ray);
+        float met;
+        if (ash_ray_meets(&before, &ray, &met)) {
+            const Scrap *scrap = ray.leaf.scrap;
+            const float at[2] = {position.x + met * view[0], position.y + met * view[1]};
+            const Leaf leaf =
+                leaf_find(kind, at[0], at[1], only ? only : leaf_square(seed, kind, at[0], at[1], squares));
+            const float soft = 0.6f * footprint / ray.leaf.size;
+            const float depth = leaf.scrap == scrap ? scrap_depth(scrap, leaf.x, leaf.y) : -INFINITY;
+            const float cover = leaf_shown(&ray.leaf, footprint) * stepf(-soft, soft + 0.03f, depth);
+            float tilt[2];
+            if (cover > 0) leaf_over(&leaf, position, leaf_look(&leaf, depth, view, footprint, tilt), tilt, cover, ash);
+            if (cover > 0.5f) break;
+        }
+        before = ray;
+    }
+}
+
+void ash_look(const Preview *preview, Float3 position, float footprint, AshSquares *squares, Ash *ash) {
     const uint32_t seed = preview->def.seed;
     const Float3 to = float3_sub(preview->camera.eye, position);
     const float most = ASH_ASIDE / maxf(hypotf(to.x, to.y), 1e-6f), up = maxf(to.z, 1e-6f);
@@ -163,37 +236,23 @@ void ash_look(const Preview *preview, Float3 position, float footprint, Ash *ash
     *ash = (Ash){.cover = dust, .albedo = 0.10f * dust};
     for (uint32_t kind = ASH_KINDS; kind-- > 0;) {
         if (visible(ash_kinds[kind].largest, footprint) <= 0) continue;
-        LeafSquare square = {.known = false};
-        const Leaf below = leaf_find(seed, kind, position.x, position.y, &square);
-        if (below.key) {
-            const float high = scrap_height(below.x, below.y, below.key), soft = 0.34f + 0.9f * high;
+        // where the view ray stays in a square without a leaf it meets none
+        const float top = SCRAP_FLAT * ash_kinds[kind].largest;
+        const LeafSquare *square =
+            leaf_square(seed, kind, position.x + top * view[0], position.y + top * view[1], squares);
+        const int i = square->i, j = square->j;
+        square = leaf_square(seed, kind, position.x, position.y, squares);
+        const bool stays = square->i == i && square->j == j;
+        if (stays && !square->taken) continue;
+
+        const Leaf below = leaf_find(kind, position.x, position.y, square);
+        if (below.scrap) {
+            const float high = scrap_height(below.scrap, below.x, below.y), soft = 0.34f + 0.9f * high;
             const float dark = leaf_shown(&below, footprint) * mixf(0.9f, 0.6f, high / SCRAP_FLAT);
             leaf_over(&below, position, 0, (const float[2]){0, 0},
-                      dark * stepf(-soft, 0.1f, scrap_depth(below.x, below.y, below.key)), ash);
+                      dark * stepf(-soft, 0.1f, scrap_depth(below.scrap, below.x, below.y)), ash);
         }
-
-        // down the view ray
-        const int steps = kind < 2 ? ASH_STEPS : 1;
-        const float top = SCRAP_FLAT * ash_kinds[kind].largest;
-        float above = 0, last = top;
-        uint32_t key = 0;
-        for (int k = 0; k <= steps; k++) {
-            const float z = top * (1 - (float)k / (float)steps);
-            Leaf leaf = leaf_find(seed, kind, position.x + z * view[0], position.y + z * view[1], &square);
-            const float over = leaf.key ? z - leaf.size * scrap_height(leaf.x, leaf.y, leaf.key) : 0;
-            if (leaf.key && leaf.key == key && over * above < 0) {
-                const float met = mixf(z, last, over / (over - above));
-                leaf = leaf_find(seed, kind, position.x + met * view[0], position.y + met * view[1], &square);
-                const float soft = 0.6f * footprint / leaf.size, depth = scrap_depth(leaf.x, leaf.y, leaf.key);
-                const float cover =
-                    leaf.key == key ? leaf_shown(&leaf, footprint) * stepf(-soft, soft + 0.03f, depth) : 0;
-                float tilt[2];
-                if (cover > 0)
-                    leaf_over(&leaf, position, leaf_look(&leaf, depth, view, footprint, tilt), tilt, cover, ash);
-                if (cover > 0.5f) break;
-            }
-            key = leaf.key, above = over, last = z;
-        }
+        ash_descend(seed, kind, position, view, footprint, stays ? square : NULL, squares, ash);
     }
 }
 

@@ -135,7 +135,8 @@ static float footprint(const Preview *preview, float distance, float cosine) {
     return preview->camera.pixel * distance / sqrtf(maxf(fabsf(cosine), 0.02f));
 }
 
-void ground_look(const Preview *preview, Float3 position, float cosine, float distance, Table *table) {
+void ground_look(const Preview *preview, Float3 position, float cosine, float distance, AshSquares *squares,
+                 Table *table) {
     float size = footprint(preview, distance, cosine);
     *table = (Table){.albedo = {1, 1, 1}, .polish = 0.1f};
     const uint32_t seed = preview->def.seed + 77;
@@ -143,7 +144,7 @@ void ground_look(const Preview *preview, Float3 position, float cosine, float di
     if (preview->def.ground == PREVIEW_GROUND_WOOD) wood_look(&plank, position.x, position.y, seed, size, table);
     if (preview->def.ground == PREVIEW_GROUND_STONE) stone(preview, position, size, table);
     table->albedo = float3_mul(table->albedo, float3_load(preview->def.ground_colour));
-    if (stain_may_be(preview, position.x, position.y)) ash_look(preview, position, size, &table->ash);
+    if (stain_may_be(preview, position.x, position.y)) ash_look(preview, position, size, squares, &table->ash);
 }
 
 /// Scorches the ground under burnt paper, ragged at the scale of the picture: tan, then brown and dull with soot.
