@@ -191,7 +191,8 @@ static uint32_t list_sides(PreviewScene *scene) {
         for (int k = 0; k < 3; k++) {
             const uint32_t i = scene->triangles[t][k], j = scene->triangles[t][(k + 1) % 3];
             const PaperVertex *a = &scene->vertices[i], *b = &scene->vertices[j];
-            if (maxf(a->burn, b->burn) < BURNT_EDGE || (a->edge <= 0 && b->edge <= 0)) continue;
+            if (maxf(a->burn, b->burn) < BURNT_EDGE || (scene->edges[i] <= 0 && scene->edges[j] <= 0)) continue;
+            if (i > j && scene->edges[i] > 0 && scene->edges[j] > 0) continue; // the triangle beside has it as well
             const Float3 side = float3_sub(float3_load(a->rest), float3_load(b->rest));
             scene->sides[count++] = (SurfaceSide){{i, j}, float3_length(side)};
         }
@@ -202,9 +203,9 @@ static uint32_t list_sides(PreviewScene *scene) {
 static void find_edges(Preview *preview) {
     PreviewScene *scene = &preview->scene;
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
-        PaperVertex *v = &scene->vertices[i];
+        const PaperVertex *v = &scene->vertices[i];
         const Weave *weave = cloth_weave(preview, v->sheet);
-        v->edge = v->rim >= 0.5f ? 0 : weave ? CLOTH_EDGE * weave->pitch : PAPER_EDGE;
+        scene->edges[i] = v->rim >= 0.5f ? 0 : weave ? CLOTH_EDGE * weave->pitch : PAPER_EDGE;
     }
 
     // forwards and backwards by turns
@@ -214,7 +215,7 @@ static void find_edges(Preview *preview) {
         changes = false;
         for (uint32_t i = 0; i < sides; i++) {
             const SurfaceSide *side = &scene->sides[pass & 1 ? sides - 1 - i : i];
-            float *a = &scene->vertices[side->ends[0]].edge, *b = &scene->vertices[side->ends[1]].edge;
+            float *a = &scene->edges[side->ends[0]], *b = &scene->edges[side->ends[1]];
             if (fabsf(*a - *b) < 1e-6f) continue;
             float *far = *a > *b ? a : b, edge = (*a > *b ? *b : *a) + side->length;
             if (!(edge < *far)) continue;
@@ -222,6 +223,7 @@ static void find_edges(Preview *preview) {
             changes = true;
         }
     }
+    for (uint32_t i = 0; i < scene->vertex_count; i++) scene->vertices[i].edge = scene->edges[i];
 }
 
 static SingeResult check_surface(const SingeSurface *surface, SingeError *error) {
@@ -250,6 +252,7 @@ SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError 
     bool moves = preview->def.shutter > 0;
     bool room =
         mesh_in_grow(preview, &scene->vertices, &scene->vertex_capacity, vertices, sizeof *scene->vertices) &&
+        mesh_in_grow(preview, &scene->edges, &scene->edge_capacity, vertices, sizeof *scene->edges) &&
         mesh_in_grow(preview, &scene->positions, &scene->position_capacity, vertices, position) &&
         mesh_in_grow(preview, &scene->triangles, &scene->triangle_capacity, surface->triangle_count,
                      sizeof *scene->triangles) &&
@@ -335,6 +338,7 @@ void tracer_free(Preview *preview) {
         allocator_resize(preview->allocator, scene->moved[end], scene->moved_capacity[end] * sizeof *scene->moved[end],
                          0);
     allocator_resize(preview->allocator, scene->triangles, scene->triangle_capacity * sizeof *scene->triangles, 0);
+    allocator_resize(preview->allocator, scene->edges, scene->edge_capacity * sizeof *scene->edges, 0);
     allocator_resize(preview->allocator, scene->sides, scene->side_capacity * sizeof *scene->sides, 0);
     *scene = (PreviewScene){0};
 }

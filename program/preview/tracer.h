@@ -28,8 +28,9 @@ typedef struct PreviewScene {
     float (*moved[2])[4];  ///< at its beginning and end; not used without a shutter
     uint32_t (*triangles)[3];
     SurfaceSide *sides; ///< scratch, of triangles that burn
+    float *edges;       ///< scratch, m, of each vertex the distance from the nearest border so far
     uint32_t vertex_count, triangle_count;
-    uint32_t vertex_capacity, position_capacity, moved_capacity[2], triangle_capacity, side_capacity;
+    uint32_t vertex_capacity, position_capacity, moved_capacity[2], triangle_capacity, side_capacity, edge_capacity;
     Float3 low, high; ///< bounds of the drawn triangles
     float epsilon;    ///< m, distance by which secondary rays leave a surface
     CrumpleFacet facets[CRUMPLE_FACETS];
