@@ -27,11 +27,11 @@
 float crumple_amount(float bent) { return stepf(CREASED_LOW, CREASED_HIGH, bent); }
 
 /// The key of the facet at a place of the sheet at rest, and how far its walls are, in cells.
-static uint32_t facet_key(Float3 rest, int32_t sheet, float *wall) {
+static uint32_t facet_key(const PreviewScene *scene, Float3 rest, int32_t sheet, float *wall) {
     uint32_t key, part;
-    *wall = noise_cell(float3_scale(rest, 1 / FACET_SIZE), 37 + (uint32_t)sheet, &key);
+    *wall = scene->cell(float3_scale(rest, 1 / FACET_SIZE), 37 + (uint32_t)sheet, &key);
     if (hash_unit(key + 4) < FACET_WHOLE) return key | 1;
-    const float nearer = noise_cell(float3_scale(rest, 1 / FACET_PART), 59 + (uint32_t)sheet, &part);
+    const float nearer = scene->cell(float3_scale(rest, 1 / FACET_PART), 59 + (uint32_t)sheet, &part);
     *wall = minf(*wall * FACET_SIZE / FACET_PART, nearer);
     return hash_u32(key + 3 * part) | 1;
 }
@@ -47,7 +47,7 @@ static void find_facets(void *context, int part) {
     float wall;
     for (uint32_t i = share_first(scene->vertex_count, part, PARTS); i < end; i++) {
         PaperVertex *v = &scene->vertices[i];
-        v->facet = facet_weight(v) > 0 ? facet_key(float3_load(v->rest), v->sheet, &wall) : 0;
+        v->facet = facet_weight(v) > 0 ? facet_key(scene, float3_load(v->rest), v->sheet, &wall) : 0;
     }
 }
 
@@ -71,7 +71,7 @@ void crumple_load(Preview *preview) {
 
 void crumple_shade(const PreviewScene *scene, const PaperState *state, float amount, Point *point) {
     float wall;
-    const uint32_t key = facet_key(state->rest, state->sheet, &wall);
+    const uint32_t key = facet_key(scene, state->rest, state->sheet, &wall);
     Float3 mean = point->normal;
     for (uint32_t k = 0; k < PROBES; k++) {
         const CrumpleFacet *facet = &scene->facets[(key / 2 + k) % CRUMPLE_FACETS];
@@ -90,7 +90,7 @@ void crumple_shade(const PreviewScene *scene, const PaperState *state, float amo
     const float near = 1 - stepf(0.25f, 0.7f, point->footprint / DENT_SIZE);
     if (near > 0) {
         uint32_t dent;
-        noise_cell(float3_scale(state->rest, 1 / DENT_SIZE), 83, &dent);
+        scene->cell(float3_scale(state->rest, 1 / DENT_SIZE), 83, &dent);
         const Float3 down = float3(hash_unit(dent) - 0.5f, hash_unit(dent + 1) - 0.5f, hash_unit(dent + 2) - 0.5f);
         turned = float3_unit_or(float3_mad(turned, down, 2 * DENT_TILT * near * over * hash_unit(dent + 3)), turned);
     }

@@ -179,6 +179,7 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
     Preview *preview = allocator_resize(allocator, NULL, 0, sizeof *preview);
     if (!preview) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory");
     *preview = (Preview){.def = *def, .allocator = allocator, .camera = camera_make(def)};
+    preview->scene.cell = noise_cell_best();
 
     preview->sun = float3_unit_or(float3_load(def->sun_direction), float3(0, 0, 1));
     float3_frame(preview->sun, &preview->sun_right, &preview->sun_up);

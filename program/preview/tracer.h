@@ -3,6 +3,7 @@
 
 #include "preview/bvh.h"
 #include "preview/light.h"
+#include "preview/noise_cell.h"
 #include "preview/paper_look.h"
 #include "preview/point.h"
 
@@ -34,6 +35,7 @@ typedef struct PreviewScene {
     Float3 low, high; ///< bounds of the drawn triangles
     float epsilon;    ///< m, distance by which secondary rays leave a surface
     CrumpleFacet facets[CRUMPLE_FACETS];
+    NoiseCell *cell; ///< for this machine's instruction set
     EmberLights lights;
     int light_count, flames[2]; ///< the first of the flames, and behind the last
     Float3 flame_points[FLAME_POINTS];
