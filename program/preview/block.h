@@ -63,6 +63,9 @@ void sample_offset(int sample, float at[2]);
 /// Rays of a sample through the pixels, each with its position on the lens and its time: SAMPLE_CENTRE of both.
 void block_aim(const Preview *preview, Block *block, int sample, const float at[2]);
 
+/// The same in each `step`-th of the lanes.
+void block_aim_each(const Preview *preview, Block *block, int sample, const float at[2], int step);
+
 /// Distance to the ground along a ray; infinite: it is not met.
 float ground_hit(const Preview *preview, Float3 origin, Float3 direction);
 

@@ -16,21 +16,30 @@ void sample_offset(int sample, float at[2]) {
 #define TURNED_LENS 1.5f ///< pixels
 #define TURNED_TIME 4.0f ///< pixels: their times lie along a line
 
-void block_aim(const Preview *preview, Block *block, int sample, const float at[2]) {
+void block_aim_each(const Preview *preview, Block *block, int sample, const float at[2], int step) {
     bool lens = preview->camera.lens > 0 && sample >= 0, shutter = preview->def.shutter > 0 && sample >= 0;
     const bool turned = block->spread > TURNED_LENS, late = block->spread > TURNED_TIME;
-    for (int i = 0; i < LANES; i++) {
+    float disc[2] = {0, 0}, square[2];
+    if (lens && !turned) {
+        sample_lens((uint32_t)sample, 0, square);
+        sample_disc(square, disc);
+    }
+
+    for (int i = 0; i < LANES; i += step) {
         float x = 2 * ((float)block->x[i] + 0.5f + at[0]) / (float)preview->def.width - 1;
         float y = 1 - 2 * ((float)block->y[i] + 0.5f + at[1]) / (float)preview->def.height;
-        float square[2], disc[2] = {0, 0};
-        if (lens) {
-            sample_lens((uint32_t)sample, turned ? block->key[i] : 0, square);
+        if (lens && turned) {
+            sample_lens((uint32_t)sample, block->key[i], square);
             sample_disc(square, disc);
         }
 
         camera_ray(&preview->camera, x, y, disc, &block->origin[i], &block->direction[i]);
         block->time[i] = shutter ? sample_time((uint32_t)sample, late ? block->key[i] : 0) : 0.5f;
     }
+}
+
+void block_aim(const Preview *preview, Block *block, int sample, const float at[2]) {
+    block_aim_each(preview, block, sample, at, 1);
 }
 
 static void start_point(Point *point, const Preview *preview, Float3 origin, Float3 direction, float distance) {

@@ -256,10 +256,13 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
 static bool aim_at_corner(const Preview *preview, Block *block, const int *active) {
     const float centre[2] = {0, 0};
     const int rays = !isfinite(preview->def.wall_distance) ? 0 : preview->camera.lens > 0 ? 8 : 1;
-    int walls = 0, lanes = 0;
+    int walls = 0, lanes = 0,
+        step = BLOCK - 1; // its corners, of which all agree where the wall's straight border is not
+    for (int i = 0; i < LANES; i++)
+        if (!active[i]) step = 1;
     for (int s = 0; s < rays; s++) {
-        block_aim(preview, block, s, centre);
-        for (int i = 0; i < LANES; i++) {
+        block_aim_each(preview, block, s, centre, step);
+        for (int i = 0; i < LANES; i += step) {
             if (!active[i]) continue;
             const float ground = ground_hit(preview, block->origin[i], block->direction[i]);
             walls += wall_hit(preview, block->origin[i], block->direction[i]) < ground;
