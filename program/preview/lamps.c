@@ -3,6 +3,7 @@
 // The unoccluded light U = sum_k U_k over the lamps k is exact. Visibility is tested by one ray per sample, to a random
 // point of a lamp chosen with probability U_k / U: its mean has no noise where all lamps or none are visible.
 
+#include "common/float4.h"
 #include "preview/block.h"
 
 #include <string.h>
@@ -149,17 +150,17 @@ static const float too_faint = 1e-3f;
 static const float bounced =
     0.06f; ///< of what is hidden of flames, the light that comes by way of sheets, ground and walls
 
-static inline Four four_max(Four a, Four b) {
-    for (int k = 0; k < 4; k++) a[k] = maxf(a[k], b[k]);
-    return a;
+/// What lamps in those directions give. A lamp sets bit by bit, as it has an extent: E(c) = (c + w)^2 / 4w for |c| < w, and c
+/// above. Fuzz scatters its light.
+static inline Float4 lamps_before(const Point *point, Float4 cosine, Float4 extent, Float4 distance) {
+    const Float4 none = {0, 0, 0, 0};
+    const Float4 wrap = float4_min(LAMP_WRAP + point->fuzz + extent / distance, float4_all(LAMP_WRAP_MOST));
+    const Float4 up = float4_min(float4_max((cosine + wrap) / (2 * wrap), none), float4_all(1));
+    return wrap * up * up + float4_max(cosine - wrap, none);
 }
 
-/// What a lamp in that direction gives. It sets bit by bit, as it has an extent: E(c) = (c + w)^2 / 4w for |c| < w, and c
-/// above. Fuzz scatters its light.
 static inline float lamp_before(const Point *point, float cosine, float extent, float distance) {
-    const float wrap = minf(LAMP_WRAP + point->fuzz + extent / distance, LAMP_WRAP_MOST),
-                up = clampf((cosine + wrap) / (2 * wrap), 0, 1);
-    return wrap * up * up + maxf(cosine - wrap, 0);
+    return lamps_before(point, float4_all(cosine), float4_all(extent), float4_all(distance))[0];
 }
 
 static inline float four_sum(Four a) { return a[0] + a[1] + (a[2] + a[3]); }
@@ -175,17 +176,14 @@ static Float3 lamps_gather(const PreviewScene *scene, const Point *point, float 
     Four r = {0, 0, 0, 0}, g = r, b = r, all = r;
     for (int k = 0; k < count; k += 4) {
         Four x = four_load(l->x + k) - p.x, y = four_load(l->y + k) - p.y, z = four_load(l->z + k) - p.z;
-        Four d2 = x * x + y * y + z * z + four_load(l->softness + k), cosine = n.x * x + n.y * y + n.z * z, seen;
-        for (int i = 0; i < 4; i++) {
-            const float distance = sqrtf(d2[i]);
-            cosine[i] /= distance;
-            seen[i] = lamp_before(point, cosine[i], l->extent[k + i], distance);
-        }
+        const Four d2 = x * x + y * y + z * z + four_load(l->softness + k), distance = float4_sqrt(d2);
+        const Four cosine = (n.x * x + n.y * y + n.z * z) / distance;
+        Four seen = lamps_before(point, cosine, four_load(l->extent + k), distance);
         const Four red = four_load(l->strength[0] + k), green = four_load(l->strength[1] + k),
                    blue = four_load(l->strength[2] + k);
         if (through > 0) {
             const Four before = seen;
-            seen = four_max(seen, -through * cosine);
+            seen = float4_max(seen, -through * cosine);
             const Four behind = (seen - before) / d2;
             r += tint.x * behind * red;
             g += tint.y * behind * green;
