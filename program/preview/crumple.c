@@ -39,13 +39,11 @@ static uint32_t facet_key(const PreviewScene *scene, Float3 rest, int32_t sheet,
 /// What a vertex weighs in the mean of its facet.
 static float facet_weight(const PaperVertex *v) { return crumple_amount(v->bent) * v->spacing * v->spacing; }
 
-enum { PARTS = 32 }; ///< of vertices, for threads
-
 static void find_facets(void *context, int part) {
     PreviewScene *scene = context;
-    const uint32_t end = share_first(scene->vertex_count, part + 1, PARTS);
+    const uint32_t end = share_first(scene->vertex_count, part + 1, SHARE_PARTS);
     float wall;
-    for (uint32_t i = share_first(scene->vertex_count, part, PARTS); i < end; i++) {
+    for (uint32_t i = share_first(scene->vertex_count, part, SHARE_PARTS); i < end; i++) {
         PaperVertex *v = &scene->vertices[i];
         v->facet = facet_weight(v) > 0 ? facet_key(scene, float3_load(v->rest), v->sheet, &wall) : 0;
     }
@@ -54,7 +52,7 @@ static void find_facets(void *context, int part) {
 void crumple_load(Preview *preview) {
     PreviewScene *scene = &preview->scene;
     memset(scene->facets, 0, sizeof scene->facets);
-    share_out(preview->def.thread_count, PARTS, find_facets, scene);
+    share_out(preview->def.thread_count, SHARE_PARTS, find_facets, scene);
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
         const PaperVertex *v = &scene->vertices[i];
         const float weight = facet_weight(v);

@@ -1,6 +1,7 @@
 // From radiance to bytes: the halo of a lens, and a film's curve.
 
 #include "preview/internal.h"
+#include "preview/share.h"
 
 // ---- the halo
 
@@ -41,9 +42,20 @@ void film_blur(Float3 *image, Float3 *scratch, int w, int h, float sigma) {
     for (int x = 0; x < w; x++) blur_line(scratch + x, image + x, h, (size_t)w, weight, radius);
 }
 
-static void bloom_add(Preview *preview, const Float3 *glow, int w, int h, float amount) {
-    amount /= preview->def.exposure;
-    for (int y = 0; y < preview->def.height; y++) {
+typedef struct Halo {
+    Preview *preview;
+    const Float3 *glow;
+    int w, h;
+    float amount;
+} Halo;
+
+static void bloom_add(void *context, int part) {
+    const Halo *halo = context;
+    Preview *preview = halo->preview;
+    const Float3 *glow = halo->glow;
+    const int w = halo->w, h = halo->h, rows = preview->def.height;
+    const float amount = halo->amount / preview->def.exposure;
+    for (int y = rows * part / SHARE_PARTS; y < rows * (part + 1) / SHARE_PARTS; y++) {
         float gy = clampf(((float)y + 0.5f) / SHRINK - 0.5f, 0, (float)(h - 1));
         int y0 = (int)gy, y1 = y0 + 1 < h ? y0 + 1 : y0;
         for (int x = 0; x < preview->def.width; x++) {
@@ -85,7 +97,7 @@ void bloom_apply(Preview *preview) {
         {0.005f, 0.4f, 0.14f}, {0.022f, 0.8f, 0.10f}, {0.065f, 0.8f, 0.06f}}; // s, its least, k
     for (int k = 0; k < 3; k++) {
         film_blur(glow, scratch, w, h, maxf(halo[k][0] * (float)height / SHRINK, halo[k][1]));
-        bloom_add(preview, glow, w, h, halo[k][2]);
+        share_out(preview->def.thread_count, SHARE_PARTS, bloom_add, &(Halo){preview, glow, w, h, halo[k][2]});
     }
 }
 
@@ -108,18 +120,19 @@ enum { CURVE_COUNT = 4096 };
 /// The curve and the encoding as one table over sqrt(x / CURVE_MAX): the curve is slow and smooth.
 #define CURVE_MAX 16.0f
 
-void tonemap_write(const Preview *preview, uint8_t *rgb) {
-    const float shoulder = 0.6f, rest = 1 - shoulder;
+typedef struct Developing {
+    const Preview *preview;
+    uint8_t *rgb;
     float curve[CURVE_COUNT];
-    for (int i = 0; i < CURVE_COUNT; i++) {
-        float s = (float)i / (CURVE_COUNT - 1), x = s * s * CURVE_MAX;
-        float f = x * (1 - 0.4f * expf(-x / 0.06f));
-        float over = maxf(f - shoulder, 0) / rest;
-        curve[i] = srgb_encode(f < shoulder ? f : shoulder + rest * (1 - powf(1 + over / 0.75f, -0.75f)));
-    }
+} Developing;
 
-    size_t count = (size_t)preview->def.width * (size_t)preview->def.height;
-    for (size_t i = 0; i < count; i++) {
+static void develop(void *context, int part) {
+    const Developing *developing = context;
+    const Preview *preview = developing->preview;
+    const float *curve = developing->curve;
+    uint8_t *rgb = developing->rgb;
+    const size_t count = (size_t)preview->def.width * (size_t)preview->def.height, first = (size_t)part;
+    for (size_t i = count * first / SHARE_PARTS; i < count * (first + 1) / SHARE_PARTS; i++) {
         Float3 c = float3_scale(preview->picture[i], preview->def.exposure);
         const float over = maxf(maxf(c.x, maxf(c.y, c.z)) - 1, 0);
         const float leak = LEAK + LEAK_BRIGHT * over * over / (over * over + LEAK_HALF * LEAK_HALF);
@@ -134,4 +147,17 @@ void tonemap_write(const Preview *preview, uint8_t *rgb) {
             rgb[3 * i + k] = (uint8_t)clampf(s * 255 + 0.5f + 0.7f * dither, 0, 255);
         }
     }
+}
+
+void tonemap_write(const Preview *preview, uint8_t *rgb) {
+    const float shoulder = 0.6f, rest = 1 - shoulder;
+    Developing developing = {.preview = preview, .rgb = rgb};
+    for (int i = 0; i < CURVE_COUNT; i++) {
+        float s = (float)i / (CURVE_COUNT - 1), x = s * s * CURVE_MAX;
+        float f = x * (1 - 0.4f * expf(-x / 0.06f));
+        float over = maxf(f - shoulder, 0) / rest;
+        developing.curve[i] = srgb_encode(f < shoulder ? f : shoulder + rest * (1 - powf(1 + over / 0.75f, -0.75f)));
+    }
+
+    share_out(preview->def.thread_count, SHARE_PARTS, develop, &developing);
 }

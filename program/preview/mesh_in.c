@@ -84,8 +84,6 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
     }
 }
 
-enum { PARTS = 32 }; ///< of vertices, for threads
-
 typedef struct Packing {
     const Preview *preview;
     const SingeSurface *surface;
@@ -93,8 +91,9 @@ typedef struct Packing {
 
 static void pack_part(void *context, int k) {
     const Packing *packing = context;
-    const uint32_t all = packing->surface->vertex_count, end = share_first(all, k + 1, PARTS);
-    for (uint32_t i = share_first(all, k, PARTS); i < end; i++) pack_vertex(packing->preview, packing->surface, i);
+    const uint32_t all = packing->surface->vertex_count, end = share_first(all, k + 1, SHARE_PARTS);
+    for (uint32_t i = share_first(all, k, SHARE_PARTS); i < end; i++)
+        pack_vertex(packing->preview, packing->surface, i);
 }
 
 /// Gradient of a field with these values at the corners, times |N|^2.
@@ -262,7 +261,7 @@ SingeResult mesh_load(Preview *preview, const SingeSurface *surface, SingeError 
     if (!room)
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a surface of %u vertices", vertices);
 
-    share_out(preview->def.thread_count, PARTS, pack_part, &(Packing){preview, surface});
+    share_out(preview->def.thread_count, SHARE_PARTS, pack_part, &(Packing){preview, surface});
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
         const uint32_t *from = surface->triangles[t];
         const float *p = surface->position[from[0]], *q = surface->position[from[1]], *r = surface->position[from[2]];

@@ -3,6 +3,8 @@
 
 #include <stdint.h>
 
+enum { SHARE_PARTS = 32 }; ///< of a list or of a picture that is long
+
 /// Calls item(context, k) for each k below `count`, on so many threads, of which the caller is one. They take the next number by
 /// turns: no item may depend on another.
 void share_out(int threads, int count, void (*item)(void *context, int k), void *context);
