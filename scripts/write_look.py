@@ -16,7 +16,7 @@ import write_types
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 FILE = ROOT / "web/view/look.js"
-CONSTANTS = ("ember.h", "paper_look.h", "fire.h", "shade_paper.c", "fire_shade.c", "fire_march.c", "airborne.c", "sparks.c", "light.h", "fire.c", "fire_feet.c",
+CONSTANTS = ("ember.h", "paper_look.h", "fire.h", "shade_paper.c", "fire_shade.c", "fire_kernel.h", "fire_march.c", "airborne.c", "sparks.c", "light.h", "fire.c", "fire_feet.c",
              "shade_ground.c", "shade_metal.c", "lamps.c")
 PARTS = {
     "PAPER": {
@@ -35,13 +35,22 @@ PARTS = {
     "FLAME": {
         "calls": ["Noise noise_at(vec3 q);", "FireCell cell_at(vec3 p);"],
         "structs": {"fire.h": ["FireCell", "FirePoint", "Matter", "Smoke"], "fire_shade.c": ["Noise"]},
-        "functions": {"fire_shade.c": ["eddies_passed", "eddies", "fire_sway", "shade_flame", "fire_between", "fire_smoke_at", "fold_sum", "fold_sum_twice", "fire_smoke_between"]},
+        "functions": {
+            "fire_eddies.h": ["eddies"],
+            "fire_kernel.h": ["eddies_passed", "shade_flame"],
+            "fire_shade.c": ["fire_sway", "fire_between", "fire_smoke_at", "fold_sum", "fold_sum_twice", "fire_smoke_between"],
+        },
     },
 }
-TYPES = {"Float3": "vec3", "uint32_t": "float", "int32_t": "float", "int": "float"}
+# what the C computes for many positions at once, shaders do for one
+TYPES = {"Float3": "vec3", "uint32_t": "float", "int32_t": "float", "int": "float", "Wide": "float", "Wide3": "vec3",
+         "WidePoint": "FirePoint", "Real": "float", "Real3": "vec3"}
 CALLS = {"expf": "exp", "sqrtf": "sqrt", "fabsf": "abs", "logf": "log", "powf": "pow", "sinf": "sin", "cosf": "cos",
          "floorf": "floor", "minf": "min", "maxf": "max", "mixf": "mix", "clampf": "clamp", "float3": "vec3",
-         "float3_mix": "mix", "float3_dot": "dot", "float3_length": "length"}
+         "float3_mix": "mix", "float3_dot": "dot", "float3_length": "length", "wide_exp": "exp", "wide_sqrt": "sqrt",
+         "wide_abs": "abs", "wide_min": "min", "wide_max": "max", "wide_mix": "mix", "wide_clamp": "clamp",
+         "wide_step": "stepf", "wide_any": "", "wide3": "vec3", "wide3_mad": "float3_mad",
+         "wide3_scale": "float3_scale", "wide3_of": "float3_scale", "real3": "vec3"}
 DROPPED = ("preview", "fire", "preview->blackbody", "NULL")
 
 
@@ -107,12 +116,13 @@ def translated(text, structs):
         body = re.sub(r"(?<=\()%s, " % re.escape(gone), "", body)
         body = re.sub(r"(?<=\()%s(?=\))" % re.escape(gone), "", body)
         body = re.sub(r", %s(?=\))" % re.escape(gone), "", body)
-    text = head + "{" + re.sub(r"\bconst (?=float |Float3 |Noise |vec4 |bool |FireCell )", "", body)
+    text = head + "{" + re.sub(r"\bconst (?=float |Float3 |Wide3? |Noise |vec4 |bool |FireCell )", "", body)
     text = re.sub(r"\b(?:fire|preview)->(\w)", lambda m: "fire" + m[1].upper(), text)
     text = re.sub(r"(?<=[(,])( ?)&(?=\w)", r"\1", text)
     text = text.replace("->", ".")
 
     # values
+    text = re.sub(r"(?<!!)\bwide_(?:all|any)\(([^()]*)\)", r"\1", text)
     text = re.sub(r"float3_load\((\w+\[[^\]]*\]) \+ 1\)", r"\1.yzw", text)
     text = re.sub(r"\((\w+)\)\{", r"\1{", text)
     for name, fields in structs.items():

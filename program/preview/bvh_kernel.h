@@ -1,10 +1,10 @@
-// Packets of rays against a BVH, for one instruction set. The file that includes it has defined Wide, a vector of
-// WIDTH floats, WideMask, and wide_min, wide_max and wide_bits; BVH_WALK names what comes out.
+// Packets of rays against a BVH, for the instruction set of the file that includes it; BVH_WALK names what comes out.
 //
 // A node's box is tested when the node's turn has come, against what the rays have met until then. Edges are tested by
 // their Plücker coordinates with a ray, which are exactly opposite in two triangles that share an edge, so that no ray
 // slips through between them (Davidovič et al. 2012, "3D rasterization: a bridge between rasterization and ray casting").
 #include "preview/bvh_packets.h"
+#include "preview/wide.h"
 
 #include <float.h>
 #include <math.h>
@@ -15,10 +15,6 @@ enum {
     PART = (1 << WIDTH) - 1, ///< bits of a part's lanes
     STACK = 96,              ///< deeper than any BVH
 };
-
-typedef struct Wide3 {
-    Wide x, y, z;
-} Wide3;
 
 /// The rays of a part.
 typedef struct Part {
@@ -31,20 +27,6 @@ typedef struct Packet {
     const Bvh *bvh;
     const BvhQuery *query;
 } Packet;
-
-static inline Wide wide_all(float a) { return a - (Wide){0}; }
-
-static inline Wide wide_load(const float *p) {
-    Wide a;
-    memcpy(&a, p, sizeof a);
-    return a;
-}
-
-static inline void wide_store(float *p, Wide a) { memcpy(p, &a, sizeof a); }
-
-static inline Wide wide_select(WideMask mask, Wide yes, Wide no) {
-    return (Wide)((mask & (WideMask)yes) | (~mask & (WideMask)no));
-}
 
 static inline Wide3 wide3_sub(Wide3 a, Wide3 b) { return (Wide3){a.x - b.x, a.y - b.y, a.z - b.z}; }
 static inline Wide3 wide3_add(Wide3 a, Wide3 b) { return (Wide3){a.x + b.x, a.y + b.y, a.z + b.z}; }

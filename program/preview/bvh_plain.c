@@ -1,14 +1,4 @@
 // Packets of rays, four at a time, for every processor; and the choice of those that run.
-#include "common/float4.h"
-
-enum { WIDTH = 4 };
-typedef Float4 Wide;
-typedef Float4Mask WideMask;
-
-static inline Wide wide_min(Wide a, Wide b) { return float4_min(a, b); }
-static inline Wide wide_max(Wide a, Wide b) { return float4_max(a, b); }
-static inline unsigned wide_bits(WideMask mask) { return float4_bits(mask); }
-
 #define BVH_WALK bvh_walk_plain
 #include "preview/bvh_kernel.h"
 

@@ -20,6 +20,36 @@ typedef struct Job {
     bool fire; ///< flame and smoke are drawn
 } Job;
 
+/// Adds the fire to what blocks mirror. Two of them above each other see the same, unless something hides it from one.
+static void mirror_fire(Preview *preview, const Block *block, const int *active, const Float3 *origin,
+                        const Float3 *towards, const float *reached) {
+    Float3 from[LANES], along[LANES], light[LANES];
+    float far[LANES], clear[LANES];
+    int count = 0, ray[LANES];
+    bool open = false;
+    for (int k = 0; k < LANES; k++) {
+        const int i = k / 4 + BLOCK * (k % 4);
+        const bool shared = k % 2 && open;
+        ray[i] = -1;
+        open = active[i] && reached[i] > fire_leaves(&preview->fire, origin[i], towards[i]);
+        if (!active[i]) continue;
+        if (!(shared && open)) {
+            from[count] = origin[i];
+            along[count] = towards[i];
+            far[count++] = reached[i];
+        }
+        ray[i] = count - 1;
+    }
+
+    fire_along(preview, count, from, along, far, FIRE_MIRRORED, light, clear);
+    for (int i = 0; i < LANES; i++) {
+        if (ray[i] < 0) continue;
+        Mirrored *mirrored = &preview->mirrored[0][mirror_block(preview, block, i)];
+        mirrored->light = float3_mad(light[ray[i]], mirrored->light, clear[ray[i]]);
+        mirrored->share = 1 - clear[ray[i]] * (1 - mirrored->share);
+    }
+}
+
 /// What the ground mirrors in the 4 x 4 blocks of pixels of which `block` is the first: a few rays through the middle of
 /// each, spread by the ground's roughness, and one through the fire.
 static void draw_mirrored(Preview *preview, Block *block) {
@@ -74,23 +104,7 @@ static void draw_mirrored(Preview *preview, Block *block) {
         }
     }
 
-    // two blocks above each other see the same fire, unless something hides it from one of them
-    const Fire *fire = &preview->fire;
-    Float3 light = {0, 0, 0};
-    float clear = 1;
-    bool known = false;
-    for (int k = 0; fire->visible && k < LANES; k++) {
-        const int i = k / 4 + BLOCK * (k % 4);
-        if (k % 2 == 0) known = false;
-        if (!active[i]) continue;
-        const bool open = reached[i] > fire_leaves(fire, origin[i], towards[i]);
-        known = known && open;
-        Mirrored *mirrored = &preview->mirrored[0][mirror_block(preview, block, i)];
-        if (!known) fire_along(preview, origin[i], towards[i], reached[i], FIRE_MIRRORED, &light, &clear);
-        known = open;
-        mirrored->light = float3_mad(light, mirrored->light, clear);
-        mirrored->share = 1 - clear * (1 - mirrored->share);
-    }
+    if (preview->fire.visible) mirror_fire(preview, block, active, origin, towards, reached);
 }
 
 /// The table's own colour in every pixel. The camera does not move, so it is computed once.

@@ -16,6 +16,7 @@
 // 8.7 m2/g times its density (Mulholland & Croarkin 2000, for the soot of flames), where the gas is cold: in hot gas soot
 // still burns and vapours have not condensed.
 
+#include "preview/fire_lanes.h"
 #include "preview/internal.h"
 
 #include <string.h>
@@ -334,6 +335,8 @@ void fire_raise(Preview *preview) {
 
     mix_cells(fire);
     sway_cells(fire);
+    for (size_t i = 0; i < fire->cell_capacity; i++) fire->flames[i] = fire->cells[i].flame;
+    memset(fire->flames + fire->cell_capacity, 0, FIRE_BEYOND * sizeof *fire->flames);
     mark_all(fire);
 
     // bounds of the bricks that are not empty
@@ -355,10 +358,13 @@ void fire_raise(Preview *preview) {
 
 // ---- the whole
 
+static size_t flames_size(size_t cells) { return (cells + FIRE_BEYOND) * sizeof(float); }
+
 /// A block that could not be allocated is NULL and has no size.
 static void free_cells(const Preview *preview, const Fire *fire) {
     const SingeAllocator *allocator = &preview->allocator;
     allocator_resize(*allocator, fire->cells, fire->cells ? fire->cell_capacity * sizeof *fire->cells : 0, 0);
+    allocator_resize(*allocator, fire->flames, fire->flames ? flames_size(fire->cell_capacity) : 0, 0);
     allocator_resize(*allocator, fire->seen, fire->seen ? fire->brick_capacity : 0, 0);
     allocator_resize(*allocator, fire->burns, fire->burns ? fire->cell_capacity : 0, 0);
     allocator_resize(*allocator, fire->source, fire->source ? fire->cell_capacity * sizeof *fire->source : 0, 0);
@@ -378,6 +384,7 @@ static bool make_room(const Preview *preview, Fire *fire) {
     if (cells != fire->cell_capacity || bricks != fire->brick_capacity) {
         Fire old = *fire;
         fire->cells = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->cells);
+        fire->flames = allocator_resize(preview->allocator, NULL, 0, flames_size(cells));
         fire->seen = allocator_resize(preview->allocator, NULL, 0, bricks);
         fire->burns = allocator_resize(preview->allocator, NULL, 0, cells);
         fire->source = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->source);
@@ -389,7 +396,8 @@ static bool make_room(const Preview *preview, Fire *fire) {
         free_cells(preview, &old);
     }
 
-    return fire->cells && fire->seen && fire->burns && fire->source && fire->sway && fire->roots && fire->apart;
+    return fire->cells && fire->flames && fire->seen && fire->burns && fire->source && fire->sway && fire->roots &&
+           fire->apart;
 }
 
 static SingeResult check_gas(const SingeGas *gas, SingeError *error) {
@@ -448,6 +456,7 @@ static bool make_tables(Preview *preview) {
         fire->noise[i][2] = clampf(NOISE_SIZES * (fire->noise[i][2] + NOISE_LARGER * wide), -1, 1);
     }
     fire_fill_colours(preview);
+    fire->look = fire_look(SINGE_INSTRUCTIONS_BEST);
 
     return true;
 }

@@ -9,12 +9,14 @@
 
 enum {
     FIRE_BORDER = 4,  ///< empty cells around the gas: eddies move flames there, and interpolation needs no bounds
+    FIRE_BEYOND = 4,  ///< floats that may be read behind the last cell
     FIRE_BRICK = 2,   ///< cells along the side of a brick, the unit of empty space that is skipped
     FIRE_STEPS = 128, ///< max steps of a ray outside empty bricks
     FIRE_RUNS = 8,    ///< max parts of a ray that are near flames
     FIRE_NOISE = 16,  ///< cells along the side of the lattice of noise, a power of two: there it repeats
     FIRE_CORNERS = FIRE_NOISE + 1,
     FIRE_COLOURS = 64,
+    FIRE_LANES = 16, ///< flames that are looked up together
 };
 
 /// The values of a cell. Four floats, interpolated together.
@@ -69,12 +71,20 @@ typedef struct FireTile {
     bool empty;                           ///< no ray meets anything
 } FireTile;
 
-typedef struct Fire {
+typedef struct Fire Fire;
+typedef struct FirePlaces FirePlaces;
+typedef struct FirePoints FirePoints;
+
+/// The flames at `count` positions. Those of the arrays beyond, up to a multiple of the width, are to be finite.
+typedef void FireLook(const Fire *fire, int count, const FirePlaces *places, FirePoints *points);
+
+struct Fire {
     int size[3];   ///< cells with their border; all 0 if there is no gas
     bool visible;  ///< whether any of it is seen
     float cell;    ///< m
     Float3 origin; ///< m, centre of cell (0, 0, 0), border included
     FireCell *cells;
+    float *flames; ///< [cells + FIRE_BEYOND] the cells' flames alone, of which four are read at once
     size_t cell_capacity;
     int bricks[3];
     uint8_t *seen;      ///< [bricks] FIRE_FLAME and FIRE_SMOKE that eddies may bring there
@@ -92,8 +102,9 @@ typedef struct Fire {
     Float3 low, high;  ///< m, bounds of the bricks that are not empty
     FireTile *tiles;   ///< [def.thread_count] work area of each thread; NULL before the first gas
     float (*noise)[4]; ///< [FIRE_CORNERS^3] four numbers from -1 to 1 at every corner; NULL before the first gas
-    Float3 colours[FIRE_COLOURS]; ///< radiance of a thick flame from its coolest to its hottest
-} Fire;
+    Float3 colours[FIRE_COLOURS + 1]; ///< radiance of a thick flame from its coolest to its hottest; one is read beyond
+    FireLook *look;                   ///< by the instructions of this machine
+};
 
 #define FIRE_SCALE_CELL 0.010f ///< m, cells above which flames are larger, in proportion
 #define FIRE_FINE_CELL 0.008f  ///< m, cells below which flames are smaller, in proportion
@@ -101,6 +112,10 @@ typedef struct Fire {
 #define FLAME_SEEN 0.15f       ///< a smaller value is outside of all flames
 #define FLAME_HEIGHT 0.08f     ///< m, typical height of tongues
 #define FLAME_END 0.30f        ///< m, max height of a flame
+#define RISE_MOST 0.55f        ///< m/s, which it reaches
+#define EDDY_RATE 8.0f         ///< 1/s, eddies that pass a height
+#define SOOT_DENSE 198.0f      ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
+#define TAPER 0.55f            ///< what is added to it above a flame's height
 #define FLAME_MOST 2.0f        ///< what eddies feed is more than a full flame, and is drawn elsewhere up to so much
 
 // m, max displacement by eddies
@@ -145,6 +160,36 @@ typedef struct FirePoint {
 
 #define FIRE_OUTSIDE (-0.006f) ///< m, depth of what is far outside of flames
 
+struct FirePlaces {
+    float x[FIRE_LANES], y[FIRE_LANES], z[FIRE_LANES], blur[FIRE_LANES]; ///< m, over which the picture resolves no edge
+};
+
+static inline void fire_place(FirePlaces *places, int k, Float3 p, float blur) {
+    places->x[k] = p.x;
+    places->y[k] = p.y;
+    places->z[k] = p.z;
+    places->blur[k] = blur;
+}
+
+enum { FIRE_VALUES = 9 };
+
+/// As FirePoint: what lies behind its depth has a value only where that is positive.
+struct FirePoints {
+    float depth[FIRE_LANES];
+    float values[FIRE_VALUES][FIRE_LANES]; ///< soot, root, profile, shell, opaque
+};
+
+static inline FirePoint fire_point(const FirePoints *points, int k) {
+    const float(*from)[FIRE_LANES] = points->values;
+    if (!(points->depth[k] > 0)) return (FirePoint){.depth = points->depth[k]};
+    return (FirePoint){.soot = {from[0][k], from[1][k], from[2][k]},
+                       .root = {from[3][k], from[4][k], from[5][k]},
+                       .depth = points->depth[k],
+                       .profile = from[6][k],
+                       .shell = from[7][k],
+                       .opaque = from[8][k]};
+}
+
 // fire_shade.c
 void fire_fill_colours(Preview *preview);
 
@@ -156,9 +201,6 @@ void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]);
 
 /// A flame at p, at a height above the paper, as it is fed there: more than elsewhere or less.
 float fire_feed(const Fire *fire, Float3 p, float height, float flame);
-
-/// blur: m, over which the picture resolves no edge.
-FirePoint fire_at_point(const Fire *fire, Float3 p, float blur);
 
 /// Adds the mean of the flame over a step between two points.
 void fire_between(const FirePoint *a, const FirePoint *b, float step, Matter *matter);
@@ -174,9 +216,10 @@ void fire_see(const Preview *preview, int x, int y, FireTile *tile);
 /// Where a ray leaves the bounds of all that is seen of the fire, m.
 float fire_leaves(const Fire *fire, Float3 origin, Float3 direction);
 
-/// The light of the fire along a ray up to `distance`, and the transmittance. `coarse`: times as long as usual are its steps.
-void fire_along(const Preview *preview, Float3 origin, Float3 direction, float distance, float coarse, Float3 *light,
-                float *clear);
+/// The light of the fire along `count` rays, at most FIRE_LANES, up to a distance each, and the transmittance. `coarse`: times
+/// as long as usual are their steps.
+void fire_along(const Preview *preview, int count, const Float3 *origin, const Float3 *direction, const float *distance,
+                float coarse, Float3 *light, float *clear);
 
 /// The light of the fire up to `distance` for a pixel of the tile, counted from its upper left, and the transmittance.
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear);

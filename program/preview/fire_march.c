@@ -145,111 +145,203 @@ float fire_leaves(const Fire *fire, Float3 origin, Float3 direction) {
     return leaves;
 }
 
-/// `tile` and `number`: of which it is one; NULL: of none. `guide` NULL: flames may be everywhere. `coarse`: times as long as
-/// usual are its steps in flames.
-static void see_ray(const Preview *preview, Float3 eye, Float3 d, FireTile *tile, int number, const Guide *guide,
-                    float coarse, FireView *view) {
-    const Fire *fire = &preview->fire;
-    const float ray[3] = {d.x, d.y, d.z};
+// ---- a ray on its way
+
+/// A ray stops wherever it needs a flame, so that several rays look up theirs together.
+typedef struct March {
+    const Preview *preview;
+    Float3 eye, d;
+    FireView *view;
     float t, far;
-    fire_pass(fire, eye, d, &t, &far);
+    float usual, fine, min; ///< m, steps: outside of flames, in them, and the shortest
+    float leave;            ///< where it leaves its brick
+    float again;            ///< up to where steps are short, as a long one has met an edge
+    float until;            ///< where flames may begin
+    float next;             ///< end of the step
+    float asks;             ///< where it needs a flame
+    float clear;
+    Float3 light;
+    int in_brick, what; ///< seen in the brick, and from here
+    int run;            ///< of the guide, the next
+    bool dark;          ///< long steps until there is flame, longer far from it, and short ones at its edges
+    bool known;         ///< whether `here` is the point at t
+    bool seek, edge;    ///< the step looks for flames, or is near their edges
+    bool leaps;         ///< it is longer than such steps are
+    bool guided;        ///< else flames may be everywhere
+    FirePoint here;
+    SmokeLine line;
+    Guide guide;
+} March;
 
+static const FirePoint outside = {.depth = FIRE_OUTSIDE};
+
+/// `tile` and `number`: of which it is one; NULL: of none. `coarse`: times as long as usual are its steps in flames.
+static void march_begin(March *march, const Preview *preview, Float3 eye, Float3 d, FireTile *tile, int number,
+                        float coarse, FireView *view) {
+    const Fire *fire = &preview->fire;
+    *march = (March){
+        .preview = preview, .eye = eye, .d = d, .view = view, .leave = -1, .again = -1, .clear = 1, .dark = true};
     view->count = view->run_count = 0;
-    if (!(t < far)) return;
-
-    Float3 light = {0, 0, 0};
-    float clear = 1;
+    fire_pass(fire, eye, d, &march->t, &march->far);
+    march->usual = minf(0.17f * fire->cell, 0.0016f);
+    march->fine = coarse * march->usual; // a coarse one seeks flames no less
 
     // far away a step must still change a float
-    const float usual = minf(0.17f * fire->cell, 0.0016f), fine = coarse * usual; // a coarse one seeks flames no less
-    float min = maxf((far - t) / (16 * FIRE_STEPS), 1e-5f * far);
-    bool dark = true;   // long steps until there is flame, longer far from it, and short ones at its edges
-    bool known = false; // whether `here` is the point at t
-    FirePoint here;
-    const float blur = FIRE_SOFT * preview->camera.pixel;
-    SmokeLine line = {
-        .length = maxf(minf(fire->cell, SMOKE_STEP), min), .first = -2, .ray = number, .pixel = preview->camera.pixel};
-    if (tile && tile->apart && line.length == tile->length) line.tile = tile;
-    float leave = -1, again = -1; // again: up to where steps are short, as a long one has met an edge
-    int in_brick = 0, near = 0;
-
-    while (t < far && clear > 0.02f) {
-        // what is in the brick here, and where the ray leaves it
-        if (t >= leave) {
-            const float side = FIRE_BRICK * fire->cell;
-            const Float3 g = float3_scale(float3_sub(float3_mad(eye, d, t + 1e-5f), fire->origin), 1 / side);
-            const float at[3] = {g.x, g.y, g.z};
-            size_t brick = 0, over = 1;
-            leave = INFINITY;
-            for (int c = 0; c < 3; c++) {
-                float f;
-                int i = noise_floor(at[c], &f);
-                brick += over * (size_t)(i < 0 ? 0 : i < fire->bricks[c] ? i : fire->bricks[c] - 1);
-                over *= (size_t)fire->bricks[c];
-                if (fabsf(ray[c]) > 1e-9f) leave = minf(leave, t + ((ray[c] > 0 ? 1 : 0) - f) * side / ray[c]);
-            }
-            in_brick = fire->seen[brick];
-        }
-
-        int what = in_brick;
-        float until = INFINITY;
-        if (what & FIRE_FLAME && !guide_near(guide, t, &near, &until)) what &= ~FIRE_FLAME;
-        if (!what) {
-            t = minf(maxf(minf(leave, far), t) + 2e-5f + 1e-6f * t, until);
-            known = false;
-            continue;
-        }
-
-        // steps begin at multiples of their length: neighbouring rays then look at neighbouring positions
-        const FirePoint outside = {.depth = FIRE_OUTSIDE};
-        const bool flame = what & FIRE_FLAME;
-        if (!known) here = flame ? fire_at_point(fire, float3_mad(eye, d, t), blur * t) : outside;
-        known = true;
-        bool seek = dark && flame;
-        const float away = here.depth > FIRE_OUTSIDE ? 2 * usual : 3 * usual;
-        const bool edge = t < again || fabsf(here.depth) < FIRE_NEAR * fine;
-        float length = dark ? away : edge ? FIRE_SHORT * fine : fine;
-        const float times = flame && edge && !dark && t >= again ? steps_to_edge(here.depth, FIRE_SHORT * fine) : 1;
-        length *= times;
-        float step = maxf(flame ? length : line.length, min);
-        float next = minf(maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step), until);
-        step = next - t;
-        const FirePoint there = flame ? fire_at_point(fire, float3_mad(eye, d, next), blur * next) : outside;
-        const bool jumps = fabsf(there.depth - here.depth) > FIRE_JUMP * step && there.depth < FIRE_NEAR * fine;
-        if (flame && !dark && !edge && jumps) {
-            again = next; // the same distance in short steps: else the long ones of rays side by side are bars
-            continue;
-        }
-        if (times > 1 && there.depth > -FIRE_SHORT * fine) {
-            again = next;
-            continue;
-        }
-        dark = there.depth < -2 * usual;
-        if (seek && !dark) continue; // the same distance again in short steps
-        if (maxf(here.depth, there.depth) > FIRE_OUTSIDE) view_extend(view, t, next);
-        Matter m = {{0, 0, 0}, 0};
-        if (what & FIRE_SMOKE) m = smoke_along(fire, eye, d, t, next, &line);
-        fire_between(&here, &there, step, &m);
-        here = there;
-
-        // light of the step, absorbed within the step: (1 - exp(-d)) / d
-        float depth = m.dense * step, kept = expf(-depth), mean = depth > 1e-3f ? (1 - kept) / depth : 1 - 0.5f * depth;
-        light = float3_mad(light, m.light, clear * step * mean);
-        clear *= kept;
-
-        // short steps are noted together, and what is left after the last note is one
-        int k = view->count - 1;
-        if (k < 0 || view->distance[k] != t || t - view->from[k] > FIRE_NOTED * fine) {
-            k = view->count < FIRE_STEPS ? view->count++ : FIRE_STEPS - 1;
-            view->from[k] = t;
-        }
-        t = next;
-        view->distance[k] = t;
-        view->light[k] = light;
-        view->clear[k] = clear;
-    }
-    if (t < far) view_extend(view, t, far); // hidden: others may look past what hides it
+    march->min = maxf((march->far - march->t) / (16 * FIRE_STEPS), 1e-5f * march->far);
+    march->line = (SmokeLine){.length = maxf(minf(fire->cell, SMOKE_STEP), march->min),
+                              .first = -2,
+                              .ray = number,
+                              .pixel = preview->camera.pixel};
+    if (tile && tile->apart && march->line.length == tile->length) march->line.tile = tile;
 }
+
+/// What is in the brick here, and where the ray leaves it.
+static void march_brick(March *march) {
+    const Fire *fire = &march->preview->fire;
+    const float ray[3] = {march->d.x, march->d.y, march->d.z}, t = march->t, side = FIRE_BRICK * fire->cell;
+    const Float3 from = float3_sub(float3_mad(march->eye, march->d, t + 1e-5f), fire->origin);
+    const Float3 g = float3_scale(from, 1 / side);
+    const float at[3] = {g.x, g.y, g.z};
+    size_t brick = 0, over = 1;
+    march->leave = INFINITY;
+    for (int c = 0; c < 3; c++) {
+        float f;
+        int i = noise_floor(at[c], &f);
+        brick += over * (size_t)(i < 0 ? 0 : i < fire->bricks[c] ? i : fire->bricks[c] - 1);
+        over *= (size_t)fire->bricks[c];
+        if (fabsf(ray[c]) > 1e-9f) march->leave = minf(march->leave, t + ((ray[c] > 0 ? 1 : 0) - f) * side / ray[c]);
+    }
+    march->in_brick = fire->seen[brick];
+}
+
+/// Goes on to where there is something; false: it has ended.
+static bool march_enter(March *march) {
+    while (march->t < march->far && march->clear > 0.02f) {
+        const float t = march->t;
+        if (t >= march->leave) march_brick(march);
+        march->what = march->in_brick;
+        march->until = INFINITY;
+        const Guide *guide = march->guided ? &march->guide : NULL;
+        if (march->what & FIRE_FLAME && !guide_near(guide, t, &march->run, &march->until)) march->what &= ~FIRE_FLAME;
+        if (march->what) return true;
+        march->t = minf(maxf(minf(march->leave, march->far), t) + 2e-5f + 1e-6f * t, march->until);
+        march->known = false;
+    }
+    if (march->t < march->far) // hidden: others may look past what hides it
+        view_extend(march->view, march->t, march->far);
+    return false;
+}
+
+/// The end of the next step. Steps begin at multiples of their length: neighbouring rays then look at neighbouring positions.
+static void march_plan(March *march) {
+    const bool flame = march->what & FIRE_FLAME;
+    const float t = march->t, fine = march->fine, depth = march->here.depth;
+    march->seek = march->dark && flame;
+    const float away = depth > FIRE_OUTSIDE ? 2 * march->usual : 3 * march->usual;
+    march->edge = t < march->again || fabsf(depth) < FIRE_NEAR * fine;
+    float length = march->dark ? away : march->edge ? FIRE_SHORT * fine : fine;
+    const bool may_leap = flame && march->edge && !march->dark && t >= march->again;
+    const float times = may_leap ? steps_to_edge(depth, FIRE_SHORT * fine) : 1;
+    march->leaps = times > 1;
+    length *= times;
+    const float step = maxf(flame ? length : march->line.length, march->min);
+    march->next = minf(maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step), march->until);
+}
+
+/// Takes the step, at whose end there is a flame, or the same distance again in short steps.
+static void march_step(March *march, const FirePoint *there) {
+    const bool flame = march->what & FIRE_FLAME;
+    const float step = march->next - march->t, fine = march->fine;
+    const bool jumps = fabsf(there->depth - march->here.depth) > FIRE_JUMP * step && there->depth < FIRE_NEAR * fine;
+    if (flame && !march->dark && !march->edge && jumps) {
+        march->again = march->next; // else the long ones of rays side by side are bars
+        return;
+    }
+    if (march->leaps && there->depth > -FIRE_SHORT * fine) {
+        march->again = march->next;
+        return;
+    }
+    march->dark = there->depth < -2 * march->usual;
+    if (march->seek && !march->dark) return;
+    if (maxf(march->here.depth, there->depth) > FIRE_OUTSIDE) view_extend(march->view, march->t, march->next);
+    Matter m = {{0, 0, 0}, 0};
+    if (march->what & FIRE_SMOKE)
+        m = smoke_along(&march->preview->fire, march->eye, march->d, march->t, march->next, &march->line);
+    fire_between(&march->here, there, step, &m);
+    march->here = *there;
+
+    // light of the step, absorbed within the step: (1 - exp(-d)) / d
+    float depth = m.dense * step, kept = expf(-depth), mean = depth > 1e-3f ? (1 - kept) / depth : 1 - 0.5f * depth;
+    march->light = float3_mad(march->light, m.light, march->clear * step * mean);
+    march->clear *= kept;
+
+    // short steps are noted together, and what is left after the last note is one
+    FireView *view = march->view;
+    int k = view->count - 1;
+    if (k < 0 || view->distance[k] != march->t || march->t - view->from[k] > FIRE_NOTED * fine) {
+        k = view->count < FIRE_STEPS ? view->count++ : FIRE_STEPS - 1;
+        view->from[k] = march->t;
+    }
+    view->distance[k] = march->next;
+    view->light[k] = march->light;
+    view->clear[k] = march->clear;
+    march->t = march->next;
+}
+
+/// Goes on to where a ray needs a flame; false: it has ended.
+static bool march_on(March *march) {
+    while (march_enter(march)) {
+        const bool flame = march->what & FIRE_FLAME;
+        march->asks = march->t;
+        if (!march->known && flame) return true;
+        if (!march->known) march->here = outside;
+        march->known = true;
+        march_plan(march);
+        march->asks = march->next;
+        if (flame) return true;
+        march_step(march, &outside);
+    }
+    return false;
+}
+
+/// Begins the next of several rays; false: there is none.
+typedef bool NextMarch(void *rays, March *march);
+
+/// Marches rays to their ends, as many at a time as flames are looked up together.
+static void march_all(const Fire *fire, NextMarch *next, void *rays) {
+    March marches[FIRE_LANES], *active[FIRE_LANES];
+    FirePlaces places;
+    FirePoints points;
+    int count = 0;
+    bool more = true;
+    for (int k = 0; k < FIRE_LANES; k++) active[k] = &marches[k];
+    for (;;) {
+        while (more && count < FIRE_LANES) {
+            more = next(rays, active[count]);
+            if (more && march_on(active[count])) count++;
+        }
+        if (!count) return;
+
+        for (int k = 0; k < FIRE_LANES; k++) { // those without a ray are the last one's
+            const March *march = active[k < count ? k : count - 1];
+            fire_place(&places, k, float3_mad(march->eye, march->d, march->asks),
+                       FIRE_SOFT * march->preview->camera.pixel * march->asks);
+        }
+        fire->look(fire, count, &places, &points);
+        for (int k = count - 1; k >= 0; k--) {
+            const FirePoint point = fire_point(&points, k);
+            March *march = active[k];
+            if (march->known) march_step(march, &point);
+            else march->here = point;
+            march->known = true;
+            if (march_on(march)) continue;
+            active[k] = active[--count]; // it has had its flame
+            active[count] = march;
+        }
+    }
+}
+
+// ---- the rays of a tile
 
 static Float3 corner_ray(const Preview *preview, int x, int y, int k, Float3 *eye) {
     const float disc[2] = {0, 0};
@@ -260,21 +352,43 @@ static Float3 corner_ray(const Preview *preview, int x, int y, int k, Float3 *ey
     return direction;
 }
 
-/// Traces the ray of a tile's corner `k`. Those around it that are 2 * `apart` from each other have been, and guide it
-/// if they are near enough; 0: none have.
-static void see_corner(const Preview *preview, int x, int y, int k, int apart, FireTile *tile) {
+/// Corners of a tile whose rays are marched.
+typedef struct Corners {
+    const Preview *preview;
+    FireTile *tile;
+    int x, y;  ///< the tile's first pixel
+    int apart; ///< those around a corner that are 2 * `apart` from each other have been marched; 0: none have
+    int next, count;
+    int list[FIRE_ACROSS * FIRE_ACROSS];
+} Corners;
+
+/// The rays around a corner guide its own, if they are near enough.
+static bool next_corner(void *rays, March *march) {
+    Corners *corners = rays;
+    if (corners->next == corners->count) return false;
+    FireTile *tile = corners->tile;
+    const int k = corners->list[corners->next++], apart = corners->apart;
     const int column = k % FIRE_ACROSS, row = k / FIRE_ACROSS, step = 2 * apart;
     Float3 eye;
-    tile->rays[k] = corner_ray(preview, x, y, k, &eye);
-    Guide guide = {.count = 0};
-    const bool guided = apart && 1.5f * 2 * (float)apart * tile->pixel < -0.5f * FIRE_OUTSIDE;
-    for (int m = 0; guided && m < 4; m++) {
+    tile->rays[k] = corner_ray(corners->preview, corners->x, corners->y, k, &eye);
+    march_begin(march, corners->preview, eye, tile->rays[k], tile, k, 1, &tile->views[k]);
+    march->guided = apart && 1.5f * 2 * (float)apart * tile->pixel < -0.5f * FIRE_OUTSIDE;
+    for (int m = 0; march->guided && m < 4; m++) {
         const bool right = m % 2, down = m / 2;
         if ((right && column % step == 0) || (down && row % step == 0)) continue;
-        guide_add(&guide, &tile->views[(row / step + down) * step * FIRE_ACROSS + (column / step + right) * step]);
+        guide_add(&march->guide,
+                  &tile->views[(row / step + down) * step * FIRE_ACROSS + (column / step + right) * step]);
     }
-    see_ray(preview, eye, tile->rays[k], tile, k, guided ? &guide : NULL, 1, &tile->views[k]);
-    tile->empty = tile->empty && !tile->views[k].count;
+    return true;
+}
+
+static void see_corners(Corners *corners, bool *known) {
+    march_all(&corners->preview->fire, next_corner, corners);
+    for (int i = 0; i < corners->count; i++) {
+        known[corners->list[i]] = true;
+        corners->tile->empty = corners->tile->empty && !corners->tile->views[corners->list[i]].count;
+    }
+    corners->next = corners->count = 0;
 }
 
 /// Prepares a tile for rays from the eye.
@@ -319,18 +433,26 @@ static bool is_even(const FireTile *tile, const bool *known, int k) {
 }
 
 void fire_see(const Preview *preview, int x, int y, FireTile *tile) {
-    bool known[FIRE_ACROSS * FIRE_ACROSS] = {false};
+    enum { COUNT = FIRE_ACROSS * FIRE_ACROSS };
+    bool known[COUNT] = {false}, wanted[COUNT] = {false};
+    Corners corners;
+    corners.preview = preview;
+    corners.tile = tile;
+    corners.x = x;
+    corners.y = y;
+    corners.next = corners.count = 0;
     tile_begin(preview, x, y, tile);
-    for (int apart = 4; apart > 1; apart /= 2)
+    for (int apart = 4; apart > 1; apart /= 2) {
+        corners.apart = apart == 4 ? 0 : apart;
         for (int i = 0; i < FIRE_ACROSS; i += apart)
-            for (int j = 0; j < FIRE_ACROSS; j += apart) {
-                const int k = i * FIRE_ACROSS + j;
-                if (!known[k]) see_corner(preview, x, y, k, apart == 4 ? 0 : apart, tile);
-                known[k] = true;
-            }
+            for (int j = 0; j < FIRE_ACROSS; j += apart)
+                if (!known[i * FIRE_ACROSS + j]) corners.list[corners.count++] = i * FIRE_ACROSS + j;
+        see_corners(&corners, known);
+    }
 
     // a ray between two corners may meet what both miss: then the square beyond it is looked at, too, and so on along a
     // tongue that is thinner than the corners are apart
+    corners.apart = 1;
     for (bool again = true; again;) {
         again = false;
         for (int square = 0; square < FIRE_COARSE * FIRE_COARSE; square++) {
@@ -339,10 +461,11 @@ void fire_see(const Preview *preview, int x, int y, FireTile *tile) {
             again = tile->fine[square] = true;
             for (int m = 0; m < 9; m++) {
                 const int k = first + m / 3 * FIRE_ACROSS + m % 3;
-                if (!known[k]) see_corner(preview, x, y, k, 1, tile);
-                known[k] = true;
+                if (!known[k] && !wanted[k]) corners.list[corners.count++] = k;
+                wanted[k] = true;
             }
         }
+        see_corners(&corners, known);
     }
 }
 
@@ -370,13 +493,38 @@ static void add_view(const FireView *view, float distance, float weight, Float3 
     *clear += weight * left;
 }
 
-void fire_along(const Preview *preview, Float3 origin, Float3 direction, float distance, float coarse, Float3 *light,
-                float *clear) {
-    FireView view;
-    see_ray(preview, origin, direction, NULL, 0, NULL, coarse, &view);
-    *light = float3(0, 0, 0);
-    *clear = 0;
-    add_view(&view, distance, 1, light, clear);
+/// Rays that are in no tile.
+typedef struct Lone {
+    const Preview *preview;
+    const Float3 *origin, *direction;
+    float coarse;
+    int next, count;
+    FireView views[FIRE_LANES];
+} Lone;
+
+static bool next_lone(void *rays, March *march) {
+    Lone *lone = rays;
+    if (lone->next == lone->count) return false;
+    const int k = lone->next++;
+    march_begin(march, lone->preview, lone->origin[k], lone->direction[k], NULL, 0, lone->coarse, &lone->views[k]);
+    return true;
+}
+
+void fire_along(const Preview *preview, int count, const Float3 *origin, const Float3 *direction, const float *distance,
+                float coarse, Float3 *light, float *clear) {
+    Lone lone;
+    lone.preview = preview;
+    lone.origin = origin;
+    lone.direction = direction;
+    lone.coarse = coarse;
+    lone.next = 0;
+    lone.count = count;
+    march_all(&preview->fire, next_lone, &lone);
+    for (int k = 0; k < count; k++) {
+        light[k] = float3(0, 0, 0);
+        clear[k] = 0;
+        add_view(&lone.views[k], distance[k], 1, &light[k], &clear[k]);
+    }
 }
 
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear) {

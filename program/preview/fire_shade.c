@@ -11,62 +11,20 @@
 // much lower than others. A noise that is wider still, and moves along what burns, raises tongues here and lowers them
 // there: without it a straight front has a row of like teeth.
 //
-// A flame over paper is a thin shell of glowing soot around clear, hot vapour. With f the flame (fire.c), r the height
-// above the paper and N, n noises of the width of a tongue and of a streak, its edge lies where
-//
-//     e = f + a(r) (0.67 - 2.4 |N|) + b(r) (0.4 - 2 |n|) - EDGE - TAPER (1 - exp(-r/H)) = 0
-//
-// |N| has creases, where it is 0: they are the middles of thin sheets and sharp tongues. A smooth noise has round hills
-// instead, and its flames are domes. Its hills are of three sizes (fire.c), so its creases, and with them tongues, are at
-// no one distance. Eddies are at most five times or so as long as wide, and larger ones roll and bend smaller ones: else
-// flames are combs of vertical stripes. The taper is steep at first, and so tongues narrow below and end in long tips. They
-// are as tall as their fire is strong. The depth inside of the edge is d = e/|grad e|, in metres, whatever the size of
-// the cells. Light comes from the shell's profile
-//
-//     P(d) = 0 outside, d/w in the first w, then fill + (1 - fill) exp(-(d - w)/SHELL)
-//
-// and a step of a ray takes its mean between the depths of its ends, by the integral of P: the shell is thinner than
-// a step. w is SHELL_RISE, or more where rays are further apart, as edges would have steps; the light of a flame
-// stays. It begins at the paper, is faint, clear and blue in the first millimetres, where there is little soot, then
-// pale in its core, and orange at its tips. Its foot, some two centimetres tall, is one low sheet along what burns. Soot
-// builds up in it gradually, dim, orange and so thin that the rim shows through; in tongues it builds up faster. Tongues
-// are wide at the bottom: with narrow, hot feet they seemed to hang in the air.
-// Near its edge a flame is thinner than the shell alone: rays run along the shell there and would draw outlines.
-// Soot glows as a black body between FLAME_COOL and FLAME_HOT, and hides as much as it glows. It is the hotter the
-// more heat is released around it (core) and the further it is from the edge (strong): so a flame of one or two
-// sheets has a pale core, too.
-//
-// Soot is clear and hot in threads, the creases of a noise, and denser and cooler in the folds between them. So a sheet in
-// front hides much of what burns behind it, and a body of many sheets does not add up to one flat yellow: in a strong fire
-// above its foot, soot hides somewhat more than it glows, as what is nearest is cooler than what it hides. Above the foot
-// filaments run along the flow, hotter and denser, with gaps between them. They are folds of a sheet, sharp at one side and
-// soft at the other: alike at both they would be strands. Soot cools with height and thins out towards the tips.
+// A flame at a position is in fire_kernel.h, many at a time.
 
 #include "common/float4.h"
 #include "preview/internal.h"
 
 // Gas leaves the paper slowly and accelerates: v^2 = BASE_SPEED^2 + 2 BUOYANCY h at the height h. An eddy that was formed
 // at the base grows longer as it rises, and moves by the same share of its length in every frame.
-#define BASE_SPEED 0.25f  ///< m/s
-#define BUOYANCY 2.0f     ///< m/s2
-#define RISE_MOST 0.55f   ///< m/s, which it reaches
-#define EDDY_RATE 8.0f    ///< 1/s, eddies that pass a height
-#define EDDY_WIDE 0.0135f ///< m across
-#define EDDY_FINE 0.0065f
-#define FINE_OFTEN 2.2f
-#define EDDY_THREAD 0.010f  ///< of the soot's threads
-#define THREAD_BLUR 0.0016f ///< m, blur from which on they are wider
-#define EDDY_FILAMENT 0.009f
-#define FOLD_SHARP 2.2f   ///< times as steep is the one side of a filament
-#define THREAD_WARP 0.01f ///< m, by which wide eddies bend them
-#define ROLL 0.5f         ///< of an eddy's length, by which they roll them
-#define SWAY_WIDE 0.08f   ///< m, of the eddies that bend whole tongues
-#define SWAY_SMALL 0.6f   ///< of that, others that curl them
-#define SWAY_SHARE 0.35f  ///< of what the wide ones do
-#define SWAY_GAIN 1.35f   ///< a smooth noise seldom comes near 1
-#define SWAY_SLOPE 0.55f  ///< m aside per m above the paper
-#define LICK_WIDE 0.045f  ///< m, of the eddies that feed and starve whole tongues
-#define LICK_FULL 0.05f   ///< m above the paper, where they do so fully
+#define SWAY_WIDE 0.08f  ///< m, of the eddies that bend whole tongues
+#define SWAY_SMALL 0.6f  ///< of that, others that curl them
+#define SWAY_SHARE 0.35f ///< of what the wide ones do
+#define SWAY_GAIN 1.35f  ///< a smooth noise seldom comes near 1
+#define SWAY_SLOPE 0.55f ///< m aside per m above the paper
+#define LICK_WIDE 0.045f ///< m, of the eddies that feed and starve whole tongues
+#define LICK_FULL 0.05f  ///< m above the paper, where they do so fully
 #define LICK 0.6f
 #define UNLIKE 1.5f       ///< octaves, by which the heights of tongues differ
 #define JOIN 0.7f         ///< of a full flame: what they join into where the creases of those eddies are
@@ -102,42 +60,8 @@
 #define FLAME_HOT 2000.0f
 #define FLAME_DIM 0.26f ///< radiance of a thick flame at its coolest and its hottest
 #define FLAME_BRIGHT 5.9f
-#define FLAME_CAST 0.875f       ///< of that range, 1900 K: the colour of the light that they cast
-#define FLAME_BAKED 3.0f        ///< radiance of what is 1 where gas is baked
-#define SOOT_DENSE 198.0f       ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
-#define BLUE_DENSE 3.6f         ///< 1/m: radiance of the root per metre
-#define BLUE_ENDS 0.005f        ///< m above the paper
-#define SHELL_RISE 0.0005f      ///< m, w
-#define SHELL_RISE_MOST 0.0016f ///< more would dim thin tongues
-#define SHELL 0.0018f           ///< m
-#define EDGE 0.42f              ///< f at a flame's edge
-#define TAPER 0.55f             ///< what is added to it above a flame's height
-#define STAND_OFF 0.0006f       ///< m above the paper, below which nothing is visible
-#define JOINED_HOT 0.15f
-#define LARGE_HOT 0.14f ///< more where flames are twice as large: more soot glows in them
-#define FILAMENT_HOT 0.55f
-#define HIGH_COOL 0.18f
-#define SPENT_COOL 0.25f
-#define SPENT_THIN 0.4f
-#define FOOT_CLEAR 0.004f   ///< m above the paper, up to which a flame is all foot
-#define FOOT_FULL 0.027f    ///< m, from which none of it is foot
-#define FOOT_SOOT 0.009f    ///< m, at which a tongue's middle has all its soot
-#define FOOT_BESIDE 0.017f  ///< m, the same beside tongues
-#define FOOT_WARM 0.015f    ///< m, at which a tongue's middle is as hot as above
-#define FOOT_LATE 0.030f    ///< m, the same beside tongues
-#define FOOT_COOL 0.65f     ///< share of the temperature range that fresh soot has
-#define FOOT_GLOWS 0.8f     ///< soot glows that much more there
-#define FOOT_HIDES 0.4f     ///< and hides that much less: what burns shows through
-#define FOOT_HAZE 0.22f     ///< share of the soot that is beside tongues
-#define TONGUE_MIDDLE 0.05f ///< value of the noise whose creases are tongues
-#define TONGUE_ENDS 0.33f
-#define TONGUE_ROOTED 0.6f ///< the same in the foot, where they are wide
-#define BORDER_WIDE 0.003f ///< m inside its edge over which a flame thins out: seen edge-on it must not draw an outline
-#define BORDER_THIN 0.4f
-#define BORDER_GAIN 1.25f   ///< factor on soot that makes up for what the border loses
-#define CORE_BEGINS 0.0030f ///< m
-#define CORE_FULL 0.0240f
-#define CORE_HIDES 0.22f ///< more than it glows
+#define FLAME_CAST 0.875f ///< of that range, 1900 K: the colour of the light that they cast
+#define FLAME_BAKED 3.0f  ///< radiance of what is 1 where gas is baked
 
 // ---- looking up
 
@@ -169,24 +93,10 @@ static inline Noise noise_at(const Fire *fire, Float3 p) {
     return (Noise){n[0], n[1], n[2], n[3]};
 }
 
-/// The number of eddies that have passed z, at a height above what burns, since the start: grows with time, and by one over
-/// each eddy. What burns higher up has others: up a sheet that burns everywhere the height stays the same, and by that alone
-/// eddies would be as long as the sheet, and its flames a comb.
-static inline float eddies_passed(float height, float z, float time) {
-    const float steady = (RISE_MOST * RISE_MOST - BASE_SPEED * BASE_SPEED) / (2 * BUOYANCY); // m
-    float speed = sqrtf(BASE_SPEED * BASE_SPEED + 2 * BUOYANCY * clampf(height, 0, steady));
-    float risen = (speed - BASE_SPEED) / BUOYANCY + maxf(height - steady, 0) / RISE_MOST; // s
-    float below = (z - height) / RISE_MOST + minf(height, 0) / BASE_SPEED;
-    return EDDY_RATE * (time - risen - below);
-}
-
-/// Noise of eddies `width` across, of which `often` pass where one of the largest does; rotated away from the axes.
-static inline Noise eddies(const Fire *fire, Float3 p, float passed, float width, float often) {
-    const float c = 0.829f, s = 0.559f; // 34 degrees around the vertical
-    float across = 1 / width;
-    return noise_at(fire, float3((c * p.x - s * p.y) * across + 0.21f * passed,
-                                 (s * p.x + c * p.y) * across + 0.17f * passed, -often * passed));
-}
+typedef float Real;
+typedef Float3 Real3;
+#define real3 float3
+#include "preview/fire_eddies.h"
 
 // ---- flame and smoke
 
@@ -197,16 +107,12 @@ void fire_fill_colours(Preview *preview) {
         float brightness = mixf(FLAME_DIM, FLAME_BRIGHT, hot * hot * hot);
         preview->fire.colours[i] = float3_scale(glow, brightness / maxf(float3_luminance(glow), 1e-6f));
     }
-}
-
-static Float3 flame_colour(const Fire *fire, float hot) {
-    float x = hot * (FIRE_COLOURS - 1);
-    int i = (int)minf(x, FIRE_COLOURS - 2);
-    return float3_mix(fire->colours[i], fire->colours[i + 1], x - (float)i);
+    preview->fire.colours[FIRE_COLOURS] = preview->fire.colours[FIRE_COLOURS - 1];
 }
 
 Float3 fire_cast_colour(const Preview *preview) {
-    const Float3 colour = flame_colour(&preview->fire, FLAME_CAST);
+    const float x = FLAME_CAST * (FIRE_COLOURS - 1);
+    const Float3 *below = &preview->fire.colours[(int)x], colour = float3_mix(below[0], below[1], x - floorf(x));
     return float3_scale(colour, 1 / float3_luminance(colour));
 }
 
@@ -232,84 +138,6 @@ float fire_feed(const Fire *fire, Float3 p, float height, float flame) {
     joined += TAPER * (expf(-tall * exp2f(-UNLIKE * n.d - GROUP_UNLIKE * group)) -
                        expf(-tall)); // it ends lower or higher than others
     return maxf(flame * (1 + more) + joined * minf(flame / FED_WHOLLY, 1), 0);
-}
-
-/// The flame at a position p that large eddies have moved, from its share, the gradient of that in 1/m, and the noises.
-static void shade_flame(const Fire *fire, float flame, Float3 p, float rise, float passed, float slope, Noise wide,
-                        Noise fine, float blur, FirePoint *point) {
-    float torn = stepf(0, 0.02f, rise);
-    float tall = rise / (fire->scale * FLAME_HEIGHT);
-    float coarse = 0.075f + 0.425f * torn, small = 0.025f + 0.225f * torn;
-    float edge = flame + coarse * (0.67f - 2.4f * fabsf(wide.c)) + small * (0.4f - 2 * fabsf(fine.c)) - EDGE -
-                 TAPER * (1 - expf(-tall)) - 0.1f * (1 - torn);
-    edge = minf(edge, 2 * (flame - FLAME_SEEN));
-    float noisy = 2 * (coarse / EDDY_WIDE + small / EDDY_FINE) / fire->scale;
-    point->depth = maxf(edge / sqrtf(slope * slope + 0.4f * noisy * noisy + 1), FIRE_OUTSIDE);
-    if (!(point->depth > 0)) return;
-
-    // the shell's profile, and its integral from the edge
-    float tip = stepf(0.35f, 1.4f, tall), fill = mixf(0.02f, 0.12f, tip);
-    float first = clampf(blur, SHELL_RISE, SHELL_RISE_MOST * fire->scale), outer = clampf(point->depth, 0, first),
-          inner = maxf(point->depth - first, 0);
-    float fading = (1 - fill) * expf(-inner / SHELL), same = (0.5f * SHELL_RISE + SHELL) / (0.5f * first + SHELL);
-    point->profile = same * outer / first * (fill + fading);
-    point->shell = same * (0.5f * outer * outer / first + fill * inner + SHELL * (1 - fill - fading));
-
-    const float foot = rise + 0.0012f * fine.d + 0.0016f * wide.d;
-
-    // the foot, lower where flames are small, is one sheet along what burns: at first clear and blue; then dim orange soot
-    // builds up, in the middle of tongues sooner than beside them
-    const float small_foot = minf(fire->scale, 1);
-    const float above = stepf(small_foot * FOOT_CLEAR, small_foot * FOOT_FULL, rise);
-    const float tongue =
-        1 - stepf(TONGUE_MIDDLE, mixf(TONGUE_ROOTED, TONGUE_ENDS, above), fabsf(wide.c) + 0.3f * fabsf(fine.c));
-    const float warm = stepf(0, small_foot * mixf(FOOT_LATE, FOOT_WARM, tongue), foot);
-    const float dense = mixf(mixf(FOOT_HAZE, 1, tongue), 1, above);
-    float soot = stepf(0, small_foot * mixf(FOOT_BESIDE, FOOT_SOOT, tongue), foot);
-
-    // threads are clear and hot, what is between them is denser and cooler
-    const Float3 bent =
-        float3_mad(p, float3(wide.b + 0.2f * fine.b, wide.a + 0.2f * fine.a, 0), fire->scale * THREAD_WARP);
-    Noise thread = {0, 0, 0, 0};
-    if (soot > 0)
-        thread = eddies(fire, bent, passed + ROLL * wide.d, sqrtf(fire->scale) * EDDY_THREAD, 3 * sqrtf(fire->scale));
-    const float sharp = maxf(3 * minf(THREAD_BLUR / maxf(blur, 1e-6f), 1), 2.2f); // thin ones would look like combs
-    float clear =
-        stepf(-0.5f, 0.6f, 0.15f * (wide.d + fine.d) + torn * (0.57f - 0.17f * (3 - sharp) - sharp * fabsf(thread.a)));
-
-    // filaments along the flow, and gaps between them, through which what is behind is seen
-    float filament = 0, pane = 0;
-    if (above > 0) {
-        const Noise n =
-            eddies(fire, bent, passed + ROLL * wide.d, sqrtf(fire->scale) * EDDY_FILAMENT, 2 * sqrtf(fire->scale));
-        filament = above * minf(1.5f * THREAD_BLUR / maxf(blur, 1e-6f), 1) *
-                   clampf(0.55f - 2.6f * maxf(n.a, -FOLD_SHARP * n.a) + 0.9f * n.b, -1, 1);
-        pane = above * clampf(1.6f * n.d + 0.8f * thread.d, -1, 1);
-    }
-
-    float core = stepf(0.35f, 0.7f, flame) * stepf(CORE_BEGINS, CORE_FULL, rise);
-    float strong = stepf(0, 0.7f, edge), low = 1 - stepf(0.1f, 0.9f, tall);
-    float hot = 0.14f * strong + (0.04f + 0.13f * core) * low + 0.25f * core + 0.74f * clear - 0.14f * tip - 0.138f;
-    hot += FILAMENT_HOT * filament + 0.15f * pane * (1 - clear) - HIGH_COOL * stepf(0.1f, 1.5f, tall);
-    hot += JOINED_HOT * stepf(1.1f, 1.6f, flame); // where tongues have joined
-    hot += LARGE_HOT * clampf(fire->scale - 1, 0, 1);
-    hot *= mixf(FOOT_COOL, 1, warm);
-
-    // what is above a body of flame without its noise, is cooler and thinner: tongues end faint
-    const float body = stepf(-0.35f, 0.1f, flame - EDGE - TAPER * (1 - expf(-tall)));
-    const float spent = stepf(0.5f, 1.6f, tall) * (1 - body);
-    hot -= SPENT_COOL * spent;
-
-    soot *= (1 - SPENT_THIN * spent) * dense * stepf(2 * STAND_OFF, 6 * STAND_OFF, rise);
-    float root =
-        clampf((rise + STAND_OFF) / (8 * STAND_OFF), 0, 1) * (1 - soot) * (1 - stepf(BLUE_ENDS / 2, BLUE_ENDS, rise));
-    const float fold = (1 - clear) * (1 - clear) * mixf(0.25f, 1, above);
-    soot *= 0.35f + 3.5f * fold * (1 + 0.7f * pane) + 1.2f * clear * clear + FOOT_GLOWS * tongue * (1 - above);
-    soot *= BORDER_GAIN * mixf(BORDER_THIN, 1, stepf(0, fire->scale * BORDER_WIDE, point->depth));
-    soot *= (0.6f + 0.9f * torn * maxf(thread.b, -0.5f)) * (1 - 0.75f * tip) * (1 + 0.95f * filament);
-    point->opaque = SOOT_DENSE * soot * mixf(FOOT_HIDES, 1 + CORE_HIDES * core, above);
-    point->soot = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * soot);
-    point->root = float3_scale(float3(0.28f, 0.56f, 1.18f), BLUE_DENSE * root);
 }
 
 void fire_between(const FirePoint *a, const FirePoint *b, float step, Matter *matter) {
@@ -351,29 +179,6 @@ static inline size_t spline_at(const Fire *fire, Float3 p, Four weight[3], Four 
     return cell_number(fire, middle - 1);
 }
 
-/// The flame at p and its gradient per cell, in that order.
-static inline Four flame_at(const Fire *fire, Float3 p) {
-    Four w[3], v[3], along[3][3], sum = {0, 0, 0, 0};
-    const FireCell *first = &fire->cells[spline_at(fire, p, w, v)];
-    for (int k = 0; k < 3; k++) { // v in place of w where the gradient's component is along that axis
-        const Four low = FLOAT4_SHUFFLE(w[k], v[k], 0, 4, 1, 5), high = FLOAT4_SHUFFLE(w[k], v[k], 2, 6, 3, 7);
-        along[0][k] = FLOAT4_SHUFFLE(low, w[k], 0, 1, 4, 4);
-        along[1][k] = FLOAT4_SHUFFLE(w[k], low, 1, 1, 7, 6);
-        along[2][k] = FLOAT4_SHUFFLE(w[k], high, 2, 2, 4, 5);
-    }
-
-    for (int z = 0; z < 3; z++, first += (size_t)fire->size[0] * (size_t)fire->size[1]) {
-        Four layer = {0, 0, 0, 0};
-        const FireCell *row = first;
-        for (int y = 0; y < 3; y++, row += fire->size[0])
-            layer +=
-                along[1][y] * (along[0][0] * row[0].flame + along[0][1] * row[1].flame + along[0][2] * row[2].flame);
-        sum += along[2][z] * layer;
-    }
-
-    return sum;
-}
-
 /// All values of the cells at p.
 static FireCell cell_at(const Fire *fire, Float3 p) {
     Four w[3], v[3], sum = {0, 0, 0, 0};
@@ -385,42 +190,6 @@ static FireCell cell_at(const Fire *fire, Float3 p) {
                                           four_load(&row[2].flame) * w[2][0]);
     }
     return (FireCell){sum[0], sum[1], sum[2], sum[3]};
-}
-
-FirePoint fire_at_point(const Fire *fire, Float3 p, float blur) {
-    FirePoint point = {.depth = FIRE_OUTSIDE};
-
-    // how far the widest eddies move the flame there, and its height above the paper, linear between the cells
-    const size_t right = 1, back = (size_t)fire->size[0], up = back * (size_t)fire->size[1];
-    const Four at = in_cells(fire, p, 0.005f);
-    const Float4Mask whole = __builtin_convertvector(at, Float4Mask);
-    const Four f = at - __builtin_convertvector(whole, Four);
-    const float(*corner)[4] = (const float(*)[4])fire->sway + cell_number(fire, whole);
-    Four layer[2];
-    for (int k = 0; k < 2; k++, corner += up) {
-        Four a = four_load(corner[0]), b = four_load(corner[back]);
-        a += (four_load(corner[right]) - a) * f[0];
-        b += (four_load(corner[back + right]) - b) * f[0];
-        layer[k] = a + (b - a) * f[1];
-    }
-    const Four sway = layer[0] + (layer[1] - layer[0]) * f[2];
-    p = float3_add(p, float3(sway[0], sway[1], 0));
-
-    // large eddies move it, then small ones
-    const float scale = fire->scale, passed = eddies_passed(sway[2] / scale, p.z / scale, fire->moment / sqrtf(scale));
-    Noise wide = eddies(fire, p, passed, scale * EDDY_WIDE, 1);
-    Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), scale * 0.7f * FIRE_WARP_WIDE);
-
-    // whether the small eddies can bring flame there
-    const Four near = in_cells(fire, shifted, 0) + 0.5f;
-    if (!fire->burns[cell_number(fire, __builtin_convertvector(near, Float4Mask))]) return point;
-
-    Noise fine = eddies(fire, shifted, passed, sqrtf(scale) * EDDY_FINE, FINE_OFTEN * sqrtf(scale));
-    const Four flame =
-        flame_at(fire, float3_mad(shifted, float3(fine.a, fine.b, 0), sqrtf(scale) * 0.7f * FIRE_WARP_FINE));
-    const float slope = sqrtf(flame[1] * flame[1] + flame[2] * flame[2] + flame[3] * flame[3]) / fire->cell;
-    if (flame[0] > 0.02f) shade_flame(fire, flame[0], shifted, sway[2], passed, slope, wide, fine, blur, &point);
-    return point;
 }
 
 /// Smoke lies in folds, where a noise is 0, in some of the wide eddies and not in others: between them the air is clear. Wide
@@ -510,6 +279,8 @@ SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, doub
     const float bright = SOOT_DENSE * FLAME_BAKED;
     const Float3 origin = float3_add(fire->origin, float3(first, first, first));
     int size[3];
+    FirePlaces places = {.x = {0}};
+    FirePoints points;
 
     for (int c = 0; c < 3; c++) size[c] = (fire->size[c] - 2 * FIRE_BORDER) * detail;
     size_t i = 0;
@@ -517,12 +288,18 @@ SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, doub
         for (int y = 0; y < size[1]; y++)
             for (int x = 0; x < size[0]; x++, i++) {
                 const Float3 p = float3_mad(origin, float3((float)x, (float)y, (float)z), side);
-                const FirePoint point = fire_at_point(fire, p, 0);
-                Matter burning = {{0, 0, 0}, 0};
-                fire_between(&point, &point, side, &burning);
+                const int k = x % FIRE_LANES;
+                fire_place(&places, k, p, 0);
                 const Smoke at = fire_smoke_at(fire, p);
                 smoke[i] = fire_smoke_between(fire, &at, &at, 0.5f * side).dense;
-                flame[i] = float3_luminance(burning.light) / bright;
+                if (k < FIRE_LANES - 1 && x < size[0] - 1) continue;
+                fire->look(fire, k + 1, &places, &points);
+                for (int m = 0; m <= k; m++) {
+                    const FirePoint point = fire_point(&points, m);
+                    Matter burning = {{0, 0, 0}, 0};
+                    fire_between(&point, &point, side, &burning);
+                    flame[i - (size_t)(k - m)] = float3_luminance(burning.light) / bright;
+                }
             }
 
     return SINGE_OK;

@@ -30,10 +30,29 @@ static Float3 anywhere(size_t number) {
     return float3(hash_unit(key) - 0.5f, hash_unit(key + 1) - 0.5f, hash_unit(key + 2) - 0.5f);
 }
 
+/// Cells whose flames are looked up together.
+typedef struct Asked {
+    FirePlaces places;
+    size_t cells[FIRE_LANES];
+    int count;
+} Asked;
+
+static void glow(Fire *fire, Asked *asked) {
+    FirePoints points;
+    fire->look(fire, asked->count, &asked->places, &points);
+    for (int k = 0; k < asked->count; k++) {
+        const FirePoint point = fire_point(&points, k);
+        Matter matter = {{0, 0, 0}, 0};
+        fire_between(&point, &point, fire->cell, &matter);
+        fire->cells[asked->cells[k]].glow = float3_luminance(matter.light) * fire->cell * fire->cell * fire->cell;
+    }
+    asked->count = 0;
+}
+
 /// Draws points, in the order of the cells. The light of each cell, radiance times area, lies where the light on smoke will be.
 /// Returns the number of points.
 static int draw_points(Fire *fire, Float3 points[FLAME_POINTS], float *total) {
-    const float volume = fire->cell * fire->cell * fire->cell;
+    Asked asked = {.count = 0};
     int count = 0;
     float sum = 0;
     size_t at = 0;
@@ -45,11 +64,12 @@ static int draw_points(Fire *fire, Float3 points[FLAME_POINTS], float *total) {
                 fire->cells[at].glow = 0;
                 if (!(fire->seen[brick[0] + bricks[0] * (brick[1] + bricks[1] * brick[2])] & FIRE_FLAME)) continue;
                 const Float3 middle = float3((float)x, (float)y, (float)z), in = float3_add(middle, anywhere(at));
-                const FirePoint point = fire_at_point(fire, float3_mad(fire->origin, in, fire->cell), 0);
-                Matter matter = {{0, 0, 0}, 0};
-                fire_between(&point, &point, fire->cell, &matter);
-                *total += fire->cells[at].glow = float3_luminance(matter.light) * volume;
+                asked.cells[asked.count] = at;
+                fire_place(&asked.places, asked.count++, float3_mad(fire->origin, in, fire->cell), 0);
+                if (asked.count == FIRE_LANES) glow(fire, &asked);
             }
+    glow(fire, &asked);
+    for (size_t i = 0; i < at; i++) *total += fire->cells[i].glow;
 
     at = 0;
     for (int z = 0; z < fire->size[2]; z++)

@@ -83,16 +83,26 @@ void glints_draw(Preview *preview, Block *block) {
         for (int i = 0; i < LANES; i++) hit[i] = active[i] && isfinite(block->point[i].distance) ? -1 : 0;
         block_add_light(preview, block, hit, SAMPLE_CENTRE, unasked);
 
+        Float3 from[LANES], along[LANES], fire[LANES] = {{0, 0, 0}};
+        float far[LANES], clear[LANES];
+        int count = 0;
         for (int i = 0; i < LANES; i++) {
+            clear[i] = 1;
+            if (!active[i]) continue;
+            from[count] = block->origin[i];
+            along[count] = block->direction[i];
+            far[count++] = block->point[i].distance;
+        }
+        if (preview->fire.visible) fire_along(preview, count, from, along, far, 1, fire, clear);
+
+        for (int i = 0, ray = 0; i < LANES; i++) {
             if (!active[i]) continue;
             Glint *glint = &preview->glints[mirror_block(preview, block, i)];
             for (int k = 0; k < LIT_KINDS; k++) block->sum[i] = float3_add(block->sum[i], block->lit[k][i]);
-            Float3 light = hit[i] ? block->sum[i] : sky_mirrored(&preview->sky, block->direction[i]), fire = {0, 0, 0};
-            float clear = 1;
-            if (preview->fire.visible)
-                fire_along(preview, block->origin[i], block->direction[i], block->point[i].distance, 1, &fire, &clear);
-            glint->light = float3_mad(glint->light, float3_mad(fire, light, clear), 1.0f / RAYS);
+            const Float3 light = hit[i] ? block->sum[i] : sky_mirrored(&preview->sky, block->direction[i]);
+            glint->light = float3_mad(glint->light, float3_mad(fire[ray], light, clear[ray]), 1.0f / RAYS);
             glint->normal = seen[i].geometric;
+            ray++;
         }
     }
 }

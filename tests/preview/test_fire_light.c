@@ -124,12 +124,17 @@ TEST(a_deep_fire_is_not_all_pale) {
 /// The light that a ray meets over 16 cm, in steps of a tenth of a mm.
 static float light_in_short_steps(const Fire *fire, Float3 from, Float3 direction) {
     const float step = 1e-4f, blur = 6 * 2e-4f;
-    FirePoint here = fire_at_point(fire, from, blur);
+    FirePoint here = {.depth = FIRE_OUTSIDE};
     float light = 0, clear = 1;
-    for (int k = 1; k <= 1600 && clear > 0.02f; k++) {
-        const FirePoint next = fire_at_point(fire, float3_mad(from, direction, step * (float)k), blur);
+    for (int k = 0; k <= 1600 && clear > 0.02f; k++) {
+        FirePlaces places;
+        static FirePoints points;
+        for (int m = 0; k % FIRE_LANES == 0 && m < FIRE_LANES; m++)
+            fire_place(&places, m, float3_mad(from, direction, step * (float)(k + m)), blur);
+        if (k % FIRE_LANES == 0) fire->look(fire, FIRE_LANES, &places, &points);
+        const FirePoint next = fire_point(&points, k % FIRE_LANES);
         Matter matter = {{0, 0, 0}, 0};
-        fire_between(&here, &next, step, &matter);
+        if (k) fire_between(&here, &next, step, &matter);
         light += clear * step * float3_luminance(matter.light);
         clear *= expf(-matter.dense * step);
         here = next;
@@ -159,7 +164,7 @@ TEST(no_step_leaps_over_an_edge) {
             const Float3 direction = float3_unit(float3(0.1f, 1, 0.05f));
             Float3 light;
             float clear;
-            fire_along(preview, from, direction, INFINITY, 1, &light, &clear);
+            fire_along(preview, 1, &from, &direction, &(const float){INFINITY}, 1, &light, &clear);
             const float whole = light_in_short_steps(&preview->fire, float3_mad(from, direction, 0.12f), direction);
             lit += whole > 0.1f, wrong += whole > 0.1f && fabsf(float3_luminance(light) - whole) > 0.3f * whole;
         }

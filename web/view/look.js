@@ -1,5 +1,5 @@
 // Made by scripts/write_look.py from program/preview: do not edit.
-export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.01, FIRE_FINE_CELL: 0.008, FLAMES_FROM: 0.02, FLAME_SEEN: 0.15, FLAME_HEIGHT: 0.08, FLAME_END: 0.3, FLAME_MOST: 2, FIRE_SWAY: 0.027, RISE_MOST: 0.55, EDDY_RATE: 8, LICK_WIDE: 0.045, LICK_FULL: 0.05, LICK: 0.6, UNLIKE: 1.5, JOIN: 0.7, JOIN_BEGINS: 0.02, JOIN_FULL: 0.08, GROUP_WIDE: 0.075, GROUP_RATE: 2, GROUP: 0.35, GROUP_UNLIKE: 1.5, FED_WHOLLY: 0.3, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 5.9, TAPER: 0.55, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, ROOT_REACH: 4.4, ROOT_OVER: 1.5, ROOT_FALLS: 0.05, ROOT_WIDE: 0.6, ROOT_LEAN: 0.4, NOISE_LARGER: 0.85, NOISE_SIZES: 0.68, FIRE_PASSING: 0.93, MIX_PASSES: 2, MIX_SHARE: 0.2, MIX_BEGINS: 0.01, MIX_FULL: 0.06, MIX_FEEDS: 0.5, MIX_BURNT: 1.5, SMOKE_LEAVES: 0.25, LEAN: 0.7, LEAN_BELOW: 2, BELOW_FREE: 1.5, LEAN_FOOT: 0.001, LEAN_FALLS: 160, RIM_FLAME: 0.85, RIM_REACH: 1.5, RIM_UP: 0.6, RIM_BELOW: 2, RIM_LOW: 0.1, RIM_HIGH: 1, LEAN_REACH: 0.04, SLAB: 0.55, SHAPE_GAIN: 0.265, SHAPE_MIDDLE: 80, SHAPE_LIMB: 330, SHAPE_BELOW: 150, SCALE_COOLER: 200, LAMP_WRAP: 0.3, LAMP_WRAP_MOST: 0.7 };
+export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.01, FIRE_FINE_CELL: 0.008, FLAMES_FROM: 0.02, FLAME_SEEN: 0.15, FLAME_HEIGHT: 0.08, FLAME_END: 0.3, RISE_MOST: 0.55, EDDY_RATE: 8, TAPER: 0.55, FLAME_MOST: 2, FIRE_SWAY: 0.027, LICK_WIDE: 0.045, LICK_FULL: 0.05, LICK: 0.6, UNLIKE: 1.5, JOIN: 0.7, JOIN_BEGINS: 0.02, JOIN_FULL: 0.08, GROUP_WIDE: 0.075, GROUP_RATE: 2, GROUP: 0.35, GROUP_UNLIKE: 1.5, FED_WHOLLY: 0.3, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 5.9, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, ROOT_REACH: 4.4, ROOT_OVER: 1.5, ROOT_FALLS: 0.05, ROOT_WIDE: 0.6, ROOT_LEAN: 0.4, NOISE_LARGER: 0.85, NOISE_SIZES: 0.68, FIRE_PASSING: 0.93, MIX_PASSES: 2, MIX_SHARE: 0.2, MIX_BEGINS: 0.01, MIX_FULL: 0.06, MIX_FEEDS: 0.5, MIX_BURNT: 1.5, SMOKE_LEAVES: 0.25, LEAN: 0.7, LEAN_BELOW: 2, BELOW_FREE: 1.5, LEAN_FOOT: 0.001, LEAN_FALLS: 160, RIM_FLAME: 0.85, RIM_REACH: 1.5, RIM_UP: 0.6, RIM_BELOW: 2, RIM_LOW: 0.1, RIM_HIGH: 1, LEAN_REACH: 0.04, SLAB: 0.55, SHAPE_GAIN: 0.265, SHAPE_MIDDLE: 80, SHAPE_LIMB: 330, SHAPE_BELOW: 150, SCALE_COOLER: 200, LAMP_WRAP: 0.3, LAMP_WRAP_MOST: 0.7 };
 
 export const PAPER = /* glsl */ `
 const float EMBER_BURN = 0.74;
@@ -328,6 +328,10 @@ export const FLAME = /* glsl */ `
 const float FLAME_SEEN = 0.15;
 const float FLAME_HEIGHT = 0.08;
 const float FLAME_END = 0.3;
+const float RISE_MOST = 0.55;
+const float EDDY_RATE = 8.0;
+const float SOOT_DENSE = 198.0;
+const float TAPER = 0.55;
 const float FLAME_MOST = 2.0;
 const float FIRE_SWAY = 0.027;
 const float FIRE_WARP_WIDE = 0.0062;
@@ -335,19 +339,6 @@ const float FIRE_WARP_FINE = 0.0018;
 const float SMOKE_WARP = 0.0234;
 const float SMOKE_THIN = 0.2;
 const float FIRE_OUTSIDE = -0.006;
-const float BASE_SPEED = 0.25;
-const float BUOYANCY = 2.0;
-const float RISE_MOST = 0.55;
-const float EDDY_RATE = 8.0;
-const float EDDY_WIDE = 0.0135;
-const float EDDY_FINE = 0.0065;
-const float FINE_OFTEN = 2.2;
-const float EDDY_THREAD = 0.01;
-const float THREAD_BLUR = 0.0016;
-const float EDDY_FILAMENT = 0.009;
-const float FOLD_SHARP = 2.2;
-const float THREAD_WARP = 0.01;
-const float ROLL = 0.5;
 const float SWAY_WIDE = 0.08;
 const float SWAY_SMALL = 0.6;
 const float SWAY_SHARE = 0.35;
@@ -373,14 +364,23 @@ const float SMOKE_COARSE = 0.45;
 const float SMOKE_DARK = 0.25;
 const float SMOKE_SLOW = 0.4;
 const float SMOKE_SPEED = 0.5;
-const float SOOT_DENSE = 198.0;
+const float BASE_SPEED = 0.25;
+const float BUOYANCY = 2.0;
+const float EDDY_WIDE = 0.0135;
+const float EDDY_FINE = 0.0065;
+const float FINE_OFTEN = 2.2;
+const float EDDY_THREAD = 0.01;
+const float THREAD_BLUR = 0.0016;
+const float EDDY_FILAMENT = 0.009;
+const float FOLD_SHARP = 2.2;
+const float THREAD_WARP = 0.01;
+const float ROLL = 0.5;
 const float BLUE_DENSE = 3.6;
 const float BLUE_ENDS = 0.005;
 const float SHELL_RISE = 0.0005;
 const float SHELL_RISE_MOST = 0.0016;
 const float SHELL = 0.0018;
 const float EDGE = 0.42;
-const float TAPER = 0.55;
 const float STAND_OFF = 0.0006;
 const float JOINED_HOT = 0.15;
 const float LARGE_HOT = 0.14;
@@ -416,6 +416,12 @@ struct Smoke { vec3 light; float dense; float fold; float old; };
 struct Noise { float a; float b; float c; float d; };
 Noise noise_at(vec3 q);
 FireCell cell_at(vec3 p);
+Noise eddies(vec3 p, float passed, float width, float often) {
+    float c = 0.829, s = 0.559;
+    float across = 1.0 / width;
+    return noise_at(vec3((c * p.x - s * p.y) * across + 0.21 * passed,
+                                (s * p.x + c * p.y) * across + 0.17 * passed, -often * passed));
+}
 float eddies_passed(float height, float z, float time) {
     float steady = (RISE_MOST * RISE_MOST - BASE_SPEED * BASE_SPEED) / (2.0 * BUOYANCY);
     float speed = sqrt(BASE_SPEED * BASE_SPEED + 2.0 * BUOYANCY * clamp(height, 0.0, steady));
@@ -423,42 +429,28 @@ float eddies_passed(float height, float z, float time) {
     float below = (z - height) / RISE_MOST + min(height, 0.0) / BASE_SPEED;
     return EDDY_RATE * (time - risen - below);
 }
-Noise eddies(vec3 p, float passed, float width, float often) {
-    float c = 0.829, s = 0.559;
-    float across = 1.0 / width;
-    return noise_at(vec3((c * p.x - s * p.y) * across + 0.21 * passed,
-                                 (s * p.x + c * p.y) * across + 0.17 * passed, -often * passed));
-}
-void fire_sway(vec3 p, float height, inout float sway[2]) {
-    float scale = fireScale, most = min(SWAY_SLOPE * max(height, 0.0), FIRE_SWAY * scale);
-    float passed = EDDY_RATE * (fireMoment / sqrt(scale) - p.z / (scale * RISE_MOST));
-    Noise wide = eddies(p, passed, scale * SWAY_WIDE, 0.85);
-    Noise small = eddies(p, passed, scale * SWAY_SMALL * SWAY_WIDE, 1.1);
-    sway[0] = most * clamp(SWAY_GAIN * (wide.a + SWAY_SHARE * small.a), -1.0, 1.0);
-    sway[1] = most * clamp(SWAY_GAIN * (wide.b + SWAY_SHARE * small.b), -1.0, 1.0);
-}
 void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noise wide,
-                        Noise fine, float blur, inout FirePoint point) {
+                               Noise fine, float blur, inout FirePoint point) {
     float torn = stepf(0.0, 0.02, rise);
     float tall = rise / (fireScale * FLAME_HEIGHT);
     float coarse = 0.075 + 0.425 * torn, small = 0.025 + 0.225 * torn;
     float edge = flame + coarse * (0.67 - 2.4 * abs(wide.c)) + small * (0.4 - 2.0 * abs(fine.c)) - EDGE -
-                 TAPER * (1.0 - exp(-tall)) - 0.1 * (1.0 - torn);
+                TAPER * (1.0 - exp(-tall)) - 0.1 * (1.0 - torn);
     edge = min(edge, 2.0 * (flame - FLAME_SEEN));
     float noisy = 2.0 * (coarse / EDDY_WIDE + small / EDDY_FINE) / fireScale;
     point.depth = max(edge / sqrt(slope * slope + 0.4 * noisy * noisy + 1.0), FIRE_OUTSIDE);
     if (!(point.depth > 0.0)) return;
     float tip = stepf(0.35, 1.4, tall), fill = mix(0.02, 0.12, tip);
-    float first = clamp(blur, SHELL_RISE, SHELL_RISE_MOST * fireScale), outer = clamp(point.depth, 0.0, first),
-          inner = max(point.depth - first, 0.0);
+    float first = clamp(blur, SHELL_RISE, SHELL_RISE_MOST * fireScale),
+         outer = clamp(point.depth, 0.0, first), inner = max(point.depth - first, 0.0);
     float fading = (1.0 - fill) * exp(-inner / SHELL), same = (0.5 * SHELL_RISE + SHELL) / (0.5 * first + SHELL);
     point.profile = same * outer / first * (fill + fading);
     point.shell = same * (0.5 * outer * outer / first + fill * inner + SHELL * (1.0 - fill - fading));
     float foot = rise + 0.0012 * fine.d + 0.0016 * wide.d;
     float small_foot = min(fireScale, 1.0);
     float above = stepf(small_foot * FOOT_CLEAR, small_foot * FOOT_FULL, rise);
-    float tongue =
-        1.0 - stepf(TONGUE_MIDDLE, mix(TONGUE_ROOTED, TONGUE_ENDS, above), abs(wide.c) + 0.3 * abs(fine.c));
+    float tongue = 1.0 - stepf(TONGUE_MIDDLE, mix(TONGUE_ROOTED, TONGUE_ENDS, above),
+                                      abs(wide.c) + 0.3 * abs(fine.c));
     float warm = stepf(0.0, small_foot * mix(FOOT_LATE, FOOT_WARM, tongue), foot);
     float dense = mix(mix(FOOT_HAZE, 1.0, tongue), 1.0, above);
     float soot = stepf(0.0, small_foot * mix(FOOT_BESIDE, FOOT_SOOT, tongue), foot);
@@ -467,9 +459,10 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     Noise thread = Noise(0.0, 0.0, 0.0, 0.0);
     if (soot > 0.0)
         thread = eddies(bent, passed + ROLL * wide.d, sqrt(fireScale) * EDDY_THREAD, 3.0 * sqrt(fireScale));
-    float sharp = max(3.0 * min(THREAD_BLUR / max(blur, 1e-6), 1.0), 2.2);
-    float clear =
-        stepf(-0.5, 0.6, 0.15 * (wide.d + fine.d) + torn * (0.57 - 0.17 * (3.0 - sharp) - sharp * abs(thread.a)));
+    float sharp =
+        max(3.0 * min(THREAD_BLUR / max(blur, 1e-6), 1.0), 2.2);
+    float clear = stepf(
+        -0.5, 0.6, 0.15 * (wide.d + fine.d) + torn * (0.57 - 0.17 * (3.0 - sharp) - sharp * abs(thread.a)));
     float filament = 0.0, pane = 0.0;
     if (above > 0.0) {
         Noise n =
@@ -489,8 +482,8 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     float spent = stepf(0.5, 1.6, tall) * (1.0 - body);
     hot -= SPENT_COOL * spent;
     soot *= (1.0 - SPENT_THIN * spent) * dense * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
-    float root =
-        clamp((rise + STAND_OFF) / (8.0 * STAND_OFF), 0.0, 1.0) * (1.0 - soot) * (1.0 - stepf(BLUE_ENDS / 2.0, BLUE_ENDS, rise));
+    float root = clamp((rise + STAND_OFF) / (8.0 * STAND_OFF), 0.0, 1.0) * (1.0 - soot) *
+                (1.0 - stepf(BLUE_ENDS / 2.0, BLUE_ENDS, rise));
     float fold = (1.0 - clear) * (1.0 - clear) * mix(0.25, 1.0, above);
     soot *= 0.35 + 3.5 * fold * (1.0 + 0.7 * pane) + 1.2 * clear * clear + FOOT_GLOWS * tongue * (1.0 - above);
     soot *= BORDER_GAIN * mix(BORDER_THIN, 1.0, stepf(0.0, fireScale * BORDER_WIDE, point.depth));
@@ -498,6 +491,14 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     point.opaque = SOOT_DENSE * soot * mix(FOOT_HIDES, 1.0 + CORE_HIDES * core, above);
     point.soot = float3_scale(flame_colour(clamp(hot, 0.0, 1.0)), SOOT_DENSE * soot);
     point.root = float3_scale(vec3(0.28, 0.56, 1.18), BLUE_DENSE * root);
+}
+void fire_sway(vec3 p, float height, inout float sway[2]) {
+    float scale = fireScale, most = min(SWAY_SLOPE * max(height, 0.0), FIRE_SWAY * scale);
+    float passed = EDDY_RATE * (fireMoment / sqrt(scale) - p.z / (scale * RISE_MOST));
+    Noise wide = eddies(p, passed, scale * SWAY_WIDE, 0.85);
+    Noise small = eddies(p, passed, scale * SWAY_SMALL * SWAY_WIDE, 1.1);
+    sway[0] = most * clamp(SWAY_GAIN * (wide.a + SWAY_SHARE * small.a), -1.0, 1.0);
+    sway[1] = most * clamp(SWAY_GAIN * (wide.b + SWAY_SHARE * small.b), -1.0, 1.0);
 }
 void fire_between(FirePoint a, FirePoint b, float step_, inout Matter matter) {
     if (!(a.depth > 0.0 || b.depth > 0.0)) return;
