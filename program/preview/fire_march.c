@@ -63,23 +63,23 @@ static Smoke smoke_place(const Fire *fire, Float3 eye, Float3 d, float number, c
 }
 
 /// The mean between a place and the next, on a ray along which they grow.
-static Matter smoke_after(const Fire *fire, Float3 eye, Float3 d, float first, SmokeLine *line) {
-    if (first == line->first) return line->mean;
+static const Matter *smoke_after(const Fire *fire, Float3 eye, Float3 d, float first, SmokeLine *line) {
+    if (first == line->first) return &line->mean;
     line->ends[0] = first == line->first + 1 ? line->ends[1] : smoke_place(fire, eye, d, first, line);
     line->ends[1] = smoke_place(fire, eye, d, first + 1, line);
     line->mean = fire_smoke_between(fire, &line->ends[0], &line->ends[1], line->pixel * (first + 1) * line->length);
     line->first = first;
-    return line->mean;
+    return &line->mean;
 }
 
 /// The mean over a step, which is no longer than places are apart.
 static Matter smoke_along(const Fire *fire, Float3 eye, Float3 d, float from, float to, SmokeLine *line) {
     const float first = floorf(from / line->length + 1e-3f), beyond = to - (first + 1) * line->length;
-    const Matter near = smoke_after(fire, eye, d, first, line);
+    const Matter near = *smoke_after(fire, eye, d, first, line);
     if (beyond <= 1e-3f * line->length) return near;
-    const Matter far = smoke_after(fire, eye, d, first + 1, line);
+    const Matter *far = smoke_after(fire, eye, d, first + 1, line);
     const float share = beyond / (to - from);
-    return (Matter){float3_mix(near.light, far.light, share), mixf(near.dense, far.dense, share)};
+    return (Matter){float3_mix(near.light, far->light, share), mixf(near.dense, far->dense, share)};
 }
 
 // ---- where flames are
@@ -168,7 +168,8 @@ typedef struct March {
     bool seek, edge;    ///< the step looks for flames, or is near their edges
     bool leaps;         ///< it is longer than such steps are
     bool guided;        ///< else flames may be everywhere
-    FirePoint here;
+    FirePoint ends[2];  ///< of the step
+    int here;           ///< which of them is at t
     SmokeLine line;
     Guide guide;
 } March;
@@ -235,7 +236,7 @@ static bool march_enter(March *march) {
 /// The end of the next step. Steps begin at multiples of their length: neighbouring rays then look at neighbouring positions.
 static void march_plan(March *march) {
     const bool flame = march->what & FIRE_FLAME;
-    const float t = march->t, fine = march->fine, depth = march->here.depth;
+    const float t = march->t, fine = march->fine, depth = march->ends[march->here].depth;
     march->seek = march->dark && flame;
     const float away = depth > FIRE_OUTSIDE ? 2 * march->usual : 3 * march->usual;
     march->edge = t < march->again || fabsf(depth) < FIRE_NEAR * fine;
@@ -248,11 +249,12 @@ static void march_plan(March *march) {
     march->next = minf(maxf((floorf(t / step + 1e-3f) + 1) * step, t + 0.1f * step), march->until);
 }
 
-/// Takes the step, at whose end there is a flame, or the same distance again in short steps.
-static void march_step(March *march, const FirePoint *there) {
+/// Takes the step, whose other end is known, or the same distance again in short steps.
+static void march_step(March *march) {
+    const FirePoint *here = &march->ends[march->here], *there = &march->ends[!march->here];
     const bool flame = march->what & FIRE_FLAME;
     const float step = march->next - march->t, fine = march->fine;
-    const bool jumps = fabsf(there->depth - march->here.depth) > FIRE_JUMP * step && there->depth < FIRE_NEAR * fine;
+    const bool jumps = fabsf(there->depth - here->depth) > FIRE_JUMP * step && there->depth < FIRE_NEAR * fine;
     if (flame && !march->dark && !march->edge && jumps) {
         march->again = march->next; // else the long ones of rays side by side are bars
         return;
@@ -263,15 +265,16 @@ static void march_step(March *march, const FirePoint *there) {
     }
     march->dark = there->depth < -2 * march->usual;
     if (march->seek && !march->dark) return;
-    if (maxf(march->here.depth, there->depth) > FIRE_OUTSIDE) view_extend(march->view, march->t, march->next);
+    if (maxf(here->depth, there->depth) > FIRE_OUTSIDE) view_extend(march->view, march->t, march->next);
     Matter m = {{0, 0, 0}, 0};
     if (march->what & FIRE_SMOKE)
         m = smoke_along(&march->preview->fire, march->eye, march->d, march->t, march->next, &march->line);
-    fire_between(&march->here, there, step, &m);
-    march->here = *there;
+    fire_between(here, there, step, &m);
+    march->here = !march->here;
 
     // light of the step, absorbed within the step: (1 - exp(-d)) / d
-    float depth = m.dense * step, kept = expf(-depth), mean = depth > 1e-3f ? (1 - kept) / depth : 1 - 0.5f * depth;
+    float depth = m.dense * step, kept = depth > 0 ? expf(-depth) : 1,
+          mean = depth > 1e-3f ? (1 - kept) / depth : 1 - 0.5f * depth;
     march->light = float3_mad(march->light, m.light, march->clear * step * mean);
     march->clear *= kept;
 
@@ -294,12 +297,13 @@ static bool march_on(March *march) {
         const bool flame = march->what & FIRE_FLAME;
         march->asks = march->t;
         if (!march->known && flame) return true;
-        if (!march->known) march->here = outside;
+        if (!march->known) march->ends[march->here] = outside;
         march->known = true;
         march_plan(march);
         march->asks = march->next;
         if (flame) return true;
-        march_step(march, &outside);
+        march->ends[!march->here] = outside;
+        march_step(march);
     }
     return false;
 }
@@ -329,10 +333,9 @@ static void march_all(const Fire *fire, NextMarch *next, void *rays) {
         }
         fire->look(fire, count, &places, &points);
         for (int k = count - 1; k >= 0; k--) {
-            const FirePoint point = fire_point(&points, k);
             March *march = active[k];
-            if (march->known) march_step(march, &point);
-            else march->here = point;
+            march->ends[march->known ? !march->here : march->here] = fire_point(&points, k);
+            if (march->known) march_step(march);
             march->known = true;
             if (march_on(march)) continue;
             active[k] = active[--count]; // it has had its flame
