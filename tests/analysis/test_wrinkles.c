@@ -105,15 +105,19 @@ TEST(folds_run_where_they_run) {
     }
 }
 
-static int waves_seed;
+static struct { double x, y, phase; } wave[64];
+
+static void set_waves(int seed) {
+    for (int i = 0; i < 64; i++) {
+        wave[i].x = cos(pi * i / 64), wave[i].y = sin(pi * i / 64);
+        wave[i].phase = 377 * sin(12.9898 * (i + 64 * seed) + 4.1);
+    }
+}
 
 /// Waves of this length in all directions, none preferred.
 static double waves(double x, double y, double length) {
     double z = 0;
-    for (int i = 0; i < 64; i++) {
-        double angle = pi * i / 64, phase = 377 * sin(12.9898 * (i + 64 * waves_seed) + 4.1);
-        z += cos(2 * pi / length * (x * cos(angle) + y * sin(angle)) + phase);
-    }
+    for (int i = 0; i < 64; i++) z += cos(2 * pi / length * (x * wave[i].x + y * wave[i].y) + wave[i].phase);
     return 2e-4 * z / 8 * length / 0.012;
 }
 
@@ -124,7 +128,10 @@ TEST(even_waves_have_no_direction) {
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 3; i++) {
             Wrinkles w = {0};
-            for (waves_seed = 0; waves_seed < 8; waves_seed++) look_too(cells[k], waves, lengths[i], &w);
+            for (int seed = 0; seed < 8; seed++) {
+                set_waves(seed);
+                look_too(cells[k], waves, lengths[i], &w);
+            }
             print_message("waves of %.0f mm, cells of %.2f mm: axis over diagonal %.3f\n", 1e3 * lengths[i],
                           1e3 * side / cells[k], wrinkles_bias(&w));
             assert_true(fabs(wrinkles_bias(&w) - 1) < 0.12);
@@ -145,7 +152,7 @@ TEST(even_folds_have_no_direction) {
     for (int i = 0; i < 48; i++) {
         const double degrees = (i + 0.5) * 180 / 48;
         look_too(60, sharp_fold, degrees, &w);
-        look_too(240, sharp_fold, degrees, &fine);
+        look_too(160, sharp_fold, degrees, &fine);
     }
 
     const double all = wrinkles_bias(&w) / wrinkles_bias(&fine);

@@ -111,9 +111,9 @@ class Resume(Case):
     def test_ctrl_c_in_a_picture(self):
         """A picture that would take minutes is given up. Frames before it stay."""
         self.run_scene("p", "--quiet", "--frames", "2")
-        for wait in 0.5, 2, 8:  # it may come before anything watches for it
-            render = self.start("render", self.path("p"), "--set", "preview.size=[8192,8192]", "--set",
-                                "preview.samples=256")
+        for wait in 0.2, 0.5, 2, 8:  # it may come before anything watches for it
+            render = self.start("render", self.path("p"), "--set", "preview.size=[2048,2048]", "--set",
+                                "preview.samples=4096")
             self.addCleanup(lambda render=render: render.poll() is None and render.kill())
             time.sleep(wait)
             begun = time.monotonic()

@@ -351,7 +351,7 @@ class Verify(Case):
                     file.writelines("f %d %d %d\n" % tuple(i + 1 for i in face) for face in given)
                 scene = self.path(name + ".yaml")
                 Path(scene).write_text("frames: 2\nsteps: 1\nsheets:\n  - grid: {size: [4 cm, 4 cm], cells: [4, 4]}\n"
-                                       f"    render_mesh: {{mesh: {name}.obj}}\n")
+                                       f"    render_mesh: {{mesh: {name}.obj}}\npreview: {{size: [16, 16], samples: 1}}\n")
                 _, err = self.singe("check", scene)
                 lines = [line for line in err.splitlines() if "render mesh" in line]
                 self.assertEqual(len(lines), 1 if warning else 0, err)

@@ -69,7 +69,7 @@ TEST(out_of_focus_pictures_are_smooth) {
     static uint8_t exact[BYTES], few[BYTES];
     Striped s;
     striped(&s);
-    s.def.camera.aperture = 0.04f, s.def.camera.focus = 0.25f, s.def.samples = 1024;
+    s.def.camera.aperture = 0.04f, s.def.camera.focus = 0.25f, s.def.samples = 256;
     draw(&s.def, &s.q.surface, 0, exact);
     const int samples[] = {16, 1};
     for (int k = 0; k < 2; k++) {

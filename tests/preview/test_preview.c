@@ -16,8 +16,8 @@ TEST(pictures_do_not_depend_on_threads) {
     SingeSurface surface;
     assert_true(synthetic_make(SYNTHETIC_FLAT, 30, 0.05f, &surface));
 
-    // enough tiles that every thread gets some
-    enum { BIG_W = 330, BIG_H = 250, BIG = BIG_W * BIG_H * 3 };
+    // enough tiles that every thread gets some, the last of each row and column cut
+    enum { BIG_W = 175, BIG_H = 130, BIG = BIG_W * BIG_H * 3 };
     static uint8_t pictures[3][BIG];
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
                          .position = {0, 0, 0.03f},
