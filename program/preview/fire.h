@@ -112,7 +112,7 @@ struct Fire {
 #define FLAME_SEEN 0.15f       ///< a smaller value is outside of all flames
 #define FLAME_HEIGHT 0.08f     ///< m, typical height of tongues
 #define FLAME_END 0.30f        ///< m, max height of a flame
-#define RISE_MOST 0.55f        ///< m/s, which it reaches
+#define RISE_MOST 0.55f        ///< m/s, which rising gas reaches
 #define EDDY_RATE 8.0f         ///< 1/s, eddies that pass a height
 #define SOOT_DENSE 198.0f      ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
 #define TAPER 0.55f            ///< what is added to it above a flame's height

@@ -16,8 +16,6 @@
 #include "common/float4.h"
 #include "preview/internal.h"
 
-// Gas leaves the paper slowly and accelerates: v^2 = BASE_SPEED^2 + 2 BUOYANCY h at the height h. An eddy that was formed
-// at the base grows longer as it rises, and moves by the same share of its length in every frame.
 #define SWAY_WIDE 0.08f  ///< m, of the eddies that bend whole tongues
 #define SWAY_SMALL 0.6f  ///< of that, others that curl them
 #define SWAY_SHARE 0.35f ///< of what the wide ones do
