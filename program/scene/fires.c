@@ -201,10 +201,10 @@ static double particle_distance(const Mesh *mesh, const float *point) {
 /// else lights the scene: a weaker source may warm it.
 static bool source_lights(const Scene *scene, const SceneAssets *assets, const SceneSource *source, const Place *places,
                           bool lit, const SingeLog *log) {
-    const bool mapped = source->def.kind == SINGE_SOURCE_ARRIVAL;
     if (source_wets_or_blows(&source->def)) return false; // it puts fires out, or fans them
 
-    const bool everywhere = mapped || source->def.kind == SINGE_SOURCE_TEXTURE;
+    const bool everywhere = source->def.kind != SINGE_SOURCE_BALL && source->def.kind != SINGE_SOURCE_SPOT;
+    const bool mapped = everywhere && source->def.kind != SINGE_SOURCE_TEXTURE; // it lights whatever burns
     // a flame of its own is some 0.24 m high at 1 kW, and its hot gas rises farther
     const bool flame = !everywhere && scene->sim.gas.enabled && source->def.power > 0;
     const double plume = flame ? 0.5 * pow(1e-3 * (double)source->def.power, 0.4) : 0;

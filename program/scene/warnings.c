@@ -23,10 +23,10 @@ const char *source_heats_nothing(const Scene *scene, const SceneSource *source) 
     if (def->kind == SINGE_SOURCE_TEXTURE && (def->flux == 0 || weak)) return "its flux is 0";
     if (def->kind == SINGE_SOURCE_ARRIVAL || source_wets_or_blows(def)) return NULL;
 
-    const bool flame = def->kind != SINGE_SOURCE_TEXTURE && scene->sim.gas.enabled && def->power > 0;
-    if (def->kind != SINGE_SOURCE_TEXTURE && def->conductance == 0 && !flame) return "its conductance is 0";
-    if (def->kind != SINGE_SOURCE_TEXTURE && def->radius + def->falloff == 0 && !flame)
-        return "its radius and its falloff are 0";
+    const bool round = def->kind == SINGE_SOURCE_BALL || def->kind == SINGE_SOURCE_SPOT;
+    const bool flame = scene->sim.gas.enabled && def->power > 0;
+    if (round && def->conductance == 0 && !flame) return "its conductance is 0";
+    if (round && def->radius + def->falloff == 0 && !flame) return "its radius and its falloff are 0";
     if (def->end <= def->start) return "it ends when it starts";
 
     return scene->frames > 1 && (double)def->start >= end ? "it starts after the last frame" : NULL;

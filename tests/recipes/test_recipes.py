@@ -90,6 +90,7 @@ def main():
 
         # burn with them; wrong values are refused with their ranges and words
         (tree / "scene.yaml").write_text(SCENE, encoding="utf-8")
+        assert "the source" not in run("build/singe", "check", "scene.yaml", cwd=tree), "the lamp is warned of"
         run("build/singe", "run", "scene.yaml", "-o", "out", "--quiet", "--no-preview", cwd=tree)
         rows = (tree / "out/stats.csv").read_text(encoding="utf-8").splitlines()
         column = rows[0].split(",").index("temperature_max")
