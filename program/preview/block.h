@@ -3,6 +3,8 @@
 
 #include "preview/internal.h"
 
+#define SAME_FACING 0.8f ///< least cosine between the normals of one face
+
 /// Sums for the layers of a pixel.
 typedef struct LayerSum {
     Float3 normal, glow, fire;

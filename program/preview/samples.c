@@ -11,9 +11,8 @@
 
 #include <string.h>
 
-static const float CALM = 0.026f;      ///< range of a pixel's first samples, as l / (1 + l), that needs no more of them
-static const float UNEVEN = 0.15f;     ///< range of a block's, beyond which its pixels need more
-static const float SAME_FACING = 0.8f; ///< cosine between the normals of one face
+static const float CALM = 0.026f;  ///< range of a pixel's first samples, as l / (1 + l), that needs no more of them
+static const float UNEVEN = 0.15f; ///< range of a block's, beyond which its pixels need more
 static const float BLURRED = 0.3f; ///< the same where lens and shutter spread what is seen: all pixels get all samples
 
 static void store(float (*layer)[3], size_t pixel, Float3 value) {
@@ -256,8 +255,8 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
 static bool aim_at_corner(const Preview *preview, Block *block, const int *active) {
     const float centre[2] = {0, 0};
     const int rays = !isfinite(preview->def.wall_distance) ? 0 : preview->camera.lens > 0 ? 8 : 1;
-    int walls = 0, lanes = 0,
-        step = BLOCK - 1; // its corners, of which all agree where the wall's straight border is not
+    int walls = 0, lanes = 0;
+    int step = BLOCK - 1; // its corners among others: where they agree, the wall's straight border is not
     for (int i = 0; i < LANES; i++)
         if (!active[i]) step = 1;
     for (int s = 0; s < rays; s++) {

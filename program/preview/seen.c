@@ -52,7 +52,7 @@ static void smooth_line(const Lit *lit, const float (*values)[LIT_KINDS], size_t
         const Lit *other = lit + at * stride;
         const bool one_face = lit->sheet == other->sheet &&
                               fabsf(lit->distance - other->distance) < 0.02f * lit->distance &&
-                              float3_dot(lit->normal, other->normal) > 0.8f;
+                              float3_dot(lit->normal, other->normal) > SAME_FACING;
         if (!one_face) continue;
         const float *value = (const float *)(const void *)((const char *)values + at * stride * (ptrdiff_t)values_size);
         for (int k = 0; k < LIT_KINDS; k++) {

@@ -203,7 +203,7 @@ static bool source_lights(const Scene *scene, const SceneAssets *assets, const S
                           bool lit, const SingeLog *log) {
     if (source_wets_or_blows(&source->def)) return false; // it puts fires out, or fans them
 
-    const bool everywhere = source->def.kind != SINGE_SOURCE_BALL && source->def.kind != SINGE_SOURCE_SPOT;
+    const bool everywhere = !source_is_round(&source->def);
     const bool mapped = everywhere && source->def.kind != SINGE_SOURCE_TEXTURE; // it lights whatever burns
     // a flame of its own is some 0.24 m high at 1 kW, and its hot gas rises farther
     const bool flame = !everywhere && scene->sim.gas.enabled && source->def.power > 0;

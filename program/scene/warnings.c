@@ -23,7 +23,7 @@ const char *source_heats_nothing(const Scene *scene, const SceneSource *source) 
     if (def->kind == SINGE_SOURCE_TEXTURE && (def->flux == 0 || weak)) return "its flux is 0";
     if (def->kind == SINGE_SOURCE_ARRIVAL || source_wets_or_blows(def)) return NULL;
 
-    const bool round = def->kind == SINGE_SOURCE_BALL || def->kind == SINGE_SOURCE_SPOT;
+    const bool round = source_is_round(def);
     const bool flame = scene->sim.gas.enabled && def->power > 0;
     if (round && def->conductance == 0 && !flame) return "its conductance is 0";
     if (round && def->radius + def->falloff == 0 && !flame) return "its radius and its falloff are 0";

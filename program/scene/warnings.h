@@ -16,6 +16,11 @@ void scene_warn_of_fires(const Scene *scene, const SceneAssets *assets, const Si
 /// The lowest temperature at which a sheet of the scene begins to burn, K; INFINITY if none can.
 double scene_ignition(const Scene *scene);
 
+/// Whether a source heats what is near a point: only such a one can miss all sheets.
+static inline bool source_is_round(const SingeSourceDef *def) {
+    return def->kind == SINGE_SOURCE_BALL || def->kind == SINGE_SOURCE_SPOT;
+}
+
 /// Whether a source lights nothing: it wets, or moves air.
 static inline bool source_wets_or_blows(const SingeSourceDef *def) {
     return def->kind >= SINGE_SOURCE_WATER && def->kind <= SINGE_SOURCE_TURBULENCE;
