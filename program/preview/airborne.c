@@ -165,6 +165,21 @@ void airborne_sight(const Preview *preview, const Float3 *points, int count, flo
     }
 }
 
+void airborne_flames(const Preview *preview, const Float3 *points, int count, Float3 light[SIGHT_POINTS],
+                     float clear[SIGHT_POINTS]) {
+    Float3 from[SIGHT_POINTS], along[SIGHT_POINTS];
+    float far[SIGHT_POINTS];
+    for (int k = 0; k < count; k++) {
+        const Float3 to = float3_sub(points[k], preview->camera.eye);
+        far[k] = float3_length(to);
+        from[k] = preview->camera.eye;
+        along[k] = float3_scale(to, 1 / far[k]);
+        light[k] = float3(0, 0, 0);
+        clear[k] = 1;
+    }
+    if (preview->fire.visible) fire_along(preview, count, from, along, far, 1, light, clear);
+}
+
 void airborne_dot(Preview *preview, const float at[2], float radius, Float3 light, float depth) {
     const int width = preview->def.width, height = preview->def.height;
     radius = maxf(radius, 1.1f);

@@ -44,6 +44,11 @@ bool airborne_project(const Preview *preview, Float3 p, float at[2], float *dept
 /// Whether points are seen, 0 hidden to 1; count <= SIGHT_POINTS.
 void airborne_sight(const Preview *preview, const Float3 *points, int count, float seen[SIGHT_POINTS]);
 
+/// The light of flames before points, and the transmittance to each: the veil lies over all flames, so that what is drawn
+/// into it adds its share of that light, and has its own through that. count <= SIGHT_POINTS.
+void airborne_flames(const Preview *preview, const Float3 *points, int count, Float3 light[SIGHT_POINTS],
+                     float clear[SIGHT_POINTS]);
+
 /// Adds to the veil around a pixel what is spread over a soft disc: `light` and `depth` times pixels^2.
 void airborne_dot(Preview *preview, const float at[2], float radius, Float3 light, float depth);
 

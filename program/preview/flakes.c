@@ -11,7 +11,8 @@
 // both about an axis that itself turns slowly. f follows from f d / w, which differs little between plates.
 //
 // It is a scrap of burnt paper (shade_ash.c), bent and creased, and each part is lit by its own slope. It is drawn as soft
-// dots, one for each of its points, at several moments while the shutter is open.
+// dots, one for each of its points, at several moments while the shutter is open. The veil that it is drawn into lies over
+// all flames: so each dot has the light of those before it, and of its own what passes them.
 
 #include "preview/airborne.h"
 #include "preview/ground.h"
@@ -35,11 +36,23 @@ enum {
 #define FLAKE_AIR_DENSITY 1.2f
 #define FLAKE_COLD 600.0f ///< K: nothing of it glows
 #define FLAKE_BENT 1.4f   ///< factor on the bend of a scrap that lies on the ground
+#define FLAKE_AMID \
+    1000.0f ///< K, of a flake in a flame: it is thin, and takes the gas's heat within a twentieth of a second
+#define FLAKE_AMID_WIDE 0.004f ///< m from the flame's edge to either side, over which it is heated
 
 /// Light that reaches a flake along each axis and against it: what a white surface reflects that faces that way.
 typedef struct FlakeLight {
     Float3 from[6];
 } FlakeLight;
+
+/// Fire around a flake.
+typedef struct FlakeFire {
+    Float3 light[SIGHT_POINTS]; ///< of flames before it, at BEFORE x BEFORE places of its plate
+    float clear[SIGHT_POINTS];  ///< what passes these
+    float amid;                 ///< 0 outside of all flames to 1 within one
+} FlakeFire;
+
+enum { BEFORE = 4 }; ///< squared it is SIGHT_POINTS: they are asked at once
 
 /// A flake's flight.
 typedef struct Flake {
@@ -89,9 +102,44 @@ static float flake_height(const Scrap *scrap, float u, float v) {
     return FLAKE_BENT * (scrap_height(scrap, u, v) - 0.14f);
 }
 
+/// Where a point of the plate is, u along it and v across it from -1 to 1.
+static Float3 plate_point(const Plate *plate, float u, float v) {
+    return float3_mad(float3_mad(plate->centre, plate->along, u), plate->across, v);
+}
+
+static FlakeFire flake_fire(const Preview *preview, const Plate *plate) {
+    const Fire *fire = &preview->fire;
+    FlakeFire around = {.amid = 0};
+    Float3 points[SIGHT_POINTS];
+    for (int k = 0; k < BEFORE * BEFORE; k++)
+        points[k] =
+            plate_point(plate, 2 * (float)(k % BEFORE) / (BEFORE - 1) - 1, 2 * (float)(k / BEFORE) / (BEFORE - 1) - 1);
+    airborne_flames(preview, points, BEFORE * BEFORE, around.light, around.clear);
+    if (!fire->visible) return around;
+
+    FirePlaces places = {{0}, {0}, {0}, {0}};
+    FirePoints found;
+    fire_place(&places, 0, plate->centre, 0);
+    fire->look(fire, 1, &places, &found);
+    around.amid = stepf(-FLAKE_AMID_WIDE, FLAKE_AMID_WIDE, found.depth[0]);
+    return around;
+}
+
+/// What a dot at (u, v) of the plate shows of its light: flames are before it.
+static Float3 flake_behind(const FlakeFire *around, float u, float v, Float3 light) {
+    const float x = 0.5f * (u + 1) * (BEFORE - 1), y = 0.5f * (v + 1) * (BEFORE - 1);
+    const int i = (int)clampf(x, 0, BEFORE - 2), j = (int)clampf(y, 0, BEFORE - 2), k = BEFORE * j + i;
+    const float s = x - (float)i, t = y - (float)j;
+    const Float3 before = float3_mix(float3_mix(around->light[k], around->light[k + 1], s),
+                                     float3_mix(around->light[k + BEFORE], around->light[k + BEFORE + 1], s), t);
+    const float clear = mixf(mixf(around->clear[k], around->clear[k + 1], s),
+                             mixf(around->clear[k + BEFORE], around->clear[k + BEFORE + 1], s), t);
+    return float3_mad(before, light, clear);
+}
+
 /// Draws the flake at an age, for a `share` of the exposure. `apart`: pixels that it moves between two such moments.
-static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *lit, float age, float share,
-                       float apart) {
+static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *lit, const FlakeFire *around, float age,
+                       float share, float apart) {
     const Plate plate = flake_at(flake, age);
     const Scrap scrap = scrap_make(flake->seed);
     const Float3 to = float3_unit_or(float3_sub(preview->camera.eye, plate.centre), plate.normal);
@@ -102,7 +150,8 @@ static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *l
     const float spacing = wide / (float)across, blur = camera_blur(&preview->camera, depth);
     const float least = maxf(blur, 1.6f * apart); // pixels, of a dot
     const float cover = FLAKE_DEPTH * share * flake->narrow * spacing * spacing;
-    const float heat = FLAKE_COLD + (flake->hot - FLAKE_COLD) * expf(-3.2f * age / flake->life);
+    const float heat = maxf(FLAKE_COLD + (flake->hot - FLAKE_COLD) * expf(-3.2f * age / flake->life),
+                            mixf(FLAKE_COLD, FLAKE_AMID, around->amid));
 
     for (int j = 0; j < across; j++)
         for (int i = 0; i < across; i++) {
@@ -131,14 +180,14 @@ static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *l
                         pale = clampf(0.85f * flake->ash + 0.4f * rim + 0.32f * patch, 0, 1);
             const float albedo = mixf(0.026f, 0.36f, pale * pale);
             const float alive = stepf(0.05f, 0.5f, noise2(3 * u + 1, 3 * v + 1, seed + 2) + 0.3f * patch);
-            const float glows = rim * alive * stepf(FLAKE_COLD, 900, heat);
+            const float glows = maxf(rim * alive, around->amid * mixf(0.5f, 1, rim)) * stepf(FLAKE_COLD, 900, heat);
             Float3 light = float3_scale(lit->from[normal.x < 0], albedo * normal.x * normal.x);
             light = float3_mad(light, lit->from[2 + (normal.y < 0)], albedo * normal.y * normal.y);
             light = float3_mad(light, lit->from[4 + (normal.z < 0)], albedo * normal.z * normal.z);
             light = float3_mad(light, blackbody_glow(preview->blackbody, heat + 120 * rim), EMBER_GAIN * glows);
 
-            Float3 point = float3_mad(float3_mad(plate.centre, plate.along, u), plate.across, v);
-            point = float3_mad(point, plate.normal, flake->size * high);
+            light = flake_behind(around, u, v, light);
+            const Float3 point = float3_mad(plate_point(&plate, u, v), plate.normal, flake->size * high);
             if (!airborne_project(preview, point, at, &depth)) return;
             airborne_dot(preview, at, radius, float3_scale(light, seen * hides), seen * hides);
         }
@@ -178,7 +227,9 @@ static void flake_draw(Preview *preview, const Flake *flake, float begin, float 
     if (!airborne_project(preview, points[SIGHT_POINTS - 1], last, &depth)) return;
     airborne_sight(preview, points, SIGHT_POINTS, clear);
 
-    const FlakeLight lit = flake_light(preview, flake_at(flake, 0.5f * (begin + end)).centre);
+    const Plate middle = flake_at(flake, 0.5f * (begin + end));
+    const FlakeLight lit = flake_light(preview, middle.centre);
+    const FlakeFire around = flake_fire(preview, &middle);
     const float way = hypotf(last[0] - first[0], last[1] - first[1]);
     const float turned = flake->often * (end - begin) * flake->size / (preview->camera.pixel * depth);
     const int moments = (int)clampf(1 + way + turned, 1, MOMENT_LIMIT);
@@ -186,8 +237,8 @@ static void flake_draw(Preview *preview, const Flake *flake, float begin, float 
         const float part = ((float)k + 0.5f) / (float)moments, age = mixf(begin, end, part);
         const float left = 1 - stepf(0.75f, 1, age / flake->life), open = clear[(int)(part * SIGHT_POINTS)];
         if (open * left > 0)
-            plate_draw(preview, flake, &lit, age, 6 * part * (1 - part) * strength * open * left / (float)moments,
-                       way / (float)moments);
+            plate_draw(preview, flake, &lit, &around, age,
+                       6 * part * (1 - part) * strength * open * left / (float)moments, way / (float)moments);
     }
 }
 

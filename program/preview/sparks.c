@@ -13,17 +13,20 @@
 
 #include "preview/airborne.h"
 
-enum { SPARKS_A_SLOT = 6 }; ///< at most, from a site in a slot
-#define SPARK_CELL 0.012f   ///< m, of the sites
-#define SLOT 0.05f          ///< s
-#define LIFE 1.05f          ///< s, the longest
-#define LAG 0.09f           ///< s
-#define CURL 0.0016f        ///< m, the widest
-#define SWIRL 0.034f        ///< m between eddies of the plume
-#define SWIRL_RISE 0.28f    ///< m/s, slower than sparks, which pass them
-#define SWIRL_WIDE 0.009f   ///< m that they carry a spark sideways, at most
-#define TAIL_COLD 0.22f     ///< by which share what it leaves behind is colder
-#define SPARK_COLD 900.0f   ///< K
+enum {
+    SPARKS_A_SLOT = 6, ///< at most, from a site in a slot
+    VEILED = 4,        ///< points of a way where it is known how much of it passes flames
+};
+#define SPARK_CELL 0.012f ///< m, of the sites
+#define SLOT 0.05f        ///< s
+#define LIFE 1.05f        ///< s, the longest
+#define LAG 0.09f         ///< s
+#define CURL 0.0016f      ///< m, the widest
+#define SWIRL 0.034f      ///< m between eddies of the plume
+#define SWIRL_RISE 0.28f  ///< m/s, slower than sparks, which pass them
+#define SWIRL_WIDE 0.009f ///< m that they carry a spark sideways, at most
+#define TAIL_COLD 0.22f   ///< by which share what it leaves behind is colder
+#define SPARK_COLD 900.0f ///< K
 #define COOLING 3.8f
 #define PULL 0.75f              ///< of the way to the middle of the fire that the air takes them
 #define PULL_TIME 0.4f          ///< s
@@ -84,6 +87,13 @@ static void spark_draw(Preview *preview, const Spark *spark, float begin, float 
         memcpy(last, at, sizeof last);
     }
     airborne_sight(preview, points, SIGHT_POINTS, seen);
+
+    // most ways are short: few of their points are asked for what of it passes flames
+    Float3 few[VEILED], flames[SIGHT_POINTS];
+    float clear[SIGHT_POINTS];
+    for (int k = 0; k < VEILED; k++) few[k] = points[(2 * k + 1) * SIGHT_POINTS / (2 * VEILED)];
+    airborne_flames(preview, few, VEILED, flames, clear);
+    for (int i = 0; i < SIGHT_POINTS; i++) seen[i] *= clear[i * VEILED / SIGHT_POINTS];
 
     // the last part of a way that is too long: it would be a comet
     const float most = maxf(STREAK_MOST * (float)preview->def.height, STREAK_SHORT);

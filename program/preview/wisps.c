@@ -275,10 +275,14 @@ void wisps_draw(Preview *preview) {
         wisp.strength /= 1 + STRONG * wisp.strength;
         if (wisp.strength <= 0.01f) continue;
         wisp_follow(&preview->fire, &wisp);
-        float lit = 0;
+        float lit = 0, clear[SIGHT_POINTS];
+        Float3 places[LIGHTS], flames[SIGHT_POINTS];
+        for (int k = 0; k < LIGHTS; k++) places[k] = wisp_at(&wisp, age_of(k, LIGHTS), 0);
+        airborne_flames(preview, places, LIGHTS, flames, clear);
         for (int k = 0; k < LIGHTS; k++) {
-            wisp.light[k] = smoke_light(preview, wisp_at(&wisp, age_of(k, LIGHTS), 0));
+            wisp.light[k] = smoke_light(preview, places[k]);
             if (k <= LIGHTS / 2) lit = maxf(lit, float3_luminance(wisp.light[k]));
+            wisp.light[k] = float3_mad(float3_scale(flames[k], AHEAD), wisp.light[k], clear[k]);
         }
         const float amid = stepf(AMID / 3, AMID, lit);
         wisp.strength *= 1 - 0.85f * amid;

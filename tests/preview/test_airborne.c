@@ -240,6 +240,33 @@ TEST(flakes_have_a_form) {
     assert_true(pixels > 100 && differs > 0.4f * light); // 0.31
 }
 
+/// Flames hide the flakes behind and among them, which glow there; drawn over all flames they were black specks. How much of
+/// the light of flames is lost where flakes are, by how much of that they hide without flames.
+TEST(flames_hide_the_flakes_among_them) {
+    enum { FRAMES = 24 };
+    static float flakes[W * H][4], flames[W * H][4], both[W * H][4];
+    static Burning paper;
+    static Line line;
+    float lost = 0, hidden = 0;
+    line_make(&line, 0);
+    for (int k = 0; k < FRAMES; k++) {
+        PreviewDef def = embers_make(&paper);
+        def.sparks = 0, def.flakes = 30, def.shutter = 0;
+        draw_layers(&def, &paper.surface, NULL, k / 6.0, &(PreviewLayers){.fire = flakes});
+        draw_layers(&def, &paper.surface, &line.gas, k / 6.0, &(PreviewLayers){.fire = both});
+        def.flakes = 0;
+        draw_layers(&def, &paper.surface, &line.gas, k / 6.0, &(PreviewLayers){.fire = flames});
+        for (int i = 0; i < W * (H - 10); i++) {
+            if (flames[i][3] < 0.8f) continue;
+            hidden += flakes[i][3] * luminance(flames[i]);
+            lost += luminance(flames[i]) - luminance(both[i]);
+        }
+    }
+    print_message("flakes hide flames as bright as %.2f pixels, and take %.2f of that\n", (double)hidden,
+                  (double)(lost / hidden));
+    assert_true(hidden > 10 && lost < 0.2f * hidden); // 0.47
+}
+
 /// Of many sparks most are faint, and few give most of the light. Sparks that were alike looked like dashes.
 TEST(sparks_differ) {
     enum { FRAMES = 24 };
