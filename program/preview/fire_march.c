@@ -7,11 +7,11 @@
 
 #include <string.h>
 
-#define FIRE_SHORT 0.18f ///< step near an edge, relative to the usual one: .35 leaves ribs in thin sheets
-#define FIRE_LEAP 0.3f   ///< of the way to an edge, that a step outside of it may go: the depth is not quite a distance
-#define FIRE_NOTED 0.8f  ///< of the usual step, which what is noted is longer than
-#define FIRE_NEAR 5.0f   ///< short steps from an edge, in usual ones: with 2, arcs are seen inside of tongues
-#define FIRE_JUMP 0.5f   ///< of a step: by more the depth changes only near edges that eddies have bent
+// of the usual step, in flames: .35 leaves ribs in thin sheets, and longer ones deep inside draw contours of distance where
+// eddies fold edges of their own
+#define FIRE_SHORT 0.21f
+#define FIRE_LEAP 0.3f  ///< of the way to an edge, that a step outside of it may go: the depth is not quite a distance
+#define FIRE_NOTED 0.8f ///< of the usual step, which what is noted is longer than
 #define SMOKE_APART 0.005f ///< m, between rays that have smoke
 #define SMOKE_STEP 0.010f  ///< m, distance at most between the places of a ray where its smoke is looked up
 #define FIRE_SOFT 6.0f     ///< pixels, over which the edges of flames begin: rays are two apart, depths rough
@@ -163,9 +163,9 @@ typedef struct March {
     Float3 light;
     int in_brick, what; ///< seen in the brick, and from here
     int run;            ///< of the guide, the next
-    bool dark;          ///< long steps until there is flame, longer far from it, and short ones at its edges
+    bool dark;          ///< long steps until there is flame, longer far from it
     bool known;         ///< whether `here` is the point at t
-    bool seek, edge;    ///< the step looks for flames, or is near their edges
+    bool seek;          ///< the step looks for flames
     bool leaps;         ///< it is longer than such steps are
     bool guided;        ///< else flames may be everywhere
     FirePoint ends[2];  ///< of the step
@@ -239,9 +239,8 @@ static void march_plan(March *march) {
     const float t = march->t, fine = march->fine, depth = march->ends[march->here].depth;
     march->seek = march->dark && flame;
     const float away = depth > FIRE_OUTSIDE ? 2 * march->usual : 3 * march->usual;
-    march->edge = t < march->again || fabsf(depth) < FIRE_NEAR * fine;
-    float length = march->dark ? away : march->edge ? FIRE_SHORT * fine : fine;
-    const bool may_leap = flame && march->edge && !march->dark && t >= march->again;
+    float length = march->dark ? away : FIRE_SHORT * fine;
+    const bool may_leap = flame && !march->dark && t >= march->again;
     const float times = may_leap ? steps_to_edge(depth, FIRE_SHORT * fine) : 1;
     march->leaps = times > 1;
     length *= times;
@@ -252,13 +251,7 @@ static void march_plan(March *march) {
 /// Takes the step, whose other end is known, or the same distance again in short steps.
 static void march_step(March *march) {
     const FirePoint *here = &march->ends[march->here], *there = &march->ends[!march->here];
-    const bool flame = march->what & FIRE_FLAME;
     const float step = march->next - march->t, fine = march->fine;
-    const bool jumps = fabsf(there->depth - here->depth) > FIRE_JUMP * step && there->depth < FIRE_NEAR * fine;
-    if (flame && !march->dark && !march->edge && jumps) {
-        march->again = march->next; // else the long ones of rays side by side are bars
-        return;
-    }
     if (march->leaps && there->depth > -FIRE_SHORT * fine) {
         march->again = march->next;
         return;
