@@ -34,11 +34,10 @@ enum {
 #define FLAKES_CROWD 0.25f    ///< m of glowing line above which flakes become rarer
 #define FLAKE_DEPTH 3.2f      ///< optical depth across: 0.96 of what is behind is hidden
 #define FLAKE_AIR_DENSITY 1.2f
-#define FLAKE_COLD 600.0f ///< K: nothing of it glows
-#define FLAKE_BENT 1.4f   ///< factor on the bend of a scrap that lies on the ground
-#define FLAKE_AMID \
-    1000.0f ///< K, of a flake in a flame: it is thin, and takes the gas's heat within a twentieth of a second
-#define FLAKE_AMID_WIDE 0.004f ///< m from the flame's edge to either side, over which it is heated
+#define FLAKE_COLD 600.0f      ///< K: nothing of it glows
+#define FLAKE_BENT 1.4f        ///< factor on the bend of a scrap that lies on the ground
+#define FLAKE_AMID 950.0f      ///< K, of a flake in a flame: so thin, it takes the heat of the gas at once
+#define FLAKE_AMID_WIDE 0.004f ///< m to either side of the flame's edge, over which it is heated
 
 /// Light that reaches a flake along each axis and against it: what a white surface reflects that faces that way.
 typedef struct FlakeLight {
@@ -180,7 +179,7 @@ static void plate_draw(Preview *preview, const Flake *flake, const FlakeLight *l
                         pale = clampf(0.85f * flake->ash + 0.4f * rim + 0.32f * patch, 0, 1);
             const float albedo = mixf(0.026f, 0.36f, pale * pale);
             const float alive = stepf(0.05f, 0.5f, noise2(3 * u + 1, 3 * v + 1, seed + 2) + 0.3f * patch);
-            const float glows = maxf(rim * alive, around->amid * mixf(0.5f, 1, rim)) * stepf(FLAKE_COLD, 900, heat);
+            const float glows = alive * maxf(rim, around->amid * mixf(0.15f, 1, rim)) * stepf(FLAKE_COLD, 900, heat);
             Float3 light = float3_scale(lit->from[normal.x < 0], albedo * normal.x * normal.x);
             light = float3_mad(light, lit->from[2 + (normal.y < 0)], albedo * normal.y * normal.y);
             light = float3_mad(light, lit->from[4 + (normal.z < 0)], albedo * normal.z * normal.z);
