@@ -2,7 +2,7 @@
 """Makes examples/burning-torus/torus.obj, which the repository contains: a torus of crumpled paper around the z axis, of
 quads, in metres.
 
-Each half of the ring has its own chart of uv: v goes around the hole, u around the tube from a cut on the inside. Paper that
+Each half of the ring has a chart of uv: v goes around the hole, u around the tube from a cut on the inside. Paper that
 has been crumpled is cones between ridges: so is the distance to the nearest of some points on the torus, which moves the
 surface inwards for some points and outwards for others, in two sizes. Around the hole, where a tube of paper that is
 bent to a ring has too much length, it lies in pleats.
@@ -20,6 +20,7 @@ RING, TUBE = 0.10, 0.040  # radii, m
 # points of the cones, their slope, and whether they are dents (-1) or bumps
 CONES = ((36, 0.30, -1), (28, 0.16, 1), (140, 0.50, -1), (100, 0.40, 1))
 PLEATS, PLEAT = 30, 0.0045  # around the hole, and how deep, m
+CUT = 0.275  # around the hole, where a chart begins: the lit places have text, as a dark photograph looks burnt
 UNEVEN = 0.06  # by which share the tube is wider and narrower around the ring
 
 
@@ -70,13 +71,14 @@ def lines(n, m, crumpled):
             moved = (crumpled.out(i / n, j / m), crumpled.tube(i / n)) if crumpled else ()
             yield "v %.6f %.6f %.6f" % place(i / n, j / m, *moved)
     half = n // 2  # both halves have the same uv, all of the picture
+    first = round(CUT * n)
     for j in range(m + 1):
         for i in range(half + 1):
             yield "vt %.6f %.6f" % (j / m, i / half)
     for j in range(m):
         for i in range(n):
             corners = ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1))
-            uv = ((y * (half + 1) + x - i + i % half + 1) for x, y in corners)
+            uv = ((y * (half + 1) + x - i + (i - first) % half + 1) for x, y in corners)
             yield "f " + " ".join("%d/%d" % (y % m * n + x % n + 1, k) for (x, y), k in zip(corners, uv))
 
 
