@@ -14,9 +14,9 @@
 #include "preview/shape_look.h"
 
 #define FRAY 15.0f       ///< threads, depth to which a burnt edge loses them
-#define REACH 22.0f      ///< threads, to which the longest stand out at it
+#define REACH 28.0f      ///< threads, to which the longest stand out at it
 #define STRANDS 11.0f    ///< threads from strand to strand
-#define STRAND 1.2f      ///< threads, half of its width
+#define STRAND 1.0f      ///< threads, half of its width
 #define WORN 0.58f       ///< damage at which char has a hole
 #define HOLE_SLOPE 30.0f ///< threads from there to where it is 1 more
 #define CLOSED 0.5f      ///< half a thread's width over the pitch, of whole cloth
@@ -28,6 +28,8 @@
 #define CREASE_STEEP 0.44f ///< slope of their sides
 #define CREASE_MOST 0.60f  ///< slope that none reaches where they cross
 #define CREASE_LONG 3.2f   ///< their length over their width
+#define CREASE_FLAT 0.75f  ///< how much flatter the largest are where cloth lies
+#define CREASE_LAIN 0.5f   ///< of that, the part of the smallest
 #define FUZZ_WRAP 0.35f    ///< cosine by which light goes around what is round, by its fibres
 #define FUZZ_MOST 0.42f    ///< share of fibres that stand out in what is seen, where cloth turns away
 
@@ -127,12 +129,14 @@ static float noise2_slope(float x, float y, uint32_t seed, float slope[2]) {
 }
 
 /// Creases lie where noise, long in an oblique direction, changes sign. The largest are round: sharp ones make
-/// facets, as of paper.
-static Creases cloth_creases(const Weave *weave, const PaperState *state, float footprint) {
+/// facets, as of paper. Where cloth lies its weight flattens them: slopes as of what hangs were blotches beside a low fire.
+static Creases cloth_creases(const Weave *weave, const PaperState *state, const Point *point) {
     static const float direction[6][2] = {{0.940f, 0.342f},  {0.766f, -0.643f}, {0.574f, 0.819f},
                                           {0.906f, -0.423f}, {0.259f, 0.966f},  {0.643f, 0.766f}};
     const float x = state->uv[0] * weave->threads[0] * weave->pitch,
                 y = state->uv[1] * weave->threads[1] * weave->pitch;
+    const float footprint = point->footprint / maxf(float3_dot(point->geometric, point->view), 0.2f);
+    const float lies = stepf(0.4f, 0.9f, fabsf(point->geometric.z));
     const float bow = 0.35f * CREASE_WIDE * noise2(x / 0.06f, y / 0.06f, 241);
     const float patch = stepf(-0.7f, 0.5f, noise2(x / 0.13f + 3.7f, y / 0.13f, 242));
     Creases creases = {.height = 0};
@@ -144,7 +148,8 @@ static Creases cloth_creases(const Weave *weave, const PaperState *state, float 
         float slope[2];
         const float n = noise2_slope(c * px + s * py, (c * py - s * px) / CREASE_LONG, 243 + k, slope);
         const float sharp = sqrtf(n * n + 0.015f + 0.09f * size / CREASE_WIDE),
-                    steep = shown * weight * mixf(0.35f, 1, patch);
+                    steep = shown * weight * mixf(0.35f, 1, patch) *
+                            (1 - lies * mixf(CREASE_LAIN, 1, size / CREASE_WIDE) * CREASE_FLAT);
         const float fall = -steep * CREASE_STEEP * n / sharp; // of the ridge, over the slope of the noise
         slope[1] /= CREASE_LONG;
         creases.height += steep * 0.5f * (0.45f - 1.3f * sharp);
@@ -268,8 +273,7 @@ float cloth_shade(const Weave *weave, const PaperState *state, const Cloth *clot
         if (coarse > 0) slub += coarse * 0.02f * noise2(0.19f * at, 0.04f * along, 93 + (uint32_t)k);
     }
 
-    const float facing = maxf(float3_dot(point->geometric, point->view), 0.2f);
-    const Creases creases = cloth_creases(weave, state, point->footprint / facing);
+    const Creases creases = cloth_creases(weave, state, point);
     const float whole = 1 - cloth->burnt, side = point->back ? whole : -whole;
     // what the fibres hide is by the cloth as it hangs: sides of creases were pale streaks across its print
     const float away = 1 - maxf(float3_dot(point->normal, point->view), 0);
@@ -299,8 +303,7 @@ float cloth_scorch(const Weave *weave, const PaperState *state, Point *point) {
     float uneven = 0.8f * oblique(at, 90, wide, 211) + 0.5f * oblique(at, 30, wide, 212);
     for (int k = 0; k < 2; k++)
         uneven += 0.45f * resolved(4, wide) * noise2(at[k] / 4, at[1 - k] / 60, 213 + (uint32_t)k);
-    const float facing = maxf(float3_dot(point->geometric, point->view), 0.2f);
-    const float height = cloth_creases(weave, state, point->footprint / facing).height;
+    const float height = cloth_creases(weave, state, point).height;
     uneven += 1.1f * (point->back ? -height : height);
     const float by_heat = (logf(above / SCORCH_FIRST) + uneven) / logf(SCORCH_LAST / SCORCH_FIRST);
     const float scorch = 1 - (1 - SCORCH_MOST * powf(clampf(by_heat, 0, 1), 0.8f)) * expf(-4 * maxf(state->burn, 0));
