@@ -11,6 +11,7 @@ typedef struct LayerSum {
     Float3 facing; ///< of the first sample's face
     float fire_hides, temperature, burn, depth;
     int hits, samples;
+    int behind; ///< how many more samples of other faces lie behind the first one than before it
     bool mixed; ///< they met several sheets, or one at distances that differ, or a blurred crease
     int32_t sheet, piece;
     PreviewMatte mattes[PREVIEW_MATTES]; ///< their shares are numbers of samples

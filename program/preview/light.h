@@ -55,6 +55,7 @@ typedef struct Lit {
     float noise;             ///< variance of the mean of the samples, as l / (1 + l)
     float blur;              ///< pixels over which lens and shutter spread what is seen here
     float burnt;             ///< share of the samples that is char
+    bool before;             ///< of a pixel of several faces, whether the first lies before the others
     int32_t sheet;
 } Lit;
 

@@ -55,6 +55,7 @@ static bool add_to_layers(const Preview *preview, Block *block, int lane, Float3
     // a pixel that lens and shutter spread over a crease has many faces, too
     if (other || (!first && block->spread > 1 && float3_dot(point->geometric, sum->facing) < SAME_FACING))
         sum->mixed = true;
+    if (other) sum->behind += depth > sum->depth ? 1 : -1;
     if (first) {
         sum->facing = point->geometric;
         sum->depth = depth;

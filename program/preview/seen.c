@@ -21,6 +21,7 @@ void seen_write(const Preview *preview, size_t pixel, const Block *block, int la
     if (mixed) {
         lit.distance = -sum->depth / float3_dot(block->direction[lane], preview->camera.forward);
         lit.sheet = sum->sheet;
+        lit.before = sum->behind > 0;
     }
     const float count = (float)samples, mean = block->shown[lane] / count;
     lit.noise = samples > 1 ? maxf(block->squares[lane] / count - mean * mean, 0) / (count - 1) : 0;
@@ -100,9 +101,9 @@ static Float3 light_of_faces(const Preview *preview, const Lit *lit, int x, int 
             }
         }
 
-    // of two faces the one behind lies in the gap
-    const float first = gap_at(preview, x, y, lit);
-    const float gap[FACES] = {first, gap_at(preview, x, y, &(Lit){.distance = INFINITY}) - first};
+    // of two faces the one behind lies in the gap, and char in front of it does not
+    const float first = gap_at(preview, x, y, lit), behind = gap_at(preview, x, y, &(Lit){.distance = INFINITY});
+    const float gap[FACES] = {lit->before && lit->burnt > 0 ? 0 : first, lit->before ? behind : 0};
     Float3 colour = {0, 0, 0};
     for (int k = 0; k < LIT_KINDS; k++) {
         const Float3 light[FACES] = {float3_sub(lit->light[k], lit->other[k]), lit->other[k]};

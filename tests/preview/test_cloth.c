@@ -235,6 +235,7 @@ static void char_make(float burn) {
     for (uint32_t i = 0; i < GRID; i++) {
         const float u = (float)(i % SIDE) / (SIDE - 1), v = (float)(i / SIDE) / (SIDE - 1);
         burnt.position[i][0] = 0.21f * (u - 0.5f), burnt.position[i][1] = 0.297f * (v - 0.5f);
+        burnt.position[i][2] = 0;
         burnt.normal[i][2] = 1, burnt.uv[i][0] = u, burnt.uv[i][1] = v;
         burnt.temperature[i] = 293, burnt.peak[i] = 900, burnt.burn[i] = burn;
         if (i % SIDE == SIDE - 1 || i / SIDE == SIDE - 1) continue;
@@ -398,6 +399,40 @@ TEST(what_lies_behind_char_is_dim) {
     const float fresh = seen_through(0), burnt_sheet = seen_through(0.7f);
     print_message("through a hole in char a table has %.2f of its light\n", (double)(burnt_sheet / fresh));
     assert_true(burnt_sheet < 0.7f * fresh && burnt_sheet > 0.2f * fresh); // 1.0 with no gaps
+}
+
+/// What is seen at the rim of a hole is as dim as what is seen through its middle, also where the char around it is itself seen
+/// through a larger one, 3 cm before it: the light of what is no char, over that of the middle.
+TEST(holes_behind_holes_have_no_bright_rims) {
+    static float beauty[SEEN * SEEN][3];
+    char_make(0.7f);
+    uint32_t kept = 0;
+    for (uint32_t t = 0; t < burnt.surface.triangle_count; t++) {
+        const float *corner = burnt.position[burnt.triangles[t][0]];
+        if (hypotf(corner[0], corner[1]) > 0.014f)
+            memmove(burnt.triangles[kept++], burnt.triangles[t], sizeof *burnt.triangles);
+    }
+    burnt.surface.triangle_count = kept;
+    for (int i = 0; i < GRID; i++)
+        if (hypotf(burnt.position[i][0], burnt.position[i][1]) < 0.032f) burnt.position[i][2] = -0.03f;
+    PreviewDef def = above();
+    def.width = def.height = SEEN, def.samples = 16, def.camera.fov = 0.376f, def.ground_height = -0.5f;
+    def.ground = PREVIEW_GROUND_PLAIN;
+    const float beside[3] = {1, 0, 0.4f}; // the sun shines on the ground beside the sheet
+    memcpy(def.sun_direction, beside, sizeof beside);
+    draw_layers(&def, &burnt.surface, NULL, 30, &(PreviewLayers){.beauty = beauty, .coverage = seen});
+    float middle = 0, rim = 0, count = 0;
+    for (int k = -3; k <= 3; k++) middle += beauty[SEEN / 2 * SEEN + SEEN / 2 + k][1] / 7;
+    for (int y = -8; y < 8; y++)
+        for (int x = 21; x < 28; x++) {
+            const int at = (SEEN / 2 + y) * SEEN + SEEN / 2 + x;
+            if (!(seen[at] > 0 && seen[at] < 0.6f)) continue;
+            rim += beauty[at][1], count += 1 - seen[at];
+        }
+    rim /= count;
+    print_message("%.1f pixels of its rim show %.2f of the light in the middle of the hole\n", (double)count,
+                  (double)(rim / middle));
+    assert_true(count > 5 && rim < 1.28f * middle); // 1.42
 }
 
 /// The depth of burnt cloth that lies at 0, seen from above, as its root mean square in mm; returns the pixels that show it.
