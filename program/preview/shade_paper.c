@@ -100,7 +100,8 @@ static void tilt(Float3 position, float millimetres, float height, bool folded, 
     if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
 }
 
-#define BAY 0.0055f ///< m, depth of the deepest bay of a burnt border
+#define FIBRE_WAVES 0.007f ///< m, height of the waves in which fibres lie
+#define BAY 0.0055f        ///< m, depth of the deepest bay of a burnt border
 
 // ---- ash
 
@@ -139,11 +140,11 @@ static float near_border(const PaperState *state, const Bent *bent, float width)
     return minf(1, 5 * state->rim) * (1 - stepf(0.1f * width, width * maxf(uneven, 0.2f), distance));
 }
 
-/// Along the fibres of ash and across them, whose direction wanders over the sheet.
-static Float3 ash_along(const Bent *bent) {
-    Float3 p = float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 0.45e-3f);
-    const float wander = 2.4f * noise3(float3_scale(p, 70), 11), c = cosf(wander), s = sinf(wander);
-    return float3(0.14f * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
+/// Along the fibres of a sheet and across them. They lie as they were made, along it, but in waves: turned by an angle that
+/// varies they ran in rings, as of wood.
+static Float3 fibres_along(Float3 position, float stretch, uint32_t seed) {
+    const Float3 p = position;
+    return float3(stretch * p.x, p.y + FIBRE_WAVES * noise3(float3_scale(p, 70), seed), p.z);
 }
 
 /// How far cold char has turned to ash, `cloud` its patches, `strand` and `fibre` its threads: from black at 0 over dark grey to
@@ -154,7 +155,8 @@ static float ash_on_char(const PaperState *state, const Bent *bent, float cloud,
     if (cold <= 0) return 0;
     const float border = 1e3f * border_distance(state, bent); // mm
     const float threads = 0.5f * strand + 0.3f * (fibre - 0.4f), wide = maxf(0.9f + 1.6f * cloud, 0.35f);
-    const float fringe = stepf(0, 5, state->age + 2 * cloud) * minf(1, 1.15f * expf(-border / wide) * (1 + threads));
+    const float fringe = stepf(0, 5, state->age + 2 * cloud) * stepf(-0.9f, 0, cloud + 0.4f * threads) *
+                         minf(1, 1.15f * expf(-border / wide) * (1 + threads));
     const float skin =
         0.75f * stepf(0.53f, 0.62f, bent->burn) * stepf(2, 9, state->age) * stepf(-0.1f, 1.25f, cloud + 0.9f * threads);
     return cold * clampf(maxf(fringe, skin), 0, 1);
@@ -168,7 +170,8 @@ static float ash_lace(const Bent *bent, float footprint) {
 static void ash_shade(const PaperState *state, const Bent *bent, float ink, Point *point) {
     const float size = point->footprint;
     if (bent->burn < PAPER_WHOLE) return;
-    Float3 along = ash_along(bent);
+    Float3 along =
+        fibres_along(float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 0.45e-3f), 0.14f, 11);
     const float cloud = 1.2f * paper_noise(bent->position, 12, size, 19), strand = paper_noise(along, 1.5f, size, 20);
     const float fibre = clampf(1.6f - size * 1400, 0, 1) * ridge(noise3(float3_scale(along, 2100), 12), 0.5f);
     const float plate = ash_on_char(state, bent, cloud, strand, fibre);
@@ -323,10 +326,8 @@ static Float3 leaf_glow(const Preview *preview, const PaperState *state, const B
     const float activity = alone + starved;
     if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
 
-    // threads .4 mm wide and some millimetres long, whose direction wanders over the sheet
-    Float3 p = bent->position;
-    const float wander = 1.7f * noise3(float3_scale(p, 70), 65), c = cosf(wander), s = sinf(wander);
-    const float fibre = paper_noise(float3(0.25f * (c * p.x + s * p.y), c * p.y - s * p.x, p.z), 0.5f, footprint, 66);
+    // threads .4 mm wide and some millimetres long
+    const float fibre = paper_noise(fibres_along(bent->position, 0.25f, 65), 0.5f, footprint, 66);
 
     const float t = seconds(preview);
     const float patch = noise3(float3_mad(float3(-0.3f * t, 0.2f * t, 0.4f * t), bent->position, 1 / 4.4e-3f), 62);
@@ -460,6 +461,13 @@ static void coat(float coating, const Bent *bent, Point *point) {
 /// of ink's minerals.
 #define DYE_LEFT 0.12f
 
+#define INK_LEAST 0.12f
+
+/// How much of print is left on char, INK_LEAST to 1: it fades and flakes off in patches.
+static float ink_kept(const Bent *bent) {
+    return mixf(INK_LEAST, 1, stepf(-0.5f, 0.35f, bent->bays + 0.6f * bent->coarse + 0.3f * bent->medium));
+}
+
 #define SHEEN 0.09f ///< of char, where it turns away from the eye
 
 /// Char: browner where it is thin, bluer where complete; print (1) remains readable on it, as a dull grey.
@@ -538,7 +546,7 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
 
     const float scorch = weave ? cloth_scorch(weave, state, point) : scorch_amount(state, &bent, point->footprint);
     float ink = 1 - clampf(float3_luminance(point->albedo), 0, 1);
-    const float print = (weave ? DYE_LEFT : 1) * stepf(0.3f, 0.75f, ink);
+    const float print = (weave ? DYE_LEFT : ink_kept(&bent)) * stepf(0.3f, 0.75f, ink);
     Float3 burnt = float3_mul(scorch_colour(scorch),
                               float3_mix(point->albedo, float3(0.80f, 0.80f, 0.80f), stepf(0.6f, 1.0f, scorch)));
     point->transmission *= 1 - stepf(0.1f, 0.7f, scorch);

@@ -692,6 +692,38 @@ TEST(ash_is_a_fringe_along_dead_borders) {
     assert_true(next < 0.8f * fringe);
 }
 
+/// How much the green of ash changes from pixel to pixel, over that from each to the tenth beside it, where its middle lay that
+/// far along both sides of its sheet.
+static float ash_grain(float place) {
+    static Plate plate;
+    static float rest[NODES][3];
+    static uint8_t picture[FINE_W * FINE_H * 3];
+    plate_make(&plate, 0.08f);
+    memcpy(rest, plate.position, sizeof rest);
+    for (int i = 0; i < NODES; i++)
+        rest[i][0] += place, rest[i][1] += place, plate.burn[i] = 0.64f, plate.peak[i] = 900;
+    plate.surface.rest_position = rest;
+    PreviewDef def = close_above(FINE_HIGH);
+    def.width = FINE_W, def.height = FINE_H;
+    Preview *preview = preview_open(&def);
+    assert_int_equal(preview_draw(preview, &plate.surface, 12, picture, NULL), SINGE_OK);
+    preview_destroy(preview);
+    float next = 0, tenth = 0;
+    for (int i = 10; i < FINE_W * FINE_H; i++) {
+        const float here = picture[3 * i + 1];
+        next += fabsf(here - (float)picture[3 * (i - 1) + 1]), tenth += fabsf(here - (float)picture[3 * (i - 10) + 1]);
+    }
+    return next / tenth;
+}
+
+/// Fibres of ash are as long and as wide all over a sheet. Where their direction wandered about its corner they were rings, as of
+/// wood, the narrower the farther they lay from it.
+TEST(ash_is_alike_all_over_a_sheet) {
+    const float near = ash_grain(0), far = ash_grain(0.3f);
+    print_message("ash changes from pixel to pixel by %.2f, 40 cm away by %.2f\n", (double)near, (double)far);
+    assert_true(near > 0.2f && far < 1.1f * near);
+}
+
 /// A leaf glows along its border, where air comes to it: yellow there, dull red some millimetres within, and hardly in its
 /// middle; and the border is dead in places, for more than a centimetre. An even mat of coals was lava.
 TEST(a_leaf_glows_along_its_border) {

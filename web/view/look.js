@@ -12,6 +12,7 @@ const float PAPER_WHOLE = 0.35;
 const float EMBER_WIDTH = 0.00042;
 const float EMBER_GAIN = 3.4;
 const float EMBER_MOST = 6.0;
+const float FIBRE_WAVES = 0.007;
 const float BAY = 0.0055;
 const float EMBER_HOT = 1180.0;
 const float LEAF_SPREAD = 1.35;
@@ -25,6 +26,7 @@ const float LEAF_DIM = 150.0;
 const float LEAF_CORE = 60.0;
 const float STARVED_COOLER = 90.0;
 const float STARVED_BORDER = 0.42;
+const float INK_LEAST = 0.12;
 const float SHEEN = 0.09;
 const float BLACKBODY_MIN = 780.0;
 struct PaperState { vec3 rest; float temperature; float peak; float burn; float burn_rate; float gradient; float heat_gradient; float rim; float spacing; float glowing; float starved; float age; float water; float edge; };
@@ -119,17 +121,17 @@ float near_border(PaperState state, Bent bent, float width) {
     float uneven = 1.0 + 0.5 * bent.coarse + 0.6 * bent.medium + 0.4 * bent.fine;
     return min(1.0, 5.0 * state.rim) * (1.0 - stepf(0.1 * width, width * max(uneven, 0.2), distance_));
 }
-vec3 ash_along(Bent bent) {
-    vec3 p = float3_mad(bent.position, vec3(bent.medium, bent.coarse, bent.fine), 0.45e-3);
-    float wander = 2.4 * noise3(float3_scale(p, 70.0), 11.0), c = cos(wander), s = sin(wander);
-    return vec3(0.14 * (c * p.x + s * p.y), c * p.y - s * p.x, p.z);
+vec3 fibres_along(vec3 position, float stretch, float seed) {
+    vec3 p = position;
+    return vec3(stretch * p.x, p.y + FIBRE_WAVES * noise3(float3_scale(p, 70.0), seed), p.z);
 }
 float ash_on_char(PaperState state, Bent bent, float cloud, float strand, float fibre) {
     float cold = stepf(PAPER_WHOLE, 0.5, bent.burn) * (1.0 - stepf(520.0, 760.0, bent.temperature));
     if (cold <= 0.0) return 0.0;
     float border = 1e3 * border_distance(state, bent);
     float threads = 0.5 * strand + 0.3 * (fibre - 0.4), wide = max(0.9 + 1.6 * cloud, 0.35);
-    float fringe = stepf(0.0, 5.0, state.age + 2.0 * cloud) * min(1.0, 1.15 * exp(-border / wide) * (1.0 + threads));
+    float fringe = stepf(0.0, 5.0, state.age + 2.0 * cloud) * stepf(-0.9, 0.0, cloud + 0.4 * threads) *
+                         min(1.0, 1.15 * exp(-border / wide) * (1.0 + threads));
     float skin =
         0.75 * stepf(0.53, 0.62, bent.burn) * stepf(2.0, 9.0, state.age) * stepf(-0.1, 1.25, cloud + 0.9 * threads);
     return cold * clamp(max(fringe, skin), 0.0, 1.0);
@@ -140,7 +142,8 @@ float ash_lace(Bent bent, float footprint) {
 void ash_shade(PaperState state, Bent bent, float ink, inout Point point) {
     float size = point.footprint;
     if (bent.burn < PAPER_WHOLE) return;
-    vec3 along = ash_along(bent);
+    vec3 along =
+        fibres_along(float3_mad(bent.position, vec3(bent.medium, bent.coarse, bent.fine), 0.45e-3), 0.14, 11.0);
     float cloud = 1.2 * paper_noise(bent.position, 12.0, size, 19.0), strand = paper_noise(along, 1.5, size, 20.0);
     float fibre = clamp(1.6 - size * 1400.0, 0.0, 1.0) * ridge(noise3(float3_scale(along, 2100.0), 12.0), 0.5);
     float plate = ash_on_char(state, bent, cloud, strand, fibre);
@@ -240,9 +243,7 @@ vec3 leaf_glow(PaperState state, Bent bent, float air, float footprint) {
     float alone = ember_activity(state.glowing), starved = ember_starved(state.starved, bent.burn, alone);
     float activity = alone + starved;
     if (activity < 0.02 || ember_temperature(state.temperature) < BLACKBODY_MIN) return vec3(0.0, 0.0, 0.0);
-    vec3 p = bent.position;
-    float wander = 1.7 * noise3(float3_scale(p, 70.0), 65.0), c = cos(wander), s = sin(wander);
-    float fibre = paper_noise(vec3(0.25 * (c * p.x + s * p.y), c * p.y - s * p.x, p.z), 0.5, footprint, 66.0);
+    float fibre = paper_noise(fibres_along(bent.position, 0.25, 65.0), 0.5, footprint, 66.0);
     float t = seconds();
     float patch_ = noise3(float3_mad(vec3(-0.3 * t, 0.2 * t, 0.4 * t), bent.position, 1.0 / 4.4e-3), 62.0);
     float alive = leaf_alive(state, bent, patch_) * (1.0 - LEAF_STARVES * starved);
@@ -294,6 +295,9 @@ float scorch_amount(PaperState state, Bent bent, float footprint) {
                       (paper_noise(bent.position, 9.0, footprint, 7.0) + 0.5 * bent.coarse + 0.2 * bent.medium));
     float by_heat = above > first ? 0.76 * min(log(above / first) / log(last / first), 1.0) : 0.0;
     return 1.0 - (1.0 - by_heat) * (1.0 - by_burn);
+}
+float ink_kept(Bent bent) {
+    return mix(INK_LEAST, 1.0, stepf(-0.5, 0.35, bent.bays + 0.6 * bent.coarse + 0.3 * bent.medium));
 }
 void char_shade(Bent bent, vec3 burnt, float ink, inout Point point) {
     float black = stepf(0.12, 0.46, bent.burn);

@@ -149,7 +149,7 @@ void main() {
     vec3 fresh = vec3(0.86, 0.852, 0.832) * tint * print * (1.0 + 0.02 * flocks);
     point.albedo = fresh;
     if (burnt) {
-        float scorch = scorch_amount(state, bent, point.footprint), ink = stepf(0.3, 0.75, 1.0 - clamp(dot(fresh, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0));
+        float scorch = scorch_amount(state, bent, point.footprint), ink = ink_kept(bent) * stepf(0.3, 0.75, 1.0 - clamp(dot(fresh, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0));
         point.transmission *= 1.0 - stepf(0.1, 0.7, scorch);
         char_shade(bent, scorch_colour(scorch) * mix(fresh, vec3(0.80), stepf(0.6, 1.0, scorch)), ink, point);
         ash_shade(state, bent, ink, point);
