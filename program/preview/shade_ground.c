@@ -158,7 +158,7 @@ static void ground_stain(const Preview *preview, Point *point) {
     float ragged = 0.5f * noise2(x * 34, y * 34, seed) + 0.35f * noise2(x * 130, y * 130, seed + 1);
     ragged += 0.25f * noise2(x * 420, y * 420, seed + 2) * visible(0.0024f, point->footprint);
     const float depth = preview->def.ground_stain * clampf(stain * (0.75f + 0.75f * ragged), 0, 1);
-    const float tan = stepf(0.02f, 0.4f, depth), soot = 0.6f * stepf(0.15f, 1.1f, depth);
+    const float tan = stepf(0.02f, 0.4f, depth), soot = 0.8f * stepf(0.15f, 1.0f, depth);
     point->albedo = float3_mul(point->albedo, float3_mix(float3(1, 1, 1), float3(0.74f, 0.60f, 0.46f), tan));
     point->albedo = float3_mix(point->albedo, float3(0.016f, 0.014f, 0.013f), soot);
     point->mirror *= 1 - 0.6f * soot;
