@@ -30,8 +30,9 @@ static const float CONTACT_SPEED = 20;
 /// Max steps in which a displacement is followed.
 enum { CONTACT_STEPS = 128 };
 
-/// A block of particles or cells lists the colliders it may touch: at most CONTACT_LISTED, of more than CONTACT_FEW.
-enum { CONTACT_FEW = 4, CONTACT_LISTED = 256 };
+/// A block of particles or cells lists the colliders it may touch: at most CONTACT_LISTED, of more than CONTACT_FEW. Runs of
+/// particles whose box meets none are left out.
+enum { CONTACT_FEW = 4, CONTACT_LISTED = 256, CONTACT_RUN = 16 };
 
 /// A position this near outside a surface, as a share of the offset or in m, counts as on it.
 static const float CONTACT_SKIN = 1.0f / 16, CONTACT_SKIN_MIN = 1e-6f;
@@ -101,6 +102,8 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
         moving.world_low[i] = bounded ? at + middle - reach - slack : -INFINITY;
         moving.world_high[i] = bounded ? at + middle + reach + slack : INFINITY;
     }
+    moving.world_low[3] = kind == SINGE_COLLIDER_PLANE ? INFINITY : -INFINITY; // planes meet no box: see contact_plane
+    moving.world_high[3] = INFINITY;
     return moving;
 }
 
@@ -276,56 +279,58 @@ static inline Float4Mask contact_near(const MovingCollider *collider, Float4 x, 
     return near;
 }
 
+/// A box about positions, m. Their fourth numbers do not count.
+typedef struct ContactBox {
+    Float4 low, high;
+} ContactBox;
+
+static inline ContactBox box_empty(void) { return (ContactBox){float4_all(INFINITY), float4_all(-INFINITY)}; }
+
+/// A position that is not a number changes nothing.
+static inline ContactBox box_with(ContactBox box, Float4 x) {
+    return (ContactBox){float4_min(x, box.low), float4_max(x, box.high)};
+}
+
+static inline bool box_meets(const ContactBox *box, const MovingCollider *moving) {
+    return !float4_any((float4_load(moving->world_low) > box->high) | (float4_load(moving->world_high) < box->low));
+}
+
 /// The colliders that positions in a box may touch, in their order.
 typedef struct Nearby {
-    Float4 low[3], high[3]; ///< m, of the box: a minimum and maximum in each lane
-    uint32_t count;         ///< of colliders; of all if it is not listed
-    bool listed;            ///< whether they are in `index`
+    const MovingCollider *all;
+    ContactBox box;
+    uint32_t count; ///< of colliders; of all if it is not listed
+    bool listed;    ///< whether they are in `index`
     uint32_t index[CONTACT_LISTED];
 } Nearby;
-
-static inline Nearby nearby_empty(void) {
-    const Float4 far = float4_all(INFINITY);
-    return (Nearby){.low = {far, far, far}, .high = {-far, -far, -far}};
-}
-
-static inline void nearby_add(Nearby *nearby, const Float4 q[3]) {
-    for (int i = 0; i < 3; i++) {
-        nearby->low[i] = float4_min(nearby->low[i], q[i]);
-        nearby->high[i] = float4_max(nearby->high[i], q[i]);
-    }
-}
 
 /// Whether the positions are in the box.
 static inline bool nearby_holds(const Nearby *nearby, const Float4 q[3]) {
     Float4Mask in = {-1, -1, -1, -1};
-    for (int i = 0; i < 3; i++) in &= (q[i] >= nearby->low[i]) & (q[i] <= nearby->high[i]);
+    for (int i = 0; i < 3; i++) in &= (q[i] >= nearby->box.low[i]) & (q[i] <= nearby->box.high[i]);
     return float4_bits(in) == 15;
 }
 
-static void nearby_list(Nearby *nearby, const DynamicsPlan *plan, uint32_t from, uint32_t to) {
-    float low[3], high[3];
-    for (int i = 0; i < 3; i++) {
-        const Float4 least = nearby->low[i], most = nearby->high[i];
-        low[i] = float_min(float_min(least[0], least[1]), float_min(least[2], least[3]));
-        high[i] = float_max(float_max(most[0], most[1]), float_max(most[2], most[3]));
-        nearby->low[i] = float4_all(low[i]);
-        nearby->high[i] = float4_all(high[i]);
-    }
-
+static void nearby_list(Nearby *nearby) {
+    const uint32_t all = nearby->count;
     nearby->listed = true;
-    for (uint32_t c = from; c < to; c++) {
-        const MovingCollider *moving = &plan->colliders[c];
-        bool near = true;
-        for (int i = 0; i < 3; i++) near &= !(moving->world_low[i] > high[i]) && !(moving->world_high[i] < low[i]);
-        if (!near) continue;
+    nearby->count = 0;
+    for (uint32_t c = 0; c < all; c++) {
+        if (!box_meets(&nearby->box, &nearby->all[c])) continue;
         nearby->listed = nearby->count < CONTACT_LISTED;
         if (!nearby->listed) {
-            nearby->count = to - from;
+            nearby->count = all;
             return;
         }
         nearby->index[nearby->count++] = c;
     }
+}
+
+/// Whether no position in a part of the box may touch a collider.
+static inline bool nearby_misses(const Nearby *nearby, const ContactBox *part) {
+    for (uint32_t k = 0; k < nearby->count; k++)
+        if (box_meets(part, &nearby->all[nearby->listed ? nearby->index[k] : k])) return false;
+    return true;
 }
 
 typedef struct Contact {
@@ -383,21 +388,32 @@ static inline Float4Mask contact_simple(const Contact *job, const MovingCollider
     return touches;
 }
 
+static inline ContactBox box_about(const float (*position)[4], int begin, int end) {
+    ContactBox box = box_empty();
+    for (int i = begin; i < end; i++) box = box_with(box, float4_load(position[i]));
+    return box;
+}
+
 /// Contact with the colliders [from, to) of the job, in their order, of particle after particle.
 static uint64_t contact_colliders(const Contact *job, int begin, int end) {
     uint64_t contacts = 0;
     float(*position)[4] = job->dynamics->position;
-    Nearby nearby = {.count = job->to - job->from};
+    Nearby nearby = {.all = job->plan->colliders + job->from, .count = job->to - job->from};
     if (nearby.count > CONTACT_FEW) {
-        nearby = nearby_empty();
-        for (int i = begin; i < end; i++) {
-            const float *x = position[i];
-            nearby_add(&nearby, (const Float4[3]){float4_all(x[0]), float4_all(x[1]), float4_all(x[2])});
-        }
-        nearby_list(&nearby, job->plan, job->from, job->to);
+        nearby.box = box_about((const float(*)[4])position, begin, end);
+        nearby_list(&nearby);
     }
 
     for (int first = begin; first < end && nearby.count > 0; first += 4) {
+        if ((first - begin) % CONTACT_RUN == 0) {
+            const int last = first + CONTACT_RUN < end ? first + CONTACT_RUN : end;
+            const ContactBox run = box_about((const float(*)[4])position, first, last);
+            if (nearby_misses(&nearby, &run)) {
+                first += CONTACT_RUN - 4;
+                continue;
+            }
+        }
+
         // the last of a block is repeated in lanes without a particle
         int particle[4];
         for (int i = 0; i < 4; i++) particle[i] = first + i < end ? first + i : end - 1;
@@ -407,8 +423,8 @@ static uint64_t contact_colliders(const Contact *job, int begin, int end) {
         const Float4Mask lane = {0, 1, 2, 3}, moves = (q[3] != 0) & (lane < end - first);
         bool listed = nearby.listed;
         for (uint32_t k = 0, c; k < (listed ? nearby.count : job->to - job->from); k++) {
-            c = listed ? nearby.index[k] : job->from + k;
-            const MovingCollider *collider = &job->plan->colliders[c];
+            c = listed ? nearby.index[k] : k;
+            const MovingCollider *collider = &nearby.all[c];
             if (!float4_bits(contact_near(collider, q[0], q[1], q[2]))) continue;
             const uint64_t before = contacts;
 
@@ -442,7 +458,7 @@ static uint64_t contact_colliders(const Contact *job, int begin, int end) {
             // moved out of the box: other colliders may be near, of those that follow
             if (listed && contacts > before && !nearby_holds(&nearby, q)) {
                 listed = false;
-                k = c - job->from;
+                k = c;
             }
         }
     }
@@ -544,9 +560,9 @@ static unsigned centroid_touching(const Centroid *job, const Nearby *nearby, int
 
     float4_transpose(q);
     for (uint32_t k = 0; k < nearby->count && touching != alive; k++) {
-        const MovingCollider *moving = &job->plan->colliders[nearby->listed ? nearby->index[k] : k];
+        const MovingCollider *moving = &nearby->all[nearby->listed ? nearby->index[k] : k];
         const SingeColliderDef *def = &moving->collider->def;
-        if (def->kind == SINGE_COLLIDER_PLANE) continue;
+        if (def->kind == SINGE_COLLIDER_PLANE) continue; // no part of one lies between points outside it
         Float4Mask near = contact_near(moving, q[0], q[1], q[2]);
         if (moving->is_simple && float4_bits(near)) {
             const Float3s from = float3s_sub((Float3s){q[0], q[1], q[2]}, float3s_all(moving->after.position));
@@ -563,14 +579,11 @@ static unsigned centroid_touching(const Centroid *job, const Nearby *nearby, int
 static void centroid_cells(void *task, int begin, int end) {
     const Centroid *job = task;
     float(*position)[4] = job->dynamics->position;
-    Nearby nearby = {.count = job->collider_count};
-    if (job->collider_count > CONTACT_FEW) {
-        nearby = nearby_empty();
-        for (int k = begin; k < end; k++) {
-            const Float4 x = centroid_at(job, job->cells[k]);
-            nearby_add(&nearby, (const Float4[3]){float4_all(x[0]), float4_all(x[1]), float4_all(x[2])});
-        }
-        nearby_list(&nearby, job->plan, 0, job->collider_count);
+    Nearby nearby = {.all = job->plan->colliders, .count = job->collider_count};
+    if (nearby.count > CONTACT_FEW) {
+        nearby.box = box_empty();
+        for (int k = begin; k < end; k++) nearby.box = box_with(nearby.box, centroid_at(job, job->cells[k]));
+        nearby_list(&nearby);
     }
 
     unsigned touching = 0; // bit i: cell k + i of four

@@ -23,7 +23,7 @@ typedef struct MovingCollider {
     Float3 axis[3];                    ///< of the box, which has `after.position` for its origin
     float low[3], high[3];             ///< m
     int ends;                          ///< first axis along which the box has ends
-    float world_low[3], world_high[3]; ///< m, the box along the world's axes
+    float world_low[4], world_high[4]; ///< m, the box along the world's axes; the fourth: no bound
     float drift; ///< m, max displacement of its surface in its frame: 0 except for a deforming mesh
 } MovingCollider;
 
