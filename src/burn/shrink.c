@@ -5,7 +5,7 @@
 
 /// Springs s[k] of the bits `which`, those that are not gone.
 static inline void shrink_springs(const BurnJob *job, SingeColour colour, const uint32_t s[4], unsigned which,
-                                  SpringEnds a, SpringEnds b, Float4 thickness) {
+                                  SpringEnds a, SpringEnds b, const Float4 *thickness) {
     const uint8_t *flags = job->state->ablate->spring_flags[colour];
     for (unsigned k = 0; k < 4; k++)
         if (which >> k & 1 && !(flags[s[k]] & SINGE_ALIVE)) which &= ~(1u << k);
@@ -49,17 +49,16 @@ static void shrink_cells(void *context, int begin, int end) {
 
         const SpringEnds corner = spring_ends(matter, burn, at), next = spring_ends_turned(corner);
         const SpringEnds centre = spring_ends(matter, burn, (const uint32_t[4]){middle, middle, middle, middle});
-        const Float4 none = {0};
+        const Float4 thickness = float4_all(field_at(matter->thickness, middle));
 
-        shrink_springs(job, SINGE_RED, springs->red, centre_burns ? 15 : burns & 15, centre, corner,
-                       float4_all(field_at(matter->thickness, middle)));
-        shrink_springs(job, SINGE_BLUE, springs->blue, (burns | burns >> 1) & blue, corner, next, none);
+        shrink_springs(job, SINGE_RED, springs->red, centre_burns ? 15 : burns & 15, centre, corner, &thickness);
+        shrink_springs(job, SINGE_BLUE, springs->blue, (burns | burns >> 1) & blue, corner, next, NULL);
         if (centre_burns)
-            shrink_springs(job, SINGE_GREEN, springs->green, green, centre, spring_ends(matter, burn, beyond), none);
+            shrink_springs(job, SINGE_GREEN, springs->green, green, centre, spring_ends(matter, burn, beyond), NULL);
 
         // the diagonals
         const uint32_t yellow[4] = {springs->yellow[0], springs->yellow[1], springs->yellow[0], springs->yellow[1]};
-        shrink_springs(job, SINGE_YELLOW, yellow, (burns | burns >> 2) & 3, corner, spring_ends_turned(next), none);
+        shrink_springs(job, SINGE_YELLOW, yellow, (burns | burns >> 2) & 3, corner, spring_ends_turned(next), NULL);
     }
 }
 
@@ -83,7 +82,7 @@ void burn_restore_lengths(const Shell *shell, const AblateState *ablate, BurnSta
 
             const SpringEnds a = spring_ends(&shell->matter, burn, first),
                              b = spring_ends(&shell->matter, burn, second);
-            const Float4 length = target_lengths(springs, at, a, b, thickness);
+            const Float4 length = target_lengths(springs, at, a, b, colour == SINGE_RED ? &thickness : NULL);
             for (uint32_t k = 0; k < 4; k++)
                 if (ablate->spring_flags[colour][at[k]] & SINGE_ALIVE) burn->spring_length[colour][at[k]] = length[k];
         }

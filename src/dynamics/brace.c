@@ -108,7 +108,7 @@ float brace_length(const Braces *braces, const DynamicsPlan *plan, const Shell *
     const SpringEnds both =
         spring_ends(&shell->matter, state->burn, (const uint32_t[4]){ends[0], ends[1], ends[0], ends[1]});
     const uint32_t same[4] = {brace, brace, brace, brace};
-    const float length = target_lengths(&braces->springs, same, both, spring_ends_turned(both), (Float4){0})[0];
+    const float length = target_lengths(&braces->springs, same, both, spring_ends_turned(both), NULL)[0];
     if (!plan->creased) return length;
 
     float flat = 0, creased = 0;

@@ -82,13 +82,16 @@ static inline Float4 fibre_ratio(SpringEnds a, SpringEnds b, Float4 even, Float4
     return float4_sqrt(even * even + stretch * (in_plane * stretch + 2 * even * grain));
 }
 
-/// Target lengths of four springs. `thickness` of the sheet at red springs, 0 for other colours: the share p of the square
-/// of a spring that lies in the sheet follows from it.
+/// Target lengths of four springs. At red ones the share p of a spring's square that lies in the sheet follows from the
+/// sheet's `thickness`, which is NULL for other colours: these lie in it.
 static inline Float4 target_lengths(const SpringSet *springs, const uint32_t s[4], SpringEnds a, SpringEnds b,
-                                    Float4 thickness) {
+                                    const Float4 *thickness) {
     const Float4 rest = float4_gather(springs->rest, s), ratio = length_ratio(a, b);
     if (!springs->grain) return rest * ratio;
-    const Float4 upright = thickness / rest;
-    const Float4 in_plane = float4_select(upright < 1, 1 - upright * upright, (Float4){0});
+    Float4 in_plane = float4_all(1);
+    if (thickness) {
+        const Float4 upright = *thickness / rest;
+        in_plane = float4_select(upright < 1, 1 - upright * upright, (Float4){0});
+    }
     return rest * fibre_ratio(a, b, ratio, float4_gather(springs->grain, s), in_plane);
 }
