@@ -72,8 +72,7 @@ static float glow_supply(const BurnJob *job, uint32_t i) {
             if (!gone) fuel = float_max(fuel, job->burn->fuel[centre]);
             if (edge) continue; // all of the air, whatever the ash
 
-            int k = 0;
-            while (shell->cells[cell][k] != i) k++;
+            const uint32_t *at = shell->cells[cell], k = (at[1] == i) + 2 * (at[2] == i) + 3 * (at[3] == i);
             const uint32_t *green = shell->cell_springs[cell].green;
             edge = green[k] == SHELL_NONE || green[(k + 3) & 3] == SHELL_NONE;
             ash = float_max(ash, ashes[centre]);
