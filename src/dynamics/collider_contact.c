@@ -551,13 +551,16 @@ static inline Float4 centroid_at(const Centroid *job, uint32_t cell) {
 /// Which of the cells [first, end), at most four of them, have a centroid that a collider may touch: bits.
 static unsigned centroid_touching(const Centroid *job, const Nearby *nearby, int first, int end) {
     Float4 q[4];
-    unsigned alive = 0, touching = 0;
+    ContactBox box = box_empty();
     for (int i = 0; i < 4; i++) {
-        const uint32_t cell = job->cells[first + i < end ? first + i : first];
-        q[i] = centroid_at(job, cell);
-        if (first + i < end && job->ablate->cell_flags[cell] & SINGE_ALIVE) alive |= 1u << i;
+        q[i] = centroid_at(job, job->cells[first + i < end ? first + i : first]);
+        box = box_with(box, q[i]);
     }
+    if (nearby_misses(nearby, &box)) return 0;
 
+    unsigned alive = 0, touching = 0;
+    for (int i = 0; i < 4 && first + i < end; i++)
+        if (job->ablate->cell_flags[job->cells[first + i]] & SINGE_ALIVE) alive |= 1u << i;
     float4_transpose(q);
     for (uint32_t k = 0; k < nearby->count && touching != alive; k++) {
         const MovingCollider *moving = &nearby->all[nearby->listed ? nearby->index[k] : k];
@@ -589,7 +592,10 @@ static void centroid_cells(void *task, int begin, int end) {
     unsigned touching = 0; // bit i: cell k + i of four
     for (int k = begin; k < end && nearby.count > 0; k++, touching >>= 1) {
         if ((k - begin) % 64 == 0 && pool_cancelled(job->pool)) return; // which fails the step
-        if ((k - begin) % 4 == 0) touching = centroid_touching(job, &nearby, k, end);
+        if ((k - begin) % 4 == 0) {
+            touching = centroid_touching(job, &nearby, k, end);
+            if (!touching) k += 3;
+        }
         if (!(touching & 1)) continue;
 
         const uint32_t *corner = job->shell->cells[job->cells[k]];
