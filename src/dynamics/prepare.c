@@ -29,7 +29,7 @@ static inline void prepare_mark(StrandSet *set, uint32_t spring) {
         atomic_store_explicit(&set->seen[spring], PREPARE_STALE, memory_order_relaxed);
 }
 
-/// Normals of cells; springs at what lost mass get other weights and lengths.
+/// Normals of cells, 0 of those that are gone; springs at what lost mass get other weights and lengths.
 static void prepare_cells(void *task, int begin, int end) {
     Prepare *job = task;
     const Shell *shell = job->shell;
@@ -40,7 +40,8 @@ static void prepare_cells(void *task, int begin, int end) {
         const uint32_t *corner = shell->cells[c];
         Float4 a = float4_load(x[corner[2]]) - float4_load(x[corner[0]]);
         Float4 b = float4_load(x[corner[3]]) - float4_load(x[corner[1]]);
-        float4_store(job->plan->cell_normal[c], float4_cross(a, b));
+        const bool alive = job->state->ablate->cell_flags[c] & SINGE_ALIVE;
+        float4_store(job->plan->cell_normal[c], alive ? float4_cross(a, b) : float4_all(0));
 
         bool burns = burn_rate[shell_centre(shell, c)] > 0;
         for (int i = 0; i < 4; i++) burns |= burn_rate[corner[i]] > 0;
@@ -55,60 +56,75 @@ static void prepare_cells(void *task, int begin, int end) {
     }
 }
 
-static void prepare_particles(void *task, int begin, int end) {
-    Prepare *job = task;
+/// Air at particles, and their damping.
+static void prepare_air(const Prepare *job, uint32_t begin, uint32_t end) {
+    DynamicsPlan *plan = job->plan;
+    const StateInput *state = job->state;
+    const Matter *matter = &job->shell->matter;
+    const Float3 mean = float3_load(job->wind->velocity);
+    const bool gusts = job->wind->gust > 0;
+
+    for (uint32_t i = begin; i < end; i++) {
+        if (!(state->ablate->particle_flags[i] & SINGE_ALIVE)) continue;
+        plan->air[i][3] = field_at(matter->damping, i);
+        if (plan->settings.air_density * field_at(matter->drag, i) == 0) continue;
+        const Float3 x = float3_load(job->dynamics->position[i]);
+        Float3 wind = gusts ? wind_velocity(job->wind, x, state->time) : mean;
+        if (job->sources) wind = float3_add(wind, air_velocity(job->sources, x, state->time));
+        Float4 air = {wind.x, wind.y, wind.z, 0};
+        if (state->gas->awake) air += float4_load(state->gas->air[i]);
+        float4_store(plan->air[i], float4_with(air, plan->air[i][3]));
+    }
+}
+
+static void prepare_particles(void *task, int from, int to) {
+    const Prepare local = *(const Prepare *)task, *job = &local; // of its own, so that stores cannot change it
     DynamicsPlan *plan = job->plan;
     const StateInput *state = job->state;
     const Shell *shell = job->shell;
     const Matter *matter = &shell->matter;
-    const Float3 mean = float3_load(job->wind->velocity);
-    const bool gusts = job->wind->gust > 0;
-    const float *burn_rate = state->burn->burn_rate;
+    const uint32_t begin = (uint32_t)from, end = (uint32_t)to, *fan = shell->fan, *fan_first = shell->fan_first;
+    const float(*cell_normal)[4] = (const float(*)[4])plan->cell_normal, *burn_rate = state->burn->burn_rate;
+    const uint8_t *flags = state->ablate->particle_flags, *pinned = job->dynamics->pinned;
+    float(*normals)[4] = plan->normal, (*position)[4] = job->dynamics->position, *inverse_mass = plan->inverse_mass;
+    const Float4Mask three = {-1, -1, -1, 0};
     bool held = false;
 
-    for (int i = begin; i < end; i++) {
-        // inverse mass; weight, which falls with char; drag. Most particles move freely and do not burn
-        const bool alive = state->ablate->particle_flags[i] & SINGE_ALIVE, free = alive && !job->dynamics->pinned[i];
-        const float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
-        if (!(free && job->known && plan->inverse_mass[i] > 0 && burn_rate[i] == 0)) {
-            const float left = state->burn->mass[i];
+    // inverse mass; weight, which falls with char; drag. Most particles move freely and do not burn
+    for (uint32_t i = begin; i < end; i++) {
+        const bool alive = flags[i] & SINGE_ALIVE, free = alive && !pinned[i];
+        if (!(free && job->known && inverse_mass[i] > 0 && burn_rate[i] == 0)) {
+            const float drag = plan->settings.air_density * field_at(matter->drag, i), left = state->burn->mass[i];
             const float mass = matter->mass[i] * (left > PREPARE_MASS_MIN ? left : PREPARE_MASS_MIN);
-            plan->inverse_mass[i] = free && mass > 0 ? 1 / mass : 0;
-            const float progress = shell_burn_progress(left, field_at(matter->mass_min, (uint32_t)i));
-            plan->soft[i] = 1 + (field_at(matter->char_weight, (uint32_t)i) - 1) * progress;
-            plan->normal[i][3] = 0.25f * drag * matter->area[i] / mass;
+            inverse_mass[i] = free && mass > 0 ? 1 / mass : 0;
+            const float progress = shell_burn_progress(left, field_at(matter->mass_min, i));
+            plan->soft[i] = 1 + (field_at(matter->char_weight, i) - 1) * progress;
+            normals[i][3] = drag == 0 ? 0 : 0.25f * drag * matter->area[i] / mass;
+            held |= alive && inverse_mass[i] == 0;
         }
-        job->dynamics->position[i][3] = plan->inverse_mass[i];
-        if (!alive) continue;
-        held |= plan->inverse_mass[i] == 0;
-
-        // what drag needs: normal and air
-        const float damping = field_at(matter->damping, (uint32_t)i);
-        if (drag == 0) {
-            plan->normal[i][3] = 0;
-            plan->air[i][3] = damping;
-            continue;
-        }
-
-        Float4 normal = {0, 0, 0, 0};
-        if ((uint32_t)i >= shell->vertex_count)
-            normal = float4_load(plan->cell_normal[(uint32_t)i - shell->vertex_count]);
-        else
-            for (uint32_t k = shell->fan_first[i]; k < shell->fan_first[i + 1]; k++)
-                if (state->ablate->cell_flags[shell->fan[k]] & SINGE_ALIVE)
-                    normal += float4_load(plan->cell_normal[shell->fan[k]]);
-        const float length = sqrtf(float4_dot(normal, normal));
-        if (length > 0) normal = normal * (1 / length);
-        float4_store(plan->normal[i], float4_with(normal, plan->normal[i][3]));
-        if (!plan->air_mask) continue;
-        Float3 wind = gusts ? wind_velocity(job->wind, float3_load(job->dynamics->position[i]), state->time) : mean;
-        if (job->sources)
-            wind = float3_add(wind, air_velocity(job->sources, float3_load(job->dynamics->position[i]), state->time));
-        Float4 air = {wind.x, wind.y, wind.z, 0};
-        if (state->gas->awake) air += float4_load(state->gas->air[i]);
-        float4_store(plan->air[i], float4_with(air, damping));
+        position[i][3] = inverse_mass[i];
     }
     if (held) atomic_store_explicit(&plan->held, true, memory_order_relaxed);
+    if (plan->air_mask) prepare_air(job, begin, end);
+
+    // normals: sums, and then these of four particles at once, which would wait for what has just been stored
+    for (uint32_t i = begin; i < end; i++) {
+        Float4 normal = {0};
+        if (i >= shell->vertex_count) normal = float4_load(cell_normal[i - shell->vertex_count]);
+        else
+            for (uint32_t k = fan_first[i]; k < fan_first[i + 1]; k++) normal += float4_load(cell_normal[fan[k]]);
+        float4_store(normals[i], float4_select(three, normal, float4_load(normals[i])));
+    }
+    for (uint32_t i = begin; i < end; i += 4) {
+        Float4 sum[4], q[4];
+        for (uint32_t k = 0; k < 4; k++) q[k] = sum[k] = float4_load(normals[i + k]);
+        float4_transpose(q);
+        const Float4 length = float4_sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), one = float4_all(1);
+        const Float4 s = float4_select(length > 0, one / length, one);
+        const Float4 scale[4] = {FLOAT4_SHUFFLE(s, s, 0, 0, 0, 0), FLOAT4_SHUFFLE(s, s, 1, 1, 1, 1),
+                                 FLOAT4_SHUFFLE(s, s, 2, 2, 2, 2), FLOAT4_SHUFFLE(s, s, 3, 3, 3, 3)};
+        for (uint32_t k = 0; k < 4; k++) float4_store(normals[i + k], float4_select(three, sum[k] * scale[k], sum[k]));
+    }
 }
 
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, const SingeWindDef *wind,
