@@ -230,7 +230,7 @@ static SingeResult dynamics_part(Memory *memory, DynamicsPlan *plan, const StepC
 
     // forces for the tears
     if (shell->spare_count > 0 && plan->solver->gather) plan->solver->gather(plan, shell, pool, part.h);
-    TRY(dynamics_check(plan, pool, dynamics, error));
+    if (plan->collision) TRY(dynamics_check(plan, pool, dynamics, error));
 
     // limits and CCD alternate: what CCD has stopped may be too far from what it has not. Where that takes much work, CCD
     // has the last word
