@@ -112,17 +112,16 @@ static void air_go(BurnAir *air, BurnAirNear *near, const Float4Mask middle[3], 
     }
 
     near->known = true;
+    uint64_t first = 0; // the node at -1 along all axes: 21 bits of each, as positions end at a million nodes
+    for (int d = 2; d >= 0; d--) first = (first << 21) + (uint64_t)(near->middle[d] - 1 + (1 << 20));
     for (; fresh; fresh &= fresh - 1) {
-        const int n = __builtin_ctz(fresh), offset[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
-        uint64_t node = 0;
-        for (int d = 0; d < 3; d++)
-            node |= (uint64_t)((uint32_t)(near->middle[d] + offset[d] + (1 << 20)) & 0x1fffff) << 21 * d;
-
+        const unsigned n = (unsigned)__builtin_ctz(fresh), row = n / 3, x = n % 3;
+        const uint64_t node = first + x + ((uint64_t)(row % 3) << 21) + ((uint64_t)(row / 3) << 42);
         const uint32_t slot = air_slot(air, node);
         if (adds && slot < air->count) air->node[slot] = node;
         const bool found = slot < air->count && air->node[slot] == node;
         near->slot[n] = found ? slot : air->count;
-        near->demand[n / 3][n % 3] = found ? air->demand[slot] : 0;
+        near->demand[row][x] = found ? air->demand[slot] : 0;
     }
 }
 
