@@ -66,14 +66,12 @@ static void prepare_air(const Prepare *job, uint32_t begin, uint32_t end) {
 
     for (uint32_t i = begin; i < end; i++) {
         if (!(state->ablate->particle_flags[i] & SINGE_ALIVE)) continue;
-        plan->air[i][3] = field_at(matter->damping, i);
-        if (plan->settings.air_density * field_at(matter->drag, i) == 0) continue;
         const Float3 x = float3_load(job->dynamics->position[i]);
         Float3 wind = gusts ? wind_velocity(job->wind, x, state->time) : mean;
         if (job->sources) wind = float3_add(wind, air_velocity(job->sources, x, state->time));
         Float4 air = {wind.x, wind.y, wind.z, 0};
         if (state->gas->awake) air += float4_load(state->gas->air[i]);
-        float4_store(plan->air[i], float4_with(air, plan->air[i][3]));
+        float4_store(plan->air[i], float4_with(air, field_at(matter->damping, i)));
     }
 }
 
@@ -116,14 +114,14 @@ static void prepare_particles(void *task, int from, int to) {
         float4_store(normals[i], float4_select(three, normal, float4_load(normals[i])));
     }
     for (uint32_t i = begin; i < end; i += 4) {
-        Float4 sum[4], q[4];
-        for (uint32_t k = 0; k < 4; k++) q[k] = sum[k] = float4_load(normals[i + k]);
+        Float4 q[4];
+        for (uint32_t k = 0; k < 4; k++) q[k] = float4_load(normals[i + k]);
         float4_transpose(q);
         const Float4 length = float4_sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), one = float4_all(1);
-        const Float4 s = float4_select(length > 0, one / length, one);
-        const Float4 scale[4] = {FLOAT4_SHUFFLE(s, s, 0, 0, 0, 0), FLOAT4_SHUFFLE(s, s, 1, 1, 1, 1),
-                                 FLOAT4_SHUFFLE(s, s, 2, 2, 2, 2), FLOAT4_SHUFFLE(s, s, 3, 3, 3, 3)};
-        for (uint32_t k = 0; k < 4; k++) float4_store(normals[i + k], float4_select(three, sum[k] * scale[k], sum[k]));
+        const Float4 scale = float4_select(length > 0, one / length, one);
+        for (int d = 0; d < 3; d++) q[d] *= scale;
+        float4_transpose(q);
+        for (uint32_t k = 0; k < 4; k++) float4_store(normals[i + k], q[k]);
     }
 }
 
