@@ -29,8 +29,7 @@ static void shrink_cells(void *context, int begin, int end) {
 
     for (uint32_t cell = (uint32_t)begin; cell < (uint32_t)end; cell++) {
         const uint32_t *at = shell->cells[cell], middle = shell_centre(shell, cell);
-        unsigned burns = 0; // bit i: corner i; bit 4: corner 0 again
-        for (unsigned i = 0; i < 4; i++) burns |= (unsigned)(burn_rate[at[i]] > 0) << i;
+        unsigned burns = float4_bits(float4_gather(burn_rate, at) > 0); // bit i: corner i; bit 4: corner 0 again
         burns |= burns << 4 & 16;
         const bool centre_burns = burn_rate[middle] > 0;
         if (!burns && !centre_burns) continue;

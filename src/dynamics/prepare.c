@@ -43,8 +43,7 @@ static void prepare_cells(void *task, int begin, int end) {
         const bool alive = job->state->ablate->cell_flags[c] & SINGE_ALIVE;
         float4_store(job->plan->cell_normal[c], alive ? float4_cross(a, b) : float4_all(0));
 
-        bool burns = burn_rate[shell_centre(shell, c)] > 0;
-        for (int i = 0; i < 4; i++) burns |= burn_rate[corner[i]] > 0;
+        const bool burns = float4_any(float4_gather(burn_rate, corner) > 0) || burn_rate[shell_centre(shell, c)] > 0;
         if (!burns || !sets[SINGE_RED].seen) continue;
         const CellSprings *springs = &shell->cell_springs[c];
         for (int i = 0; i < 4; i++) {
