@@ -115,8 +115,10 @@ struct Fire {
 #define RISE_MOST 0.55f        ///< m/s, which rising gas reaches
 #define EDDY_RATE 8.0f         ///< 1/s, eddies that pass a height
 #define SOOT_DENSE 198.0f      ///< 1/m, extinction: what glows also hides, by Kirchhoff's law
-#define TAPER 0.55f            ///< what is added to it above a flame's height
-#define FLAME_MOST 2.0f        ///< what eddies feed is more than a full flame, and is drawn elsewhere up to so much
+#define FLAME_DIM 0.26f        ///< radiance of a thick flame at its coolest and its hottest
+#define FLAME_BRIGHT 5.9f
+#define TAPER 0.55f     ///< what is added to it above a flame's height
+#define FLAME_MOST 2.0f ///< what eddies feed is more than a full flame, and is drawn elsewhere up to so much
 
 // m, max displacement by eddies
 #define FIRE_SWAY 0.027f

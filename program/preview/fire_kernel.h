@@ -19,8 +19,9 @@
 // a step. w is SHELL_RISE, or more where rays are further apart, as edges would have steps; the light of a flame
 // stays. It begins at the paper, is faint, clear and blue in the first millimetres, where there is little soot, then
 // pale in its core, and orange at its tips. Its foot, some two centimetres tall, is one low sheet along what burns. Soot
-// builds up in it gradually, dim, orange and so thin that the rim shows through; in tongues it builds up faster. Tongues
-// are wide at the bottom: with narrow, hot feet they seemed to hang in the air.
+// builds up in it gradually, dim and so thin that the rim shows through; in tongues it builds up faster. Tongues
+// are wide at the bottom: with narrow, hot feet they seemed to hang in the air. Young soot is hot, and what is dim is thin:
+// it is a clear yellow. Cool and dense, it was a salmon film over lit paper, and rust over char.
 // Near its edge a flame is thinner than the shell alone: rays run along the shell there and would draw outlines.
 // Soot glows as a black body between FLAME_COOL and FLAME_HOT, and hides as much as it glows. It is the hotter the
 // more heat is released around it (core) and the further it is from the edge (strong): so a flame of one or two
@@ -70,13 +71,16 @@
 #define FOOT_COOL 0.65f     ///< share of the temperature range that fresh soot has
 #define FOOT_GLOWS 0.8f     ///< soot glows that much more there
 #define FOOT_HIDES 0.4f     ///< and hides that much less: what burns shows through
-#define FOOT_HAZE 0.22f     ///< share of the soot that is beside tongues
+#define FOOT_HAZE 0.18f     ///< share of the soot that is beside tongues
 #define TONGUE_MIDDLE 0.05f ///< value of the noise whose creases are tongues
 #define TONGUE_ENDS 0.33f
 #define TONGUE_ROOTED 0.6f ///< the same in the foot, where they are wide
 #define BORDER_WIDE 0.003f ///< m inside its edge over which a flame thins out: seen edge-on it must not draw an outline
 #define BORDER_THIN 0.4f
 #define BORDER_GAIN 1.25f   ///< factor on soot that makes up for what the border loses
+#define YOUNG_HOT 0.58f     ///< share of the temperature range, below which no young soot is
+#define YOUNG_BEGINS 0.006f ///< m above the paper, from which on it may be cooler
+#define YOUNG_ENDS 0.026f   ///< m, from which on it may be as cool as any
 #define CORE_BEGINS 0.0030f ///< m
 #define CORE_FULL 0.0240f
 #define CORE_HIDES 0.22f ///< more than it glows
@@ -328,7 +332,7 @@ static inline void shade_flame(const Fire *fire, Wide flame, Wide3 p, Wide rise,
 
     // the foot, lower where flames are small, is one sheet along what burns: at first clear and blue; then dim orange soot
     // builds up, in the middle of tongues sooner than beside them
-    const float small_foot = minf(fire->scale, 1);
+    const float small_foot = minf(fire->scale, 1), range = FLAME_BRIGHT - FLAME_DIM;
     const Wide above = wide_step(small_foot * FOOT_CLEAR, small_foot * FOOT_FULL, rise);
     const Wide tongue = 1 - wide_step(TONGUE_MIDDLE, wide_mix(TONGUE_ROOTED, TONGUE_ENDS, above),
                                       wide_abs(wide.c) + 0.3f * wide_abs(fine.c));
@@ -368,7 +372,7 @@ static inline void shade_flame(const Fire *fire, Wide flame, Wide3 p, Wide rise,
     // what is above a body of flame without its noise, is cooler and thinner: tongues end faint
     const Wide body = wide_step(-0.35f, 0.1f, flame - EDGE - TAPER * (1 - wide_exp(-tall)));
     const Wide spent = wide_step(0.5f, 1.6f, tall) * (1 - body);
-    hot -= SPENT_COOL * spent;
+    hot = wide_clamp(hot - SPENT_COOL * spent, 0, 1);
 
     soot *= (1 - SPENT_THIN * spent) * dense * wide_step(2 * STAND_OFF, 6 * STAND_OFF, rise);
     Wide root = wide_clamp((rise + STAND_OFF) / (8 * STAND_OFF), 0, 1) * (1 - soot) *
@@ -377,8 +381,12 @@ static inline void shade_flame(const Fire *fire, Wide flame, Wide3 p, Wide rise,
     soot *= 0.35f + 3.5f * fold * (1 + 0.7f * pane) + 1.2f * clear * clear + FOOT_GLOWS * tongue * (1 - above);
     soot *= BORDER_GAIN * wide_mix(BORDER_THIN, 1, wide_step(0, fire->scale * BORDER_WIDE, point->depth));
     soot *= (0.6f + 0.9f * torn * wide_max(thread.b, -0.5f)) * (1 - 0.75f * tip) * (1 + 0.95f * filament);
+
+    // low in a flame what would be a cooler soot is thinner, and shines as much
+    const Wide seen = wide_max(hot, YOUNG_HOT * (1 - wide_step(YOUNG_BEGINS, YOUNG_ENDS, rise)));
+    soot *= (FLAME_DIM + range * hot * hot * hot) / (FLAME_DIM + range * seen * seen * seen);
     point->opaque = SOOT_DENSE * soot * wide_mix(FOOT_HIDES, 1 + CORE_HIDES * core, above);
-    point->soot = wide3_scale(flame_colour(fire, wide_clamp(hot, 0, 1)), SOOT_DENSE * soot);
+    point->soot = wide3_scale(flame_colour(fire, seen), SOOT_DENSE * soot);
     point->root = wide3_of(float3(0.28f, 0.56f, 1.18f), BLUE_DENSE * root);
 }
 

@@ -56,8 +56,6 @@
 
 #define FLAME_COOL 1200.0f ///< K
 #define FLAME_HOT 2000.0f
-#define FLAME_DIM 0.26f ///< radiance of a thick flame at its coolest and its hottest
-#define FLAME_BRIGHT 5.9f
 #define FLAME_CAST 0.875f ///< of that range, 1900 K: the colour of the light that they cast
 #define FLAME_BAKED 3.0f  ///< radiance of what is 1 where gas is baked
 

@@ -390,12 +390,13 @@ TEST(thin_tongues_are_not_cut) {
 }
 
 /// The foot of a flame, 5 to 12 mm above what burns, is one sheet, dim and clear. A veil of one orange lay there, and after
-/// that tongues stood on points as bright as their middles.
+/// that tongues stood on points as bright as their middles. What it adds to lit paper is yellow rather than red, and more
+/// than it hides: cool and dense, it was a salmon film.
 TEST(a_foot_is_one_dim_clear_sheet) {
     enum { FRAMES = 4, LOW = 5, HIGH = 12, MIDDLE = 20 };
     static float fire[W * H][4], mean[H][4];
     const float each = 1.0f / (FRAMES * (HIGH - LOW) * W);
-    float clear = 0, hidden = 0, sum = 0, squares = 0, most[2] = {0, 0};
+    float clear = 0, hidden = 0, sum = 0, squares = 0, red = 0, green = 0, most[2] = {0, 0};
 
     line_make(&line, 0.003f), burning_make(&paper);
     for (int k = 0; k < FRAMES; k++) {
@@ -404,6 +405,7 @@ TEST(a_foot_is_one_dim_clear_sheet) {
             const float *at = fire[(H - 1 - i / W) * W + i % W], light = luminance(at);
             clear += at[3] < 0.15f ? each : 0, hidden += at[3] * each;
             sum += light * each, squares += light * light * each;
+            red += at[0] * each, green += at[1] * each;
         }
         for (int x = 0; x < W; x++)
             for (int up = 0; up < 2; up++) {
@@ -417,9 +419,12 @@ TEST(a_foot_is_one_dim_clear_sheet) {
         "foot: %.2f of it is clear, %.2f hidden, its light varies by %.2f of the mean; most at %d mm is %.2f of that "
         "at %d mm\n",
         (double)clear, (double)hidden, (double)varies, LOW, (double)(most[0] / most[1]), MIDDLE);
+    print_message("its green is %.3f of its red, its light %.2f of what it hides\n", (double)(green / red),
+                  (double)(sum / hidden));
     assert_true(clear > 0.45f && hidden < 0.2f); // .21, .25: a film in front of the rim
     assert_true(varies < 1);                     // 1.31: points, and nothing between them
     assert_true(most[0] < 0.4f * most[1]);
+    assert_true(green > 0.24f * red && sum > 1.5f * hidden); // .192 and .80
 }
 
 /// Tongues join as they rise: 4 to 5 cm up what hides a tenth is wider than single tongues. And some are much taller than

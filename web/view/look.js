@@ -1,5 +1,5 @@
 // Made by scripts/write_look.py from program/preview: do not edit.
-export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.01, FIRE_FINE_CELL: 0.008, FLAMES_FROM: 0.02, FLAME_SEEN: 0.15, FLAME_HEIGHT: 0.08, FLAME_END: 0.3, RISE_MOST: 0.55, EDDY_RATE: 8, TAPER: 0.55, FLAME_MOST: 2, FIRE_SWAY: 0.027, LICK_WIDE: 0.045, LICK_FULL: 0.05, LICK: 0.6, UNLIKE: 1.5, JOIN: 0.7, JOIN_BEGINS: 0.02, JOIN_FULL: 0.08, GROUP_WIDE: 0.075, GROUP_RATE: 2, GROUP: 0.35, GROUP_UNLIKE: 1.5, FED_WHOLLY: 0.3, FLAME_COOL: 1200, FLAME_HOT: 2000, FLAME_DIM: 0.26, FLAME_BRIGHT: 5.9, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, ROOT_REACH: 4.4, ROOT_OVER: 1.5, ROOT_FALLS: 0.05, ROOT_WIDE: 0.6, ROOT_LEAN: 0.4, NOISE_LARGER: 0.85, NOISE_SIZES: 0.68, FIRE_PASSING: 0.93, MIX_PASSES: 2, MIX_SHARE: 0.2, MIX_BEGINS: 0.01, MIX_FULL: 0.06, MIX_FEEDS: 0.5, MIX_BURNT: 1.5, SMOKE_LEAVES: 0.25, LEAN: 0.7, LEAN_BELOW: 2, BELOW_FREE: 1.5, LEAN_FOOT: 0.001, LEAN_FALLS: 160, RIM_FLAME: 0.85, RIM_REACH: 1.5, RIM_UP: 0.6, RIM_BELOW: 2, RIM_LOW: 0.1, RIM_HIGH: 1, LEAN_REACH: 0.04, SLAB: 0.55, SHAPE_GAIN: 0.265, SHAPE_MIDDLE: 80, SHAPE_LIMB: 330, SHAPE_BELOW: 150, SCALE_COOLER: 200, LAMP_WRAP: 0.3, LAMP_WRAP_MOST: 0.7 };
+export const LOOK = { EMBER_BURN: 0.74, CHAR_LEAF: 0.64, STARVED: 0.7, STARVED_SLOW: 0.08, STARVED_FAST: 0.4, STARVED_BEGINS: 0.32, STARVED_FULL: 0.46, FIRE_SCALE_CELL: 0.01, FIRE_FINE_CELL: 0.008, FLAMES_FROM: 0.02, FLAME_SEEN: 0.15, FLAME_HEIGHT: 0.08, FLAME_END: 0.3, RISE_MOST: 0.55, EDDY_RATE: 8, FLAME_DIM: 0.26, FLAME_BRIGHT: 5.9, TAPER: 0.55, FLAME_MOST: 2, FIRE_SWAY: 0.027, LICK_WIDE: 0.045, LICK_FULL: 0.05, LICK: 0.6, UNLIKE: 1.5, JOIN: 0.7, JOIN_BEGINS: 0.02, JOIN_FULL: 0.08, GROUP_WIDE: 0.075, GROUP_RATE: 2, GROUP: 0.35, GROUP_UNLIKE: 1.5, FED_WHOLLY: 0.3, FLAME_COOL: 1200, FLAME_HOT: 2000, LEAF_WIDTH: 0.008, FLAME_LOW: 50000, FLAME_HIGH: 5e+06, FLAME_THICK: 0.014, ROOT_REACH: 4.4, ROOT_OVER: 1.5, ROOT_FALLS: 0.05, ROOT_WIDE: 0.6, ROOT_LEAN: 0.4, NOISE_LARGER: 0.85, NOISE_SIZES: 0.68, FIRE_PASSING: 0.93, MIX_PASSES: 2, MIX_SHARE: 0.2, MIX_BEGINS: 0.01, MIX_FULL: 0.06, MIX_FEEDS: 0.5, MIX_BURNT: 1.5, SMOKE_LEAVES: 0.25, LEAN: 0.7, LEAN_BELOW: 2, BELOW_FREE: 1.5, LEAN_FOOT: 0.001, LEAN_FALLS: 160, RIM_FLAME: 0.85, RIM_REACH: 1.5, RIM_UP: 0.6, RIM_BELOW: 2, RIM_LOW: 0.1, RIM_HIGH: 1, LEAN_REACH: 0.04, SLAB: 0.55, SHAPE_GAIN: 0.265, SHAPE_MIDDLE: 80, SHAPE_LIMB: 330, SHAPE_BELOW: 150, SCALE_COOLER: 200, LAMP_WRAP: 0.3, LAMP_WRAP_MOST: 0.7 };
 
 export const PAPER = /* glsl */ `
 const float EMBER_BURN = 0.74;
@@ -335,6 +335,8 @@ const float FLAME_END = 0.3;
 const float RISE_MOST = 0.55;
 const float EDDY_RATE = 8.0;
 const float SOOT_DENSE = 198.0;
+const float FLAME_DIM = 0.26;
+const float FLAME_BRIGHT = 5.9;
 const float TAPER = 0.55;
 const float FLAME_MOST = 2.0;
 const float FIRE_SWAY = 0.027;
@@ -401,13 +403,16 @@ const float FOOT_LATE = 0.03;
 const float FOOT_COOL = 0.65;
 const float FOOT_GLOWS = 0.8;
 const float FOOT_HIDES = 0.4;
-const float FOOT_HAZE = 0.22;
+const float FOOT_HAZE = 0.18;
 const float TONGUE_MIDDLE = 0.05;
 const float TONGUE_ENDS = 0.33;
 const float TONGUE_ROOTED = 0.6;
 const float BORDER_WIDE = 0.003;
 const float BORDER_THIN = 0.4;
 const float BORDER_GAIN = 1.25;
+const float YOUNG_HOT = 0.58;
+const float YOUNG_BEGINS = 0.006;
+const float YOUNG_ENDS = 0.026;
 const float CORE_BEGINS = 0.003;
 const float CORE_FULL = 0.024;
 const float CORE_HIDES = 0.22;
@@ -451,7 +456,7 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     point.profile = same * outer / first * (fill + fading);
     point.shell = same * (0.5 * outer * outer / first + fill * inner + SHELL * (1.0 - fill - fading));
     float foot = rise + 0.0012 * fine.d + 0.0016 * wide.d;
-    float small_foot = min(fireScale, 1.0);
+    float small_foot = min(fireScale, 1.0), range = FLAME_BRIGHT - FLAME_DIM;
     float above = stepf(small_foot * FOOT_CLEAR, small_foot * FOOT_FULL, rise);
     float tongue = 1.0 - stepf(TONGUE_MIDDLE, mix(TONGUE_ROOTED, TONGUE_ENDS, above),
                                       abs(wide.c) + 0.3 * abs(fine.c));
@@ -484,7 +489,7 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     hot *= mix(FOOT_COOL, 1.0, warm);
     float body = stepf(-0.35, 0.1, flame - EDGE - TAPER * (1.0 - exp(-tall)));
     float spent = stepf(0.5, 1.6, tall) * (1.0 - body);
-    hot -= SPENT_COOL * spent;
+    hot = clamp(hot - SPENT_COOL * spent, 0.0, 1.0);
     soot *= (1.0 - SPENT_THIN * spent) * dense * stepf(2.0 * STAND_OFF, 6.0 * STAND_OFF, rise);
     float root = clamp((rise + STAND_OFF) / (8.0 * STAND_OFF), 0.0, 1.0) * (1.0 - soot) *
                 (1.0 - stepf(BLUE_ENDS / 2.0, BLUE_ENDS, rise));
@@ -492,8 +497,10 @@ void shade_flame(float flame, vec3 p, float rise, float passed, float slope, Noi
     soot *= 0.35 + 3.5 * fold * (1.0 + 0.7 * pane) + 1.2 * clear * clear + FOOT_GLOWS * tongue * (1.0 - above);
     soot *= BORDER_GAIN * mix(BORDER_THIN, 1.0, stepf(0.0, fireScale * BORDER_WIDE, point.depth));
     soot *= (0.6 + 0.9 * torn * max(thread.b, -0.5)) * (1.0 - 0.75 * tip) * (1.0 + 0.95 * filament);
+    float seen = max(hot, YOUNG_HOT * (1.0 - stepf(YOUNG_BEGINS, YOUNG_ENDS, rise)));
+    soot *= (FLAME_DIM + range * hot * hot * hot) / (FLAME_DIM + range * seen * seen * seen);
     point.opaque = SOOT_DENSE * soot * mix(FOOT_HIDES, 1.0 + CORE_HIDES * core, above);
-    point.soot = float3_scale(flame_colour(clamp(hot, 0.0, 1.0)), SOOT_DENSE * soot);
+    point.soot = float3_scale(flame_colour(seen), SOOT_DENSE * soot);
     point.root = float3_scale(vec3(0.28, 0.56, 1.18), BLUE_DENSE * root);
 }
 void fire_sway(vec3 p, float height, inout float sway[2]) {
