@@ -29,6 +29,8 @@ typedef struct Block {
     Point point[LANES];
     bool mirrored;  ///< the rays are those that the ground mirrors: they see no pixel of the table
     FireTile *tile; ///< flame and smoke; NULL: none
+    float bend[LANES], bend_at[LANES],
+        bend_to[LANES][2];                  ///< angle, m, and how far to the right and up: of rays in hot gas
     float fire_from[LANES], fire_to[LANES]; ///< distances for which the next two are valid
     Float3 fire_light[LANES];
     float fire_clear[LANES];
@@ -82,6 +84,13 @@ void block_see_backdrop(const Preview *preview, Block *block, int lane);
 void block_find_points(const Preview *preview, Block *block, const int *active);
 
 size_t block_pixel(const Preview *preview, const Block *block, int lane);
+
+// shimmer.c
+/// Finds how hot gas bends the rays of active lanes, up to what their pixels' middles show.
+void shimmer_find(const Preview *preview, Block *block, const int *active);
+
+/// Bends a lane's ray in a sample.
+void shimmer_bend(const Preview *preview, Block *block, int lane, int sample);
 
 // samples.c
 /// Adds the colour of block->point in one sample and its layers. In lanes of `ask` rays test what lights it.

@@ -47,6 +47,7 @@ typedef struct FireView {
     int count, run_count;
     float from[FIRE_STEPS], distance[FIRE_STEPS], clear[FIRE_STEPS];
     Float3 light[FIRE_STEPS];
+    float hot[FIRE_STEPS][2]; ///< m, the length in hot gas; m2, the mean distance of that, times it
     float runs[FIRE_RUNS][2]; ///< m, where flames are near it
 } FireView;
 
@@ -201,6 +202,9 @@ Float3 fire_cast_colour(const Preview *preview);
 /// sway[0] and [1]: how far the widest eddies move a flame along x and y, m, at a height above the paper.
 void fire_sway(const Fire *fire, Float3 p, float height, float sway[2]);
 
+/// How far to the right and up the eddies of hot gas at p turn a ray, from -1 to 1.
+void fire_turns(const Fire *fire, Float3 p, float turn[2]);
+
 /// A flame at p, at a height above the paper, as it is fed there: more than elsewhere or less.
 float fire_feed(const Fire *fire, Float3 p, float height, float flame);
 
@@ -225,3 +229,9 @@ void fire_along(const Preview *preview, int count, const Float3 *origin, const F
 
 /// The light of the fire up to `distance` for a pixel of the tile, counted from its upper left, and the transmittance.
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear);
+
+/// Whether there is hot gas around the 4 x 4 pixels of which this is the first.
+bool fire_is_hot(const FireTile *tile, int x, int y);
+
+/// The length of a pixel's ray in hot gas up to a distance, m, and where that is in the mean.
+float fire_heats(const FireTile *tile, int x, int y, float distance, float *where);

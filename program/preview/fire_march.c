@@ -14,6 +14,7 @@
 #define FIRE_NOTED 0.8f ///< of the usual step, which what is noted is longer than
 #define SMOKE_APART 0.005f ///< m, between rays that have smoke
 #define SMOKE_STEP 0.010f  ///< m, distance at most between the places of a ray where its smoke is looked up
+#define HOT_BEYOND 0.002f  ///< m outside of flames, over which gas is hot
 #define FIRE_SOFT 6.0f     ///< pixels, over which the edges of flames begin: rays are two apart, depths rough
 #define FIRE_EVEN 0.020f   ///< difference of light, as l / (1 + l), that may be interpolated
 
@@ -161,6 +162,7 @@ typedef struct March {
     float asks;             ///< where it needs a flame
     float clear;
     Float3 light;
+    float hot[2];
     int in_brick, what; ///< seen in the brick, and from here
     int run;            ///< of the guide, the next
     bool dark;          ///< long steps until there is flame, longer far from it
@@ -271,6 +273,10 @@ static void march_step(March *march) {
     march->light = float3_mad(march->light, m.light, march->clear * step * mean);
     march->clear *= kept;
 
+    const float inside = clampf(1 + 0.5f * (here->depth + there->depth) / HOT_BEYOND, 0, 1), hot = inside * step;
+    march->hot[0] += hot;
+    march->hot[1] += hot * (march->t + 0.5f * step);
+
     // short steps are noted together, and what is left after the last note is one
     FireView *view = march->view;
     int k = view->count - 1;
@@ -281,6 +287,7 @@ static void march_step(March *march) {
     view->distance[k] = march->next;
     view->light[k] = march->light;
     view->clear[k] = march->clear;
+    memcpy(view->hot[k], march->hot, sizeof march->hot);
     march->t = march->next;
 }
 
@@ -465,8 +472,8 @@ void fire_see(const Preview *preview, int x, int y, FireTile *tile) {
     }
 }
 
-/// Adds a ray's light and transmittance, times a weight.
-static void add_view(const FireView *view, float distance, float weight, Float3 *light, float *clear) {
+/// The number of steps that are wholly in front of a distance; the next one is partly, by *part.
+static int steps_before(const FireView *view, float distance, float *part) {
     int low = 0, high = view->count;
     if (high && view->distance[high - 1] <= distance) low = high;
     while (low < high) {
@@ -475,12 +482,20 @@ static void add_view(const FireView *view, float distance, float weight, Float3 
         else high = mid;
     }
 
-    // `low` steps are wholly in front, the next one partly
+    *part = 0;
+    if (low < view->count && view->from[low] < distance)
+        *part = (distance - view->from[low]) / (view->distance[low] - view->from[low]);
+    return low;
+}
+
+/// Adds a ray's light and transmittance, times a weight.
+static void add_view(const FireView *view, float distance, float weight, Float3 *light, float *clear) {
+    float part;
+    const int low = steps_before(view, distance, &part);
     Float3 sum = low ? view->light[low - 1] : float3(0, 0, 0);
     float left = low ? view->clear[low - 1] : 1;
 
-    if (low < view->count && view->from[low] < distance) {
-        float part = (distance - view->from[low]) / (view->distance[low] - view->from[low]);
+    if (part > 0) {
         sum = float3_mix(sum, view->light[low], part);
         left = mixf(left, view->clear[low], part);
     }
@@ -523,15 +538,47 @@ void fire_along(const Preview *preview, int count, const Float3 *origin, const F
     }
 }
 
-void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear) {
-    bool fine = tile->fine[y / 4 * FIRE_COARSE + x / 4];
-    int apart = fine ? 1 : 2, side = 2 * apart; // in rays and in pixels
+/// The rays around a pixel of the tile, counted from its upper left, and their weights.
+static void views_around(const FireTile *tile, int x, int y, const FireView *views[4], float weight[4]) {
+    const bool fine = tile->fine[y / 4 * FIRE_COARSE + x / 4];
+    const int apart = fine ? 1 : 2, side = 2 * apart; // in rays and in pixels
     const FireView *view = &tile->views[y / side * apart * FIRE_ACROSS + x / side * apart];
-    float right = ((float)(x % side) + 0.5f) / (float)side, down = ((float)(y % side) + 0.5f) / (float)side;
+    const float right = ((float)(x % side) + 0.5f) / (float)side, down = ((float)(y % side) + 0.5f) / (float)side;
+    for (int k = 0; k < 4; k++) {
+        views[k] = view + k % 2 * apart + k / 2 * apart * FIRE_ACROSS;
+        weight[k] = (k % 2 ? right : 1 - right) * (k / 2 ? down : 1 - down);
+    }
+}
+
+void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear) {
+    const FireView *views[4];
+    float weight[4];
+    views_around(tile, x, y, views, weight);
     *light = float3(0, 0, 0);
     *clear = 0;
-    add_view(view, distance, (1 - right) * (1 - down), light, clear);
-    add_view(view + apart, distance, right * (1 - down), light, clear);
-    add_view(view + apart * FIRE_ACROSS, distance, (1 - right) * down, light, clear);
-    add_view(view + apart * FIRE_ACROSS + apart, distance, right * down, light, clear);
+    for (int k = 0; k < 4; k++) add_view(views[k], distance, weight[k], light, clear);
+}
+
+bool fire_is_hot(const FireTile *tile, int x, int y) {
+    for (int k = 0; k < 4; k++) {
+        const FireView *view = &tile->views[(y / 2 + k / 2 * 2) * FIRE_ACROSS + x / 2 + k % 2 * 2];
+        if (view->count && view->hot[view->count - 1][0] > 0) return true;
+    }
+    return false;
+}
+
+float fire_heats(const FireTile *tile, int x, int y, float distance, float *where) {
+    const FireView *views[4];
+    float weight[4], hot[2] = {0, 0};
+    views_around(tile, x, y, views, weight);
+    for (int k = 0; k < 4; k++) {
+        float part;
+        const int low = steps_before(views[k], distance, &part);
+        for (int c = 0; c < 2; c++) {
+            const float sum = low ? views[k]->hot[low - 1][c] : 0;
+            hot[c] += weight[k] * (part > 0 ? mixf(sum, views[k]->hot[low][c], part) : sum);
+        }
+    }
+    *where = hot[0] > 0 ? hot[1] / hot[0] : 0;
+    return hot[0];
 }

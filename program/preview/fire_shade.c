@@ -31,7 +31,9 @@
 #define GROUP_WIDE 0.075f ///< m along what burns, over which tongues are high or low together
 #define GROUP_RATE 2.0f   ///< 1/s
 #define GROUP 0.35f
-#define GROUP_UNLIKE 1.5f   ///< octaves
+#define GROUP_UNLIKE 1.5f ///< octaves
+#define HOT_EDDY 0.005f   ///< m, of the eddies through which what is behind shimmers
+#define HOT_OFTEN 2.0f
 #define FED_WHOLLY 0.3f     ///< what burns less gains and loses less
 #define SMOKE_SEEN_AS 76.0f ///< times its extinction, in the middle of a fold; what lies between folds is clear
 #define SMOKE_FULL 0.6f     ///< 1/m, from which on it is wholly
@@ -134,6 +136,12 @@ float fire_feed(const Fire *fire, Float3 p, float height, float flame) {
     joined += TAPER * (expf(-tall * exp2f(-UNLIKE * n.d - GROUP_UNLIKE * group)) -
                        expf(-tall)); // it ends lower or higher than others
     return maxf(flame * (1 + more) + joined * minf(flame / FED_WHOLLY, 1), 0);
+}
+
+void fire_turns(const Fire *fire, Float3 p, float turn[2]) {
+    const Noise n = eddies(fire, p, EDDY_RATE * (fire->moment - p.z / RISE_MOST), HOT_EDDY, HOT_OFTEN);
+    turn[0] = n.a;
+    turn[1] = n.b;
 }
 
 void fire_between(const FirePoint *a, const FirePoint *b, float step, Matter *matter) {

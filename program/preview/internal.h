@@ -88,6 +88,9 @@ void mask_fill(Preview *preview);
 /// Whether a sheet or a shape may be seen in the block of this pixel.
 bool mask_covers(const Preview *preview, int x, int y);
 
+/// The same, in it or the blocks around: hot gas bends rays to what is seen there.
+bool mask_nears(const Preview *preview, int x, int y);
+
 /// And whether lens or shutter may blur it there.
 bool mask_blurs(const Preview *preview, int x, int y);
 

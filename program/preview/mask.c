@@ -125,3 +125,12 @@ static int mask_at(const Preview *preview, int x, int y) {
 
 bool mask_covers(const Preview *preview, int x, int y) { return mask_at(preview, x, y) != 0; }
 bool mask_blurs(const Preview *preview, int x, int y) { return mask_at(preview, x, y) == MASK_BLURRED; }
+
+bool mask_nears(const Preview *preview, int x, int y) {
+    for (int k = 0; k < 9; k++) {
+        const int i = x + BLOCK * (k % 3 - 1), j = y + BLOCK * (k / 3 - 1);
+        const bool inside = i >= 0 && j >= 0 && i < preview->def.width && j < preview->def.height;
+        if (inside && mask_at(preview, i, j)) return true;
+    }
+    return false;
+}

@@ -34,6 +34,7 @@ void block_aim_each(const Preview *preview, Block *block, int sample, const floa
         }
 
         camera_ray(&preview->camera, x, y, disc, &block->origin[i], &block->direction[i]);
+        if (block->bend[i] > 0) shimmer_bend(preview, block, i, sample);
         block->time[i] = shutter ? sample_time((uint32_t)sample, late ? block->key[i] : 0) : 0.5f;
     }
 }

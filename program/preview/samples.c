@@ -216,9 +216,10 @@ static int find_restless(const Block *block, const int *active, float calm, int 
 
 /// Takes SAMPLES_FIRST samples of every pixel, and the rest of pixels that need it. Bare blocks get the first only. Where
 /// nothing blocks the light two are enough, in bare blocks and in those that are evenly lit.
-static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
+static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, bool hot, int *taken) {
     const bool blurs = mask_blurs(preview, block->x[0], block->y[0]); // even if the first samples miss what is blurred
     int more[LANES], samples = preview->def.samples, first = SAMPLES_FIRST;
+    if (!bare && hot) shimmer_find(preview, block, active);
     if (samples < first || is_still(preview) || block->corner) first = samples;
     for (int s = 0; s < first; s++) {
         add_sample(preview, block, active, bare, s, active);
@@ -283,6 +284,7 @@ void block_draw(Preview *preview, Block *block) {
     memset(block->lit_other, 0, sizeof block->lit_other);
     memset(block->lit_seen, 0, sizeof block->lit_seen);
     memset(block->lit_asked, 0, sizeof block->lit_asked);
+    memset(block->bend, 0, sizeof block->bend);
 
     for (int i = 0; i < LANES; i++) {
         active[i] = block->x[i] < def->width && block->y[i] < def->height ? -1 : 0;
@@ -297,7 +299,8 @@ void block_draw(Preview *preview, Block *block) {
         block->layer[i] = (LayerSum){.depth = INFINITY, .sheet = -1, .piece = -1};
     }
 
-    bool bare = !mask_covers(preview, block->x[0], block->y[0]);
+    const bool hot = block->tile && fire_is_hot(block->tile, block->x[0] % TILE, block->y[0] % TILE);
+    const bool bare = !(hot ? mask_nears : mask_covers)(preview, block->x[0], block->y[0]);
     block->corner = false;
     if (bare) {
         block->corner = aim_at_corner(preview, block, active);
@@ -311,7 +314,7 @@ void block_draw(Preview *preview, Block *block) {
         block_add_light(preview, block, active, SAMPLE_CENTRE, active);
         for (int i = 0; i < LANES; i++) taken[i] = 1;
     } else {
-        add_samples(preview, block, active, bare, taken);
+        add_samples(preview, block, active, bare, hot, taken);
     }
 
     // the picture gets the mean of the sums

@@ -190,3 +190,45 @@ TEST(a_moving_ball_is_blurred) {
     assert_true(pixel(rgb, W / 2 + way, H / 2)[0] > 150 && pixel(rgb, W / 2 - way, H / 2)[0] > 150);
     assert_true(pixel(rgb, W / 2, H / 2 + off)[0] < 140);
 }
+
+/// How steep borders are in the middle of a picture: the sum of the squares of differences, as a share of their range's. What a
+/// flame adds to that and hides of it is taken out.
+static float steepness(const float beauty[][3], const float fire[][4], int side) {
+    float sum = 0, low = INFINITY, high = -INFINITY;
+    for (int y = side / 2 - 16; y < side / 2 + 16; y++)
+        for (int x = side / 2 - 16; x < side / 2 + 16; x++) {
+            float behind[2];
+            for (int k = 0; k < 2; k++) {
+                const int i = y * side + x + k;
+                behind[k] = (beauty[i][0] - fire[i][0]) / (1 - fire[i][3]);
+            }
+            low = fminf(low, behind[0]), high = fmaxf(high, behind[0]);
+            sum += (behind[1] - behind[0]) * (behind[1] - behind[0]);
+        }
+    return sum / ((high - low) * (high - low));
+}
+
+/// Through hot gas edges are seen less sharply. Print lay behind a flame as sharp as beside it. Gas behind a sheet does nothing to it.
+TEST(what_is_behind_a_flame_shimmers) {
+    enum { SIDE = 384, TEXELS = 512 };
+    static float beauty[SIDE * SIDE][3], fire[SIDE * SIDE][4];
+    static Ball ball;
+    static uint8_t texels[3 * TEXELS];
+    Striped s;
+    striped(&s);
+    for (int i = 0; i < TEXELS; i++) memset(texels + 3 * i, i & 8 ? 255 : 0, 3);
+    s.image = (Image){.width = TEXELS, .height = 1, .rgb = texels};
+    s.def.width = s.def.height = SIDE;
+    s.def.samples = 16;
+    const PreviewLayers layers = {.beauty = beauty, .fire = fire};
+    float steep[3];
+    for (int k = 0; k < 3; k++) {
+        ball_make(&ball, 0, 0, k == 1 ? 0.25f : 0.02f, 0.03f, 1e6f, 0);
+        draw_layers(&s.def, &s.q.surface, k ? &ball.gas : NULL, 0.3, &layers);
+        steep[k] = steepness(beauty, fire, SIDE);
+    }
+    print_message("edges: %.2f, behind a flame %.2f, before one %.2f\n", (double)steep[0], (double)steep[1],
+                  (double)steep[2]);
+    assert_true(steep[1] < 0.75f * steep[0]); // .96
+    assert_true(steep[2] > 0.9f * steep[0]);
+}
