@@ -71,7 +71,7 @@
 #define FOOT_COOL 0.65f     ///< share of the temperature range that fresh soot has
 #define FOOT_GLOWS 0.8f     ///< soot glows that much more there
 #define FOOT_HIDES 0.4f     ///< and hides that much less: what burns shows through
-#define FOOT_HAZE 0.18f     ///< share of the soot that is beside tongues
+#define FOOT_HAZE 0.22f     ///< share of the soot that is beside tongues
 #define TONGUE_MIDDLE 0.05f ///< value of the noise whose creases are tongues
 #define TONGUE_ENDS 0.33f
 #define TONGUE_ROOTED 0.6f ///< the same in the foot, where they are wide
@@ -80,7 +80,10 @@
 #define BORDER_GAIN 1.25f   ///< factor on soot that makes up for what the border loses
 #define YOUNG_HOT 0.58f     ///< share of the temperature range, below which no young soot is
 #define YOUNG_BEGINS 0.006f ///< m above the paper, from which on it may be cooler
-#define YOUNG_ENDS 0.026f   ///< m, from which on it may be as cool as any
+#define YOUNG_ENDS 0.025f   ///< m, from which on it may be as cool as any
+#define FOOT_BORDER 2.0f    ///< times as wide is the border of a foot, or it is a film with sides
+#define FOOT_THIN 0.2f      ///< as BORDER_THIN
+#define FOOT_GAIN 1.45f     ///< as BORDER_GAIN, times that
 #define CORE_BEGINS 0.0030f ///< m
 #define CORE_FULL 0.0240f
 #define CORE_HIDES 0.22f ///< more than it glows
@@ -379,7 +382,9 @@ static inline void shade_flame(const Fire *fire, Wide flame, Wide3 p, Wide rise,
                 (1 - wide_step(BLUE_ENDS / 2, BLUE_ENDS, rise));
     const Wide fold = (1 - clear) * (1 - clear) * wide_mix(0.25f, 1, above);
     soot *= 0.35f + 3.5f * fold * (1 + 0.7f * pane) + 1.2f * clear * clear + FOOT_GLOWS * tongue * (1 - above);
-    soot *= BORDER_GAIN * wide_mix(BORDER_THIN, 1, wide_step(0, fire->scale * BORDER_WIDE, point->depth));
+    const Wide border = fire->scale * BORDER_WIDE * wide_mix(FOOT_BORDER, 1, above);
+    soot *= wide_mix(wide_mix(FOOT_THIN, BORDER_THIN, above), 1, wide_step(0, border, point->depth));
+    soot *= BORDER_GAIN * wide_mix(FOOT_GAIN, 1, above);
     soot *= (0.6f + 0.9f * torn * wide_max(thread.b, -0.5f)) * (1 - 0.75f * tip) * (1 + 0.95f * filament);
 
     // low in a flame what would be a cooler soot is thinner, and shines as much
