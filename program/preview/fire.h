@@ -230,7 +230,7 @@ void fire_along(const Preview *preview, int count, const Float3 *origin, const F
 /// The light of the fire up to `distance` for a pixel of the tile, counted from its upper left, and the transmittance.
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear);
 
-/// Whether there is hot gas around the 4 x 4 pixels of which this is the first.
+/// Whether something is seen through hot gas around the 4 x 4 pixels of which this is the first.
 bool fire_is_hot(const FireTile *tile, int x, int y);
 
 /// The length of a pixel's ray in hot gas up to a distance, m, and where that is in the mean.

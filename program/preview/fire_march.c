@@ -14,6 +14,7 @@
 #define FIRE_NOTED 0.8f ///< of the usual step, which what is noted is longer than
 #define SMOKE_APART 0.005f ///< m, between rays that have smoke
 #define SMOKE_STEP 0.010f  ///< m, distance at most between the places of a ray where its smoke is looked up
+#define HOT_HIDES 0.1f     ///< transmittance below which nothing is seen to shimmer
 #define HOT_BEYOND 0.002f  ///< m outside of flames, over which gas is hot
 #define FIRE_SOFT 6.0f     ///< pixels, over which the edges of flames begin: rays are two apart, depths rough
 #define FIRE_EVEN 0.020f   ///< difference of light, as l / (1 + l), that may be interpolated
@@ -562,7 +563,8 @@ void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *ligh
 bool fire_is_hot(const FireTile *tile, int x, int y) {
     for (int k = 0; k < 4; k++) {
         const FireView *view = &tile->views[(y / 2 + k / 2 * 2) * FIRE_ACROSS + x / 2 + k % 2 * 2];
-        if (view->count && view->hot[view->count - 1][0] > 0) return true;
+        const int last = view->count - 1;
+        if (last >= 0 && view->hot[last][0] > 0 && view->clear[last] > HOT_HIDES) return true;
     }
     return false;
 }
