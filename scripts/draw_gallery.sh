@@ -5,7 +5,7 @@
 # Usage: scripts/draw_gallery.sh [EXAMPLE...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
-declare -A best=([letter]=0087 [letter-hanging]=0146 [hot-sphere]=0060 [page-hot]=0066 [newspaper]=0084
+declare -A best=([letter]=0087 [letter-hanging]=0146 [hot-sphere]=0060 [page-hot]=0045 [newspaper]=0084
     [curtain]=0098 [stack-edge]=0068 [stack]=0108 [crumpled-ball]=0140 [hot-iron]=0098 [tear]=0024 [shirt]=0102
     [burning-torus]=0046 [macro]=0020 [note]=0080 [title]=0112)
 declare -A measured=([letter]=50-59 [letter-hanging]=100-109 [hot-sphere]=50-59 [page-hot]=40-49 [newspaper]=80-89

@@ -78,7 +78,7 @@
 #define BORDER_WIDE 0.003f ///< m inside its edge over which a flame thins out: seen edge-on it must not draw an outline
 #define BORDER_THIN 0.4f
 #define BORDER_GAIN 1.25f   ///< factor on soot that makes up for what the border loses
-#define YOUNG_HOT 0.58f     ///< share of the temperature range, below which no young soot is
+#define YOUNG_HOT 0.50f     ///< share of the temperature range, below which no young soot is
 #define YOUNG_BEGINS 0.006f ///< m above the paper, from which on it may be cooler
 #define YOUNG_ENDS 0.025f   ///< m, from which on it may be as cool as any
 #define FOOT_BORDER 2.0f    ///< times as wide is the border of a foot, or it is a film with sides

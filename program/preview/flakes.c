@@ -30,7 +30,7 @@ enum {
 #define LYING 0.3f            ///< s, of what came to the ground: what lies there is the stain's
 #define SHOWS 0.3f            ///< of the exposure: a plate that turns shows its face for a part of it, or is a grey bar
 #define STARTING 0.06f        ///< s, within which it falls at its speed
-#define FLAKES_A_METRE 190.0f ///< 1/(m s), from sites that glow over a few cm
+#define FLAKES_A_METRE 270.0f ///< 1/(m s), from sites that glow over a few cm
 #define FLAKES_CROWD 0.25f    ///< m of glowing line above which flakes become rarer
 #define FLAKE_DEPTH 3.2f      ///< optical depth across: 0.96 of what is behind is hidden
 #define FLAKE_AIR_DENSITY 1.2f

@@ -461,7 +461,7 @@ static void coat(float coating, const Bent *bent, Point *point) {
 /// of ink's minerals.
 #define DYE_LEFT 0.12f
 
-#define INK_LEAST 0.12f
+#define INK_LEAST 0.6f
 
 /// How much of print is left on char, INK_LEAST to 1: it fades and flakes off in patches.
 static float ink_kept(const Bent *bent) {

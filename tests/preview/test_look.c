@@ -643,6 +643,7 @@ static void draw_leaf(Plate *plate, float glow[FINE_W * FINE_H][3], double time)
     PreviewDef def = close_above(FINE_HIGH);
     def.width = FINE_W, def.height = FINE_H;
     for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
+    def.flakes = 0; // they hide parts of it
     Preview *preview = preview_open(&def);
     const PreviewLayers layers = {.glow = glow};
     assert_int_equal(preview_draw_layers(preview, &plate->surface, time, NULL, &layers, NULL), SINGE_OK);
