@@ -50,7 +50,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     plan->kernels = kernels_choose(settings->instructions);
     plan->solver = solvers[solver->method];
     const bool done =
-        NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->normal, plan->particle_count + 3) &&
+        NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->normal, plan->particle_count) &&
         NEW(memory, plan->air, plan->particle_count + 4) && NEW(memory, plan->predicted, plan->particle_count) &&
         (solver->start == 0 ||
          (NEW(memory, plan->start, plan->particle_count) && NEW(memory, plan->given, plan->particle_count))) &&
@@ -78,7 +78,7 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) 
     if (plan->solver->release) plan->solver->release(memory, shell, plan);
     collision_plan_free(memory, plan->collision);
     FREE(memory, plan->inverse_mass, plan->particle_count);
-    FREE(memory, plan->normal, plan->particle_count + 3);
+    FREE(memory, plan->normal, plan->particle_count);
     FREE(memory, plan->air, plan->particle_count + 4);
     FREE(memory, plan->predicted, plan->particle_count);
     if (plan->start) FREE(memory, plan->start, plan->particle_count);

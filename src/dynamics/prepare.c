@@ -74,6 +74,18 @@ static void prepare_air(const Prepare *job, uint32_t begin, uint32_t end) {
     }
 }
 
+/// Makes the normals of `count` particles unit vectors, at most four: a range ends anywhere, and others write what is behind.
+static inline void make_units(float (*normals)[4], uint32_t count) {
+    Float4 q[4] = {{0}};
+    for (uint32_t k = 0; k < count; k++) q[k] = float4_load(normals[k]);
+    float4_transpose(q);
+    const Float4 length = float4_sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), one = float4_all(1);
+    const Float4 scale = float4_select(length > 0, one / length, one);
+    for (int d = 0; d < 3; d++) q[d] *= scale;
+    float4_transpose(q);
+    for (uint32_t k = 0; k < count; k++) float4_store(normals[k], q[k]);
+}
+
 static void prepare_particles(void *task, int from, int to) {
     const Prepare local = *(const Prepare *)task, *job = &local; // of its own, so that stores cannot change it
     DynamicsPlan *plan = job->plan;
@@ -112,16 +124,9 @@ static void prepare_particles(void *task, int from, int to) {
             for (uint32_t k = fan_first[i]; k < fan_first[i + 1]; k++) normal += float4_load(cell_normal[fan[k]]);
         float4_store(normals[i], float4_select(three, normal, float4_load(normals[i])));
     }
-    for (uint32_t i = begin; i < end; i += 4) {
-        Float4 q[4];
-        for (uint32_t k = 0; k < 4; k++) q[k] = float4_load(normals[i + k]);
-        float4_transpose(q);
-        const Float4 length = float4_sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), one = float4_all(1);
-        const Float4 scale = float4_select(length > 0, one / length, one);
-        for (int d = 0; d < 3; d++) q[d] *= scale;
-        float4_transpose(q);
-        for (uint32_t k = 0; k < 4; k++) float4_store(normals[i + k], q[k]);
-    }
+    uint32_t i = begin;
+    for (; i + 4 <= end; i += 4) make_units(normals + i, 4);
+    if (i < end) make_units(normals + i, end - i);
 }
 
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, const SingeWindDef *wind,
