@@ -124,9 +124,7 @@ static void prepare_particles(void *task, int from, int to) {
             for (uint32_t k = fan_first[i]; k < fan_first[i + 1]; k++) normal += float4_load(cell_normal[fan[k]]);
         float4_store(normals[i], float4_select(three, normal, float4_load(normals[i])));
     }
-    uint32_t i = begin;
-    for (; i + 4 <= end; i += 4) make_units(normals + i, 4);
-    if (i < end) make_units(normals + i, end - i);
+    for (uint32_t i = begin; i < end; i += 4) make_units(normals + i, end - i < 4 ? end - i : 4);
 }
 
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, const SingeWindDef *wind,
