@@ -374,17 +374,22 @@ TEST(rims_of_holes_in_cloth_are_pale) {
     assert_true(ratio > 1.15); // 1.01
 }
 
+/// Cuts a round hole into the middle of the sheet.
+static void cut_middle(float radius) {
+    uint32_t kept = 0;
+    for (uint32_t t = 0; t < burnt.surface.triangle_count; t++) {
+        const float *corner = burnt.position[burnt.triangles[t][0]];
+        if (hypotf(corner[0], corner[1]) > radius)
+            memmove(burnt.triangles[kept++], burnt.triangles[t], sizeof *burnt.triangles);
+    }
+    burnt.surface.triangle_count = kept;
+}
+
 /// The light of a table 5 cm below such a sheet, of paper, as it is seen through a hole of 2 cm in its middle.
 static float seen_through(float burn) {
     static float beauty[SEEN * SEEN][3];
     char_make(burn);
-    uint32_t kept = 0;
-    for (uint32_t t = 0; t < burnt.surface.triangle_count; t++) {
-        const float *corner = burnt.position[burnt.triangles[t][0]];
-        if (hypotf(corner[0], corner[1]) > 0.010f)
-            memmove(burnt.triangles[kept++], burnt.triangles[t], sizeof *burnt.triangles);
-    }
-    burnt.surface.triangle_count = kept;
+    cut_middle(0.010f);
     PreviewDef def = above();
     def.width = def.height = SEEN, def.samples = 4, def.camera.fov = 0.376f, def.ground_height = -0.05f;
     def.sun_direction[1] = 0; // through the hole
@@ -406,13 +411,7 @@ TEST(what_lies_behind_char_is_dim) {
 TEST(holes_behind_holes_have_no_bright_rims) {
     static float beauty[SEEN * SEEN][3];
     char_make(0.7f);
-    uint32_t kept = 0;
-    for (uint32_t t = 0; t < burnt.surface.triangle_count; t++) {
-        const float *corner = burnt.position[burnt.triangles[t][0]];
-        if (hypotf(corner[0], corner[1]) > 0.014f)
-            memmove(burnt.triangles[kept++], burnt.triangles[t], sizeof *burnt.triangles);
-    }
-    burnt.surface.triangle_count = kept;
+    cut_middle(0.014f);
     for (int i = 0; i < GRID; i++)
         if (hypotf(burnt.position[i][0], burnt.position[i][1]) < 0.032f) burnt.position[i][2] = -0.03f;
     PreviewDef def = above();
