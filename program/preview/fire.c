@@ -237,7 +237,7 @@ static void sway_cells(Fire *fire) {
                 fire_sway(fire, p, sway[2], sway);
                 FireCell *cell = &fire->cells[fire_at(fire, x, y, z)];
                 if (!(cell->flame > 0)) continue;
-                const float off = fire_leans(fire->apart[fire_at(fire, x, y, z)]);
+                const float off = fire_leans(fire, fire->apart[fire_at(fire, x, y, z)]);
                 const float fed = maxf(fire_feed(fire, p, sway[2], cell->flame) - off, 0);
                 cell->rise *= fed / cell->flame;
                 cell->flame = fed;

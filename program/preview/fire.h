@@ -140,7 +140,7 @@ static inline size_t fire_noise_at(int x, int y, int z) { return (size_t)(x + FI
 void fire_find_feet(Preview *preview);
 
 /// What a flame loses where it is so far aside (m) of those that stand on what burns.
-float fire_leans(float apart);
+float fire_leans(const Fire *fire, float apart);
 
 // fire.c
 void fire_free(Preview *preview);

@@ -5,13 +5,16 @@
 //
 // A vertex feeds a flame unless whole paper covers it: less than COVER above it, on both sides of its own sheet.
 //
-// A flame leans by LEAN at most. With a and h the horizontal distance to a vertex that feeds it and the height above that,
-// how far a place is aside of all flames is
+// A flame follows the gas that rises from what burns, however much that leans, and spreads by little: by LEAN, and higher
+// up, where it mixes with air, by LEAN_HIGH. With a and h the horizontal distance to a vertex that feeds it and the height
+// above that, how far a place is aside of all flames is, at the vertex,
 //
 //     s(x) = min (a - LEAN h),   with LEAN_BELOW (h + BELOW_FREE) for LEAN h below
 //
-// A hot shape feeds flames, too. There a flame f loses LEAN_FALLS (s - LEAN_FOOT). s changes as smoothly as a distance, so
-// interpolation between the cells is exact enough.
+// and upwards from there, layer by layer, s(x) = s(x - v dt) - LEAN dz. A flame of which more was left had feet as wide as
+// the gas's cells: bags of haze beside the paper.
+//
+// A hot shape feeds flames, too. There a flame f loses LEAN_FALLS (s - LEAN_FOOT) per cell.
 //
 // Fuel that enters hot gas burns further up, so a flame may hang above the rim. It comes down to what burns there: up to
 // two cells from above, and to RIM_FLAME at most, times a share that falls from the vertex to RIM_REACH.
@@ -23,20 +26,22 @@
 #define COVER 0.03f       ///< m
 #define COVER_OFF 0.0015f ///< m off the sheet, where the search begins
 #define COVER_WHOLE 0.3f  ///< burnt share, up to which paper hides flames below it
-#define LEAN 0.7f
+#define LEAN 0.17f
+#define LEAN_HIGH 0.6f
+#define LEAN_BEGINS 0.02f ///< m above what burns, up to which it spreads by LEAN, in a flame of scale 1
+#define LEAN_ENDS 0.06f
 #define LEAN_BELOW 2.0f
-#define BELOW_FREE 1.5f   ///< cells below, from where on it counts: the flame at the paper is a mean with theirs
-#define LEAN_FOOT 0.001f  ///< m
-#define LEAN_FALLS 160.0f ///< 1/m
-#define RIM_FLAME 0.85f   ///< of a full flame, where paper burns
-#define RIM_REACH 1.5f    ///< cells, over which that ends
-#define RIM_UP 0.6f       ///< of a cell's height
-#define RIM_BELOW 2.0f    ///< of one down
-#define RIM_LOW 0.1f      ///< 1/s, rate from which on paper has a flame of its own
+#define BELOW_FREE 1.5f ///< cells below, from where on it counts: the flame at the paper is a mean with theirs
+#define LEAN_FOOT 0.3f  ///< cells
+#define LEAN_FALLS 1.3f ///< per cell
+#define RIM_FLAME 0.85f ///< of a full flame, where paper burns
+#define RIM_REACH 1.5f  ///< cells, over which that ends
+#define RIM_UP 0.6f     ///< of a cell's height
+#define RIM_BELOW 2.0f  ///< of one down
+#define RIM_LOW 0.1f    ///< 1/s, rate from which on paper has a flame of its own
 #define RIM_HIGH 1.0f
 #define SHAPE_HOT 800.0f ///< K
-#define NOWHERE 1.0f     ///< m
-#define LEAN_REACH 0.04f ///< m aside of each vertex; higher up it is more
+#define NOWHERE 0.04f    ///< m
 
 static bool stops_at_whole(void *context, int lane, uint32_t triangle, float u, float v) {
     (void)lane, (void)u, (void)v;
@@ -79,13 +84,13 @@ static size_t cell_at(const Fire *fire, int x, int y, int z) {
 static void add_foot(Fire *fire, Float3 g, float wide, float rate) {
     const size_t layer = (size_t)fire->size[0] * (size_t)fire->size[1];
     const float own = RIM_FLAME * stepf(RIM_LOW, RIM_HIGH, rate);
-    const float reach = LEAN_REACH / fire->cell;
+    const float reach = NOWHERE / fire->cell;
     const int low[3] = {(int)clampf(ceilf(g.x - reach), 0, (float)fire->size[0]),
                         (int)clampf(ceilf(g.y - reach), 0, (float)fire->size[1]),
-                        (int)clampf(ceilf(g.z) - 3, 0, (float)fire->size[2])};
+                        (int)clampf(ceilf(g.z) - 2, 0, (float)fire->size[2])};
     const int high[3] = {(int)clampf(floorf(g.x + reach), -1, (float)fire->size[0] - 1),
                          (int)clampf(floorf(g.y + reach), -1, (float)fire->size[1] - 1),
-                         (int)clampf(floorf(g.z + 3), -1, (float)fire->size[2] - 1)};
+                         (int)clampf(floorf(g.z + 1), -1, (float)fire->size[2] - 1)};
     for (int z = low[2]; z <= high[2]; z++)
         for (int y = low[1]; y <= high[1]; y++)
             for (int x = low[0]; x <= high[0]; x++) {
@@ -100,12 +105,34 @@ static void add_foot(Fire *fire, Float3 g, float wide, float rate) {
             }
 }
 
+/// s upwards from the feet, with the gas.
+static void follow_feet(Fire *fire) {
+    const float each = 1 / sqrtf(fire->scale);
+    for (int z = 1; z < fire->size[2]; z++)
+        for (int y = 1; y < fire->size[1] - 1; y++)
+            for (int x = 1; x < fire->size[0] - 1; x++) {
+                const size_t here = cell_at(fire, x, y, z);
+                float fx, fy;
+                const int ix = noise_floor((float)x - fire->source[here][0], &fx);
+                const int iy = noise_floor((float)y - fire->source[here][1], &fy);
+                const float *a = &fire->apart[cell_at(fire, ix, iy, z - 1)], *b = a + fire->size[0];
+                const float from = mixf(mixf(a[0], a[1], fx), mixf(b[0], b[1], fx), fy);
+                const float risen =
+                    fire->cell + fire->sway[cell_at(fire, ix + (fx > 0.5f), iy + (fy > 0.5f), z - 1)][0];
+                const float lean = mixf(LEAN, LEAN_HIGH, stepf(LEAN_BEGINS, LEAN_ENDS, risen * each));
+                if (from - lean * fire->cell > fire->apart[here]) continue;
+                fire->apart[here] = from - lean * fire->cell;
+                fire->sway[here][0] = risen;
+            }
+}
+
 void fire_find_feet(Preview *preview) {
     PreviewScene *scene = &preview->scene;
     Fire *fire = &preview->fire;
     cover(scene);
     bool any = false;
     for (size_t i = 0; i < fire->cell_capacity; i++) fire->apart[i] = NOWHERE;
+    memset(fire->sway, 0, fire->cell_capacity * sizeof *fire->sway); // heights above feet, until the cells sway
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
         any = any || scene->vertices[i].flaming >= FLAMES_FROM;
         if (scene->vertices[i].feeds < FLAMES_FROM) continue;
@@ -122,15 +149,7 @@ void fire_find_feet(Preview *preview) {
     }
     if (!any) memset(fire->apart, 0, fire->cell_capacity * sizeof *fire->apart);
 
-    // upwards, and there further aside
-    for (int z = 1; z < fire->size[2]; z++)
-        for (int y = 1; y < fire->size[1] - 1; y++)
-            for (int x = 1; x < fire->size[0] - 1; x++) {
-                float *apart = &fire->apart[cell_at(fire, x, y, z)];
-                const float *below = &fire->apart[cell_at(fire, x, y, z - 1)], *back = below - fire->size[0];
-                const float aside = minf(minf(below[-1], below[1]), minf(*back, below[fire->size[0]]));
-                *apart = minf(*apart, minf(*below, aside + fire->cell) - LEAN * fire->cell);
-            }
+    follow_feet(fire);
 }
 
-float fire_leans(float apart) { return LEAN_FALLS * maxf(apart - LEAN_FOOT, 0); }
+float fire_leans(const Fire *fire, float apart) { return LEAN_FALLS * maxf(apart / fire->cell - LEAN_FOOT, 0); }

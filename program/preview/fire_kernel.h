@@ -64,14 +64,14 @@
 #define SPENT_THIN 0.4f
 #define FOOT_CLEAR 0.004f   ///< m above the paper, up to which a flame is all foot
 #define FOOT_FULL 0.027f    ///< m, from which none of it is foot
-#define FOOT_SOOT 0.009f    ///< m, at which a tongue's middle has all its soot
-#define FOOT_BESIDE 0.017f  ///< m, the same beside tongues
+#define FOOT_SOOT 0.0075f   ///< m, at which a tongue's middle has all its soot
+#define FOOT_BESIDE 0.0145f ///< m, the same beside tongues
 #define FOOT_WARM 0.015f    ///< m, at which a tongue's middle is as hot as above
 #define FOOT_LATE 0.030f    ///< m, the same beside tongues
 #define FOOT_COOL 0.65f     ///< share of the temperature range that fresh soot has
 #define FOOT_GLOWS 0.8f     ///< soot glows that much more there
 #define FOOT_HIDES 0.4f     ///< and hides that much less: what burns shows through
-#define FOOT_HAZE 0.22f     ///< share of the soot that is beside tongues
+#define FOOT_HAZE 0.27f     ///< share of the soot that is beside tongues
 #define TONGUE_MIDDLE 0.05f ///< value of the noise whose creases are tongues
 #define TONGUE_ENDS 0.33f
 #define TONGUE_ROOTED 0.6f ///< the same in the foot, where they are wide
@@ -81,8 +81,8 @@
 #define YOUNG_HOT 0.50f     ///< share of the temperature range, below which no young soot is
 #define YOUNG_BEGINS 0.006f ///< m above the paper, from which on it may be cooler
 #define YOUNG_ENDS 0.025f   ///< m, from which on it may be as cool as any
-#define FOOT_BORDER 2.0f    ///< times as wide is the border of a foot, or it is a film with sides
-#define FOOT_THIN 0.2f      ///< as BORDER_THIN
+#define FOOT_BORDER 1.7f    ///< times as wide is the border of a foot, or it is a film with sides
+#define FOOT_THIN 0.25f     ///< as BORDER_THIN
 #define FOOT_GAIN 1.45f     ///< as BORDER_GAIN, times that
 #define CORE_BEGINS 0.0030f ///< m
 #define CORE_FULL 0.0240f

@@ -147,7 +147,7 @@ TEST(feet_are_over_what_burns) {
 
     print_message("feet: %.3f of the light is over what gives off no fuel\n",
                   (double)(light[1] / (light[0] + light[1])));
-    assert_true(light[1] < 0.06f * (light[0] + light[1])); // .47
+    assert_true(light[1] < 0.02f * (light[0] + light[1])); // .046 where flames spread by .7 of their height, .47 by any
 }
 
 /// Paper that burns below a whole sheet has no flames above that, though the gas burns there. Flames stood on the clean

@@ -69,9 +69,10 @@ function rootsOf(gas: Gas, surface: Surface): Float32Array {
     return roots;
 }
 
-/** How far each cell is aside of flames that stand on what burns and lean, m; and the flames of what burns itself (fire_feet.c). */
-function feetOf({ size, cell, origin }: Gas, surface: Surface, power: Float32Array): Float32Array {
-    const [nx, ny, nz] = size, apart = zeros("apart", nx * ny * nz).fill(1), reach = LOOK.LEAN_REACH / cell, burning = new Map<number, number[]>();
+/** How far each cell is aside of flames that stand on what burns and follow the gas, m; and the flames of what burns itself (fire_feet.c). */
+function feetOf({ size, cell, origin, velocity }: Gas, surface: Surface, power: Float32Array, scale: number): Float32Array {
+    const [nx, ny, nz] = size, apart = zeros("apart", nx * ny * nz).fill(LOOK.NOWHERE), risen = zeros("risen", apart.length);
+    const reach = LOOK.NOWHERE / cell, burning = new Map<number, number[]>();
     for (let i = 0; i < surface.vertex_count; i++) {
         const rate = surface.burn_rate[i]!;
         if (rate < LOOK.FLAMES_FROM || surface.mass[i]! - surface.char_fraction[i]! - surface.ash_fraction[i]! < 0.01) continue;
@@ -81,7 +82,7 @@ function feetOf({ size, cell, origin }: Gas, surface: Surface, power: Float32Arr
     if (!burning.size) return apart.fill(0);
     for (const [rate, gx, gy, gz] of burning.values() as Iterable<[number, number, number, number]>) {
         const own = LOOK.RIM_FLAME * step(LOOK.RIM_LOW, LOOK.RIM_HIGH, rate), toX = Math.min(Math.floor(gx + reach), nx - 1), toY = Math.min(Math.floor(gy + reach), ny - 1);
-        for (let z = Math.max(Math.ceil(gz) - 3, 0); z <= Math.min(Math.floor(gz + 3), nz - 1); z++)
+        for (let z = Math.max(Math.ceil(gz) - 2, 0); z <= Math.min(Math.floor(gz + 1), nz - 1); z++)
             for (let y = Math.max(Math.ceil(gy - reach), 0); y <= toY; y++)
                 for (let x = Math.max(Math.ceil(gx - reach), 0); x <= toX; x++) {
                     const i = x + nx * (y + ny * z), aside = (x - gx) * (x - gx) + (y - gy) * (y - gy), up = z - gz;
@@ -91,12 +92,19 @@ function feetOf({ size, cell, origin }: Gas, surface: Surface, power: Float32Arr
                     power[i] = Math.max(power[i]!, Math.min(above, own * (1 - Math.sqrt(aside + over * over) / LOOK.RIM_REACH)));
                 }
     }
-    for (let z = 1; z < nz; z++)
-        for (let y = 0, i = nx * ny * z; y < ny; y++)
+    // upwards with the gas
+    for (let z = 1, i = nx * ny; z < nz; z++)
+        for (let y = 0; y < ny; y++)
             for (let x = 0; x < nx; x++, i++) {
-                const under = i - nx * ny, left = x > 0 ? apart[under - 1]! : 1, right = x + 1 < nx ? apart[under + 1]! : 1;
-                const aside = Math.min(left, right, y > 0 ? apart[under - nx]! : 1, y + 1 < ny ? apart[under + nx]! : 1);
-                apart[i] = Math.min(apart[i]!, Math.min(apart[under]!, aside + cell) - LOOK.LEAN * cell);
+                const up = Math.max(velocity[3 * i + 2]!, 0.1);
+                const fromX = clamp(x - clamp(velocity[3 * i]! / up, -1, 1), 0, nx - 1), fromY = clamp(y - clamp(velocity[3 * i + 1]! / up, -1, 1), 0, ny - 1);
+                const ix = Math.min(Math.floor(fromX), nx - 2), iy = Math.min(Math.floor(fromY), ny - 2), fx = fromX - ix, fy = fromY - iy, under = ix + nx * (iy + ny * (z - 1));
+                const from = (apart[under]! * (1 - fx) + apart[under + 1]! * fx) * (1 - fy) + (apart[under + nx]! * (1 - fx) + apart[under + nx + 1]! * fx) * fy;
+                const height = cell + risen[under + (fx > 0.5 ? 1 : 0) + (fy > 0.5 ? nx : 0)]!;
+                const s = from - cell * (LOOK.LEAN + (LOOK.LEAN_HIGH - LOOK.LEAN) * step(LOOK.LEAN_BEGINS, LOOK.LEAN_ENDS, height / Math.sqrt(scale)));
+                if (s > apart[i]!) continue;
+                apart[i] = s;
+                risen[i] = height;
             }
     return apart;
 }
@@ -152,7 +160,7 @@ export function fireOf(gas: Gas, surface: Surface, time: number): Fire {
     const thin = Math.max(gas.cell / LOOK.FLAME_THICK, 1), scale = flameScale(gas.cell), roots = rootsOf(gas, surface);
     const cells = new Uint8Array(4 * count), burns = zeros("burns", count), known = new Uint8Array(count), index = (x: number, y: number, z: number) => x + nx * (y + ny * z);
     for (let i = 0; i < count; i++) power[i] = thin * gas.flame[i]! > FLAME_LOW ? Math.min(Math.log((thin * gas.flame[i]!) / FLAME_LOW) / FLAME_RANGE, 1) : 0;
-    const apart = feetOf(gas, surface, power);
+    const apart = feetOf(gas, surface, power, scale);
     comeDown(gas.size, roots, power);
 
     // height times flame, layer by layer: where the gas came from, at (x - vx/vz, y - vy/vz) below; over paper mostly its
@@ -227,7 +235,7 @@ function feed({ size, origin, cell, scale, cells, burns, apart }: Omit<Fire, "bo
                 let f = burns[i]!;
                 if (f > 0) {
                     f = fed(origin[0] + (x + 0.5) * cell, origin[1] + (y + 0.5) * cell, origin[2] + (z + 0.5) * cell, height(i), f, time, scale);
-                    f = Math.max(f - LOOK.LEAN_FALLS * Math.max(apart[i]! - LOOK.LEAN_FOOT, 0), 0);
+                    f = Math.max(f - LOOK.LEAN_FALLS * Math.max(apart[i]! / cell - LOOK.LEAN_FOOT, 0), 0);
                     cells[4 * i] = Math.min((255 / LOOK.FLAME_MOST) * f, 255);
                 }
                 if (f <= LOOK.FLAME_SEEN && cells[4 * i + 2]! < 2) continue;
