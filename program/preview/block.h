@@ -12,7 +12,7 @@ typedef struct LayerSum {
     float fire_hides, temperature, burn, depth;
     int hits, samples;
     int behind; ///< how many more samples of other faces lie behind the first one than before it
-    bool mixed; ///< they met several sheets, or one at distances that differ, or a blurred crease
+    bool mixed; ///< they met several sheets, or one at distances that differ, or a crease
     int32_t sheet, piece;
     PreviewMatte mattes[PREVIEW_MATTES]; ///< their shares are numbers of samples
 } LayerSum;

@@ -11,9 +11,9 @@
 
 #include <string.h>
 
-static const float CALM = 0.026f;  ///< range of a pixel's first samples, as l / (1 + l), that needs no more of them
-static const float UNEVEN = 0.15f; ///< range of a block's, beyond which its pixels need more
-static const float BLURRED = 0.3f; ///< the same where lens and shutter spread what is seen: all pixels get all samples
+static const float CALM = 0.026f;   ///< range of a pixel's first samples, as l / (1 + l), that needs no more of them
+static const float UNEVEN = 0.045f; ///< range of a block's, beyond which its pixels need more
+static const float BLURRED = 0.3f;  ///< the same where lens and shutter spread what is seen: all pixels get all samples
 
 static void store(float (*layer)[3], size_t pixel, Float3 value) {
     if (layer) float3_store(layer[pixel], value);
@@ -52,9 +52,7 @@ static bool add_to_layers(const Preview *preview, Block *block, int lane, Float3
     const float depth = point->distance * float3_dot(block->direction[lane], preview->camera.forward);
     const bool first = !sum->samples++;
     const bool other = !first && (point->sheet != sum->sheet || fabsf(depth - sum->depth) > 0.02f * depth);
-    // a pixel that lens and shutter spread over a crease has many faces, too
-    if (other || (!first && block->spread > 1 && float3_dot(point->geometric, sum->facing) < SAME_FACING))
-        sum->mixed = true;
+    if (other || (!first && float3_dot(point->geometric, sum->facing) < SAME_FACING)) sum->mixed = true;
     if (other) sum->behind += depth > sum->depth ? 1 : -1;
     if (first) {
         sum->facing = point->geometric;
@@ -166,8 +164,8 @@ static void add_sample(const Preview *preview, Block *block, const int *active, 
     block_add_light(preview, block, active, sample, ask);
 }
 
-/// Whether some of a pixel's samples hit a sheet or a shape and some do not.
-static bool is_edge(const LayerSum *sum) { return sum->hits > 0 && sum->hits < sum->samples; }
+/// Whether what a pixel's samples show ends in it: it is on several sheets, or far apart, or some of them hit nothing.
+static bool is_edge(const LayerSum *sum) { return sum->behind || (sum->hits > 0 && sum->hits < sum->samples); }
 
 /// Whether a sheet or a shape ends between the lane's pixel and one beside it in the block.
 static bool is_beside_edge(const Block *block, int lane) {
@@ -324,7 +322,6 @@ void block_draw(Preview *preview, Block *block) {
         preview->picture[pixel] = float3_scale(block->sum[i], 1 / (float)taken[i]);
         layers_write(preview, pixel, &block->layer[i]);
         const LayerSum *sum = &block->layer[i];
-        seen_write(preview, pixel, block, i, taken[i],
-                   is_edge(sum) || (sum->mixed && (is_still(preview) || sum->burn > 0)));
+        seen_write(preview, pixel, block, i, taken[i], is_edge(sum) || sum->mixed);
     }
 }

@@ -526,15 +526,18 @@ static void pair_set(Pair *pair, int which, const Float4 *quad) {
 /// The edge of paper before what is dark is straight where a wide lamp is half hidden: a pixel of several faces took the
 /// shadow from its own few rays, and the edge had teeth. Pixels, by which the edge leaves the line of its neighbours, the root
 /// mean square, by how much light rows of pixels have across the edge; paper that has no shadow tells what is due to
-/// the samples of the edge itself.
+/// the samples of the edge itself. In a video, too, before a sheet that lies in its shadow: pixels took all of their shadow
+/// from one of the two.
 TEST(the_edge_of_lit_paper_has_no_teeth) {
     static float beauty[W * H][3];
     static Pair pair;
-    enum { ALONE, SHADOWED, CASES };
+    enum { ALONE, SHADOWED, BEFORE, CASES };
+    static const char *const names[CASES] = {"lit", "half in shadow", "before a sheet"};
     float teeth[CASES];
     for (int kind = ALONE; kind < CASES; kind++) {
         PreviewDef def = above();
-        def.samples = 64, def.lamp_radius = 0.05f;
+        def.samples = kind == BEFORE ? 16 : 64;
+        def.lamp_radius = 0.05f;
         const float lamp[3] = {0.3f, 0, 0.35f};
         memcpy(def.lamp_position, lamp, sizeof lamp);
         for (int c = 0; c < 3; c++) {
@@ -544,8 +547,8 @@ TEST(the_edge_of_lit_paper_has_no_teeth) {
         quad_make(&q, 0.06f, 0.05f);
         for (int i = 0; i < 4; i++) q.position[i][0] += 0.04f * q.position[i][1]; // its edge crosses pixels
         pair_set(&pair, 0, &q);
-        quad_make(&q, 0.03f, 0.2f);
-        for (int i = 0; i < 4; i++) q.position[i][0] += kind == SHADOWED ? 0.2f : 5;
+        quad_make(&q, kind == BEFORE ? 0.15f : 0.03f, kind == BEFORE ? 0.01f : 0.2f);
+        for (int i = 0; i < 4; i++) q.position[i][0] += (float[]){[ALONE] = 5, [SHADOWED] = 0.2f, [BEFORE] = 0}[kind];
         pair_set(&pair, 1, &q);
         const SingeSurface surface = {.vertex_count = 8,
                                       .triangle_count = 4,
@@ -561,21 +564,23 @@ TEST(the_edge_of_lit_paper_has_no_teeth) {
                                       .triangles = pair.triangles};
         see(&def, &surface, NULL, beauty);
 
-        enum { FIRST = H / 2 - 8, ROWS = 17, EDGE = 60 }; // the edge is within 5 pixels of it
+        enum { FIRST = H / 2 - 8, ROWS = 17 };
+        const int edge = kind == BEFORE ? 36 : 60; // within 5 pixels; the lamp is on the right
         float row[ROWS] = {0}, squares = 0, paper = 0;
         for (int y = 0; y < ROWS; y++) {
-            for (int x = EDGE - 5; x < EDGE + 5; x++) row[y] += beauty[(FIRST + y) * W + x][1];
-            paper += beauty[(FIRST + y) * W + EDGE - 5][1] / ROWS;
+            for (int x = edge - 5; x < edge + 5; x++) row[y] += beauty[(FIRST + y) * W + x][1];
+            paper += beauty[(FIRST + y) * W + edge + (kind == BEFORE ? 5 : -5)][1] / ROWS;
         }
         for (int y = 1; y + 1 < ROWS; y++) {
             const float bent = (row[y - 1] - 2 * row[y] + row[y + 1]) / paper;
             squares += bent * bent / (ROWS - 2);
         }
         teeth[kind] = sqrtf(squares);
-        print_message("edge of paper, %s: paper %.3f, teeth of %.3f pixels\n", kind ? "half in shadow" : "lit",
-                      (double)paper, (double)teeth[kind]);
+        print_message("edge of paper, %s: paper %.3f, teeth of %.3f pixels\n", names[kind], (double)paper,
+                      (double)teeth[kind]);
     }
     assert_true(teeth[ALONE] < 0.06f && teeth[SHADOWED] < 0.12f); // 0.28 by rays of its own
+    assert_true(teeth[BEFORE] < 0.1f);
 }
 
 /// Water darkens a sheet, a coloured one more, and what paper holds in a room does not. Bars: damp 5 %, soaked another
