@@ -30,10 +30,7 @@ typedef struct Block {
     bool mirrored;  ///< the rays are those that the ground mirrors: they see no pixel of the table
     FireTile *tile; ///< flame and smoke; NULL: none
     float bend[LANES], bend_at[LANES],
-        bend_to[LANES][2];                  ///< angle, m, and how far to the right and up: of rays in hot gas
-    float fire_from[LANES], fire_to[LANES]; ///< distances for which the next two are valid
-    Float3 fire_light[LANES];
-    float fire_clear[LANES];
+        bend_to[LANES][2]; ///< angle, m, and how far to the right and up: of rays in hot gas
     float low[LANES], high[LANES];
     float shown[LANES], squares[LANES]; ///< sums of the samples' luminance, as l / (1 + l), and of its square
     float clear[LANES];                 ///< of a shadow ray

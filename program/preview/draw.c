@@ -16,6 +16,7 @@ typedef struct Job {
     void (*draw)(Preview *preview, Block *block); ///< one block
     void (*beside)(Preview *preview); ///< what needs nothing of the blocks, and nothing of them needs; or NULL
     atomic_int next;
+    int side; ///< of a tile, in pixels
     int across, count;
     bool fire; ///< flame and smoke are drawn
 } Job;
@@ -172,11 +173,11 @@ static void draw_tiles(void *context, int thread) {
             job->beside(job->preview);
             continue;
         }
-        int x0 = tile % job->across * TILE, y0 = tile / job->across * TILE;
+        int x0 = tile % job->across * job->side, y0 = tile / job->across * job->side;
         if (fire) fire_see(job->preview, x0, y0, fire);
         block.tile = fire && !fire->empty ? fire : NULL;
-        for (int y = y0; y < y0 + TILE && y < def->height; y += BLOCK)
-            for (int x = x0; x < x0 + TILE && x < def->width; x += BLOCK) {
+        for (int y = y0; y < y0 + job->side && y < def->height; y += BLOCK)
+            for (int x = x0; x < x0 + job->side && x < def->width; x += BLOCK) {
                 for (int i = 0; i < LANES; i++) {
                     block.x[i] = x + i % BLOCK;
                     block.y[i] = y + i / BLOCK;
@@ -188,9 +189,11 @@ static void draw_tiles(void *context, int thread) {
 
 /// Draws all blocks; `beside`, if any, is done first by one of the threads, as it is longer than a tile.
 static void draw_all(Preview *preview, void (*draw)(Preview *, Block *), void (*beside)(Preview *)) {
-    int across = (preview->def.width + TILE - 1) / TILE, down = (preview->def.height + TILE - 1) / TILE;
-    Job job = {.preview = preview, .draw = draw, .beside = beside, .across = across, .count = across * down};
+    Job job = {.preview = preview, .draw = draw, .beside = beside, .side = TILE};
     job.fire = draw == block_draw && preview->fire.visible;
+    if (job.fire) job.side = FIRE_SQUARES * fire_every(preview);
+    job.across = (preview->def.width + job.side - 1) / job.side;
+    job.count = job.across * ((preview->def.height + job.side - 1) / job.side);
     atomic_init(&job.next, beside ? -1 : 0);
     const int threads = preview->def.thread_count;
     share_out(threads, threads, draw_tiles, &job);

@@ -52,12 +52,19 @@ typedef struct FireView {
 } FireView;
 
 /// Flames have no edges as sharp as a sheet's: one ray for each second pixel across and down, through the corners that
-/// four of them share, and pixels take the mean of the four surrounding rays, weighted by nearness.
-/// Where four rays at twice that distance see nearly the same, there are none between them.
-enum { FIRE_TILE = 32, FIRE_ACROSS = FIRE_TILE / 2 + 1, FIRE_COARSE = FIRE_TILE / 4 };
+/// four of them share, and pixels take the mean of the four surrounding rays, weighted by nearness. In a still each pixel's
+/// corners have one: thin filaments across pixels were rows of beads. Where four rays at twice that distance see nearly the
+/// same, there are none between them.
+enum {
+    FIRE_EVERY = 2,    ///< pixels from ray to ray in a video
+    FIRE_SQUARES = 16, ///< between the rays of a tile's side
+    FIRE_TILE = FIRE_EVERY * FIRE_SQUARES,
+    FIRE_ACROSS = FIRE_SQUARES + 1,
+    FIRE_COARSE = FIRE_SQUARES / 2,
+};
 
 /// Smoke is known at places of a few of the rays, `length` apart, and linear between them.
-enum { SMOKE_ACROSS = FIRE_TILE / 4 + 1, SMOKE_PLACES = 192 };
+enum { SMOKE_ACROSS = FIRE_COARSE + 1, SMOKE_PLACES = 192 };
 
 typedef struct FireTile {
     FireView views[FIRE_ACROSS * FIRE_ACROSS];
@@ -68,7 +75,8 @@ typedef struct FireTile {
     float length;                           ///< m
     Smoke smoke[SMOKE_ACROSS * SMOKE_ACROSS][SMOKE_PLACES];
     bool smoke_known[SMOKE_ACROSS * SMOKE_ACROSS][SMOKE_PLACES];
-    bool fine[FIRE_COARSE * FIRE_COARSE]; ///< whether squares of 4 x 4 pixels have rays at all their corners of 2 x 2
+    int every;                            ///< pixels from ray to ray
+    bool fine[FIRE_COARSE * FIRE_COARSE]; ///< whether squares of 2 x 2 have rays at all corners
     bool empty;                           ///< no ray meets anything
 } FireTile;
 
@@ -219,6 +227,9 @@ Matter fire_smoke_between(const Fire *fire, const Smoke *a, const Smoke *b, floa
 /// Fills a tile whose upper left pixel is (x, y).
 void fire_see(const Preview *preview, int x, int y, FireTile *tile);
 
+/// Pixels from ray to ray; tiles of fire_see have FIRE_SQUARES times as many to a side.
+int fire_every(const Preview *preview);
+
 /// Where a ray leaves the bounds of all that is seen of the fire, m.
 float fire_leaves(const Fire *fire, Float3 origin, Float3 direction);
 
@@ -227,7 +238,7 @@ float fire_leaves(const Fire *fire, Float3 origin, Float3 direction);
 void fire_along(const Preview *preview, int count, const Float3 *origin, const Float3 *direction, const float *distance,
                 float coarse, Float3 *light, float *clear);
 
-/// The light of the fire up to `distance` for a pixel of the tile, counted from its upper left, and the transmittance.
+/// The light of the fire up to `distance` for a pixel of the tile, and the transmittance.
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear);
 
 /// Whether something is seen through hot gas around the 4 x 4 pixels of which this is the first.

@@ -3,7 +3,7 @@
 //     dL/ds = j - (a + k) L + k S,   front to back in steps, with j, a of the flame and k, S of the smoke
 //                                    (fire_shade.c)
 
-#include "preview/internal.h"
+#include "preview/block.h"
 
 #include <string.h>
 
@@ -16,7 +16,7 @@
 #define SMOKE_STEP 0.010f  ///< m, distance at most between the places of a ray where its smoke is looked up
 #define HOT_HIDES 0.1f     ///< transmittance below which nothing is seen to shimmer
 #define HOT_BEYOND 0.002f  ///< m outside of flames, over which gas is hot
-#define FIRE_SOFT 6.0f     ///< pixels, over which the edges of flames begin: rays are two apart, depths rough
+#define FIRE_SOFT 3.0f     ///< rays, over which the edges of flames begin, as depths are rough
 #define FIRE_EVEN 0.020f   ///< difference of light, as l / (1 + l), that may be interpolated
 
 /// Smoke is looked up at multiples of a length, and is even between two of them, whatever the steps of the ray are: these
@@ -161,6 +161,7 @@ typedef struct March {
     float until;            ///< where flames may begin
     float next;             ///< end of the step
     float asks;             ///< where it needs a flame
+    float soft;             ///< m per m from the eye, over which edges of flames begin
     float clear;
     Float3 light;
     float hot[2];
@@ -189,6 +190,7 @@ static void march_begin(March *march, const Preview *preview, Float3 eye, Float3
     fire_pass(fire, eye, d, &march->t, &march->far);
     march->usual = minf(0.17f * fire->cell, 0.0016f);
     march->fine = coarse * march->usual; // a coarse one seeks flames no less
+    march->soft = FIRE_SOFT * (float)(tile ? tile->every : FIRE_EVERY) * preview->camera.pixel;
 
     // far away a step must still change a float
     march->min = maxf((march->far - march->t) / (16 * FIRE_STEPS), 1e-5f * march->far);
@@ -329,8 +331,7 @@ static void march_all(const Fire *fire, NextMarch *next, void *rays) {
 
         for (int k = 0; k < FIRE_LANES; k++) { // those without a ray are the last one's
             const March *march = active[k < count ? k : count - 1];
-            fire_place(&places, k, float3_mad(march->eye, march->d, march->asks),
-                       FIRE_SOFT * march->preview->camera.pixel * march->asks);
+            fire_place(&places, k, float3_mad(march->eye, march->d, march->asks), march->soft * march->asks);
         }
         fire->look(fire, count, &places, &points);
         for (int k = count - 1; k >= 0; k--) {
@@ -347,10 +348,11 @@ static void march_all(const Fire *fire, NextMarch *next, void *rays) {
 
 // ---- the rays of a tile
 
-static Float3 corner_ray(const Preview *preview, int x, int y, int k, Float3 *eye) {
+/// Ray k of a tile that begins at pixel (x, y) and has one every so many pixels.
+static Float3 corner_ray(const Preview *preview, int x, int y, int every, int k, Float3 *eye) {
     const float disc[2] = {0, 0};
-    float u = 2 * (float)(x + 2 * (k % FIRE_ACROSS)) / (float)preview->def.width - 1;
-    float v = 1 - 2 * (float)(y + 2 * (k / FIRE_ACROSS)) / (float)preview->def.height;
+    float u = 2 * (float)(x + every * (k % FIRE_ACROSS)) / (float)preview->def.width - 1;
+    float v = 1 - 2 * (float)(y + every * (k / FIRE_ACROSS)) / (float)preview->def.height;
     Float3 direction;
     camera_ray(&preview->camera, u, v, disc, eye, &direction);
     return direction;
@@ -374,9 +376,9 @@ static bool next_corner(void *rays, March *march) {
     const int k = corners->list[corners->next++], apart = corners->apart;
     const int column = k % FIRE_ACROSS, row = k / FIRE_ACROSS, step = 2 * apart;
     Float3 eye;
-    tile->rays[k] = corner_ray(corners->preview, corners->x, corners->y, k, &eye);
+    tile->rays[k] = corner_ray(corners->preview, corners->x, corners->y, tile->every, k, &eye);
     march_begin(march, corners->preview, eye, tile->rays[k], tile, k, 1, &tile->views[k]);
-    march->guided = apart && 1.5f * 2 * (float)apart * tile->pixel < -0.5f * FIRE_OUTSIDE;
+    march->guided = apart && 1.5f * (float)(tile->every * apart) * tile->pixel < -0.5f * FIRE_OUTSIDE;
     for (int m = 0; march->guided && m < 4; m++) {
         const bool right = m % 2, down = m / 2;
         if ((right && column % step == 0) || (down && row % step == 0)) continue;
@@ -402,23 +404,24 @@ static void tile_begin(const Preview *preview, int x, int y, FireTile *tile) {
     const float radius = 0.5f * float3_length(float3_sub(fire->high, fire->low));
     const float distance = float3_length(float3_sub(middle, preview->camera.eye));
     tile->empty = true;
+    tile->every = fire_every(preview);
     memset(tile->fine, 0, sizeof tile->fine);
     tile->pixel = preview->camera.pixel * (distance + radius);
     tile->length = minf(fire->cell, SMOKE_STEP);
     tile->first = (int)minf(maxf(distance - radius, 0) / tile->length, 1e9f);
     tile->apart = 0;
     for (int apart = 4; apart > 1 && !tile->apart; apart /= 2)
-        if (2 * (float)apart * tile->pixel < SMOKE_APART * fire->scale) tile->apart = apart;
+        if ((float)(tile->every * apart) * tile->pixel < SMOKE_APART * fire->scale) tile->apart = apart;
     if (!tile->apart) return;
 
     memset(tile->smoke_known, 0, sizeof tile->smoke_known);
     Float3 eye;
     for (int i = 0; i < FIRE_ACROSS; i += tile->apart)
         for (int j = 0; j < FIRE_ACROSS; j += tile->apart)
-            tile->rays[i * FIRE_ACROSS + j] = corner_ray(preview, x, y, i * FIRE_ACROSS + j, &eye);
+            tile->rays[i * FIRE_ACROSS + j] = corner_ray(preview, x, y, tile->every, i * FIRE_ACROSS + j, &eye);
 }
 
-/// Whether the rays that are known in a square of 4 x 4 pixels, the first of which is `k`, see nearly the same.
+/// Whether the rays that are known in a square of 3 x 3, the first of which is `k`, see nearly the same.
 static bool is_even(const FireTile *tile, const bool *known, int k) {
     float low[2] = {INFINITY, INFINITY}, high[2] = {0, 0};
     for (int m = 0; m < 9; m++) {
@@ -435,6 +438,8 @@ static bool is_even(const FireTile *tile, const bool *known, int k) {
 
     return high[0] - low[0] < FIRE_EVEN && high[1] - low[1] < 2 * FIRE_EVEN;
 }
+
+int fire_every(const Preview *preview) { return is_still(preview) ? 1 : FIRE_EVERY; }
 
 void fire_see(const Preview *preview, int x, int y, FireTile *tile) {
     enum { COUNT = FIRE_ACROSS * FIRE_ACROSS };
@@ -539,10 +544,13 @@ void fire_along(const Preview *preview, int count, const Float3 *origin, const F
     }
 }
 
-/// The rays around a pixel of the tile, counted from its upper left, and their weights.
+/// The rays around a pixel, and their weights.
 static void views_around(const FireTile *tile, int x, int y, const FireView *views[4], float weight[4]) {
-    const bool fine = tile->fine[y / 4 * FIRE_COARSE + x / 4];
-    const int apart = fine ? 1 : 2, side = 2 * apart; // in rays and in pixels
+    x %= FIRE_SQUARES * tile->every;
+    y %= FIRE_SQUARES * tile->every;
+    const int square = 2 * tile->every;
+    const bool fine = tile->fine[y / square * FIRE_COARSE + x / square];
+    const int apart = fine ? 1 : 2, side = tile->every * apart; // in rays and in pixels
     const FireView *view = &tile->views[y / side * apart * FIRE_ACROSS + x / side * apart];
     const float right = ((float)(x % side) + 0.5f) / (float)side, down = ((float)(y % side) + 0.5f) / (float)side;
     for (int k = 0; k < 4; k++) {
@@ -561,8 +569,10 @@ void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *ligh
 }
 
 bool fire_is_hot(const FireTile *tile, int x, int y) {
+    const int every = tile->every, wide = BLOCK / every;
+    const int column = x % (FIRE_SQUARES * every) / every, row = y % (FIRE_SQUARES * every) / every;
     for (int k = 0; k < 4; k++) {
-        const FireView *view = &tile->views[(y / 2 + k / 2 * 2) * FIRE_ACROSS + x / 2 + k % 2 * 2];
+        const FireView *view = &tile->views[(row + k / 2 * wide) * FIRE_ACROSS + column + k % 2 * wide];
         const int last = view->count - 1;
         if (last >= 0 && view->hot[last][0] > 0 && view->clear[last] > HOT_HIDES) return true;
     }

@@ -97,18 +97,9 @@ void block_add_light(const Preview *preview, Block *block, const int *active, in
             colour = float3_mad(float3_scale(colour, 1 - point->fade), background_colour(preview, block->direction[i]),
                                 point->fade);
 
-        // the fire in front of the point; a pixel's points mostly have nearly the same distance
+        // the fire in front of the point
         if (block->tile) {
-            const float same = 1e-3f; // m, less than flames are thick
-            if (point->distance < block->fire_from[i] || point->distance > block->fire_to[i]) {
-                block->fire_from[i] = point->distance - same;
-                block->fire_to[i] = point->distance + same;
-                fire_until(block->tile, block->x[i] % TILE, block->y[i] % TILE, point->distance, &block->fire_light[i],
-                           &block->fire_clear[i]);
-            }
-
-            fire = block->fire_light[i];
-            clear = block->fire_clear[i];
+            fire_until(block->tile, block->x[i], block->y[i], point->distance, &fire, &clear);
             colour = float3_mad(fire, colour, clear);
         }
 
@@ -290,14 +281,14 @@ void block_draw(Preview *preview, Block *block) {
         sample_pixel(block->x[i], block->y[i], def->seed, block->turn[i]);
         block->key[i] = sample_key(block->x[i], block->y[i], def->seed);
         block->sum[i] = float3(0, 0, 0);
-        block->low[i] = block->fire_from[i] = INFINITY;
-        block->high[i] = block->fire_to[i] = -INFINITY;
+        block->low[i] = INFINITY;
+        block->high[i] = -INFINITY;
         block->shown[i] = block->squares[i] = 0;
         block->time[i] = 0.5f;
         block->layer[i] = (LayerSum){.depth = INFINITY, .sheet = -1, .piece = -1};
     }
 
-    const bool hot = block->tile && fire_is_hot(block->tile, block->x[0] % TILE, block->y[0] % TILE);
+    const bool hot = block->tile && fire_is_hot(block->tile, block->x[0], block->y[0]);
     const bool bare = !(hot ? mask_nears : mask_covers)(preview, block->x[0], block->y[0]);
     block->corner = false;
     if (bare) {

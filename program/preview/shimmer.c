@@ -49,7 +49,7 @@ void shimmer_find(const Preview *preview, Block *block, const int *active) {
         if (!active[i]) continue;
         const Float3 from = block->origin[i], ray = block->direction[i];
         const float seen = minf(met.distance[i], backdrop_hit(preview, from, ray));
-        const float hot = fire_heats(block->tile, block->x[i] % TILE, block->y[i] % TILE, seen, &block->bend_at[i]);
+        const float hot = fire_heats(block->tile, block->x[i], block->y[i], seen, &block->bend_at[i]);
         if (!(hot > 0)) continue;
         const float angle = BENDS * hot / (hot + BENDS_HALF);
         const float shift = angle * (1 - block->bend_at[i] / seen) / preview->camera.pixel;

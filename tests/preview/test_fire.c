@@ -128,6 +128,42 @@ TEST(flames_begin_where_paper_burns) {
                 apart < 2.5f); // 2.7 with bright feet, 5.2 and 15 where they were not on the paper
 }
 
+/// The line of fire alone, in pixels of 1 mm / `fine`.
+static void see_fire(int fine, int samples, float (*fire)[4]) {
+    PreviewDef def = aside(0.02f);
+    def.width = fine * W;
+    def.height = fine * H;
+    def.samples = samples;
+    def.camera = (PreviewCamera){
+        .eye = {0, -1, H / 2000.0f}, .target = {0, 0, H / 2000.0f}, .up = {0, 0, 1}, .fov = 2 * atanf(H / 2000.0f)};
+    draw_layers(&def, &paper.surface, &line.gas, 0.3, &(PreviewLayers){.fire = fire});
+}
+
+/// A still has a ray through flames for each pixel, and differs less from a picture of four times as many pixels than a video
+/// does, which has one for four: thin filaments across its pixels are rows of beads.
+TEST(stills_have_finer_flames) {
+    enum { VIDEO = 16, STILL = 64, FINE = 2 };
+    static float exact[FINE * FINE * W * H][4], fire[W * H][4];
+    line_make(&line, 0.003f), burning_make(&paper);
+    see_fire(FINE, STILL, exact);
+    float off[2];
+    for (int still = 0; still < 2; still++) {
+        see_fire(1, still ? STILL : VIDEO, fire);
+        float squares = 0, sum = 0;
+        for (int y = 0; y < H; y++)
+            for (int x = 0; x < W; x++) {
+                const int first = FINE * (y * FINE * W + x);
+                const float mean = 0.25f * (exact[first][1] + exact[first + 1][1] + exact[first + FINE * W][1] +
+                                            exact[first + FINE * W + 1][1]);
+                squares += (fire[y * W + x][1] - mean) * (fire[y * W + x][1] - mean);
+                sum += mean;
+            }
+        off[still] = sqrtf(squares * W * H) / sum;
+        print_message("flames of a %s: off by %.3f of their light\n", still ? "still" : "video", (double)off[still]);
+    }
+    assert_true(off[1] < 0.7f * off[0]);
+}
+
 /// A flame has its foot where paper burns. Where gas burns low over ground that gives off none there is little light. Before,
 /// flames had a second foot there, in the air.
 TEST(feet_are_over_what_burns) {

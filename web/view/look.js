@@ -420,7 +420,7 @@ const float CORE_BEGINS = 0.003;
 const float CORE_FULL = 0.024;
 const float CORE_HIDES = 0.22;
 const float SMOKE_STEP = 0.01;
-const float FIRE_SOFT = 6.0;
+const float FIRE_SOFT = 3.0;
 struct FireCell { float flame; float rise; float smoke; float glow; };
 struct FirePoint { vec3 soot; vec3 root; float depth; float profile; float shell; float opaque; };
 struct Matter { vec3 light; float dense; };
