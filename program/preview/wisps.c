@@ -28,7 +28,8 @@ enum {
 #define WISP_LIFE 1.5f      ///< s
 #define RISE 0.12f          ///< m/s
 #define SPEEDING 0.13f      ///< m/s2
-#define RIBBON 0.0006f      ///< m, half of its width at the ember
+#define TURNS 0.08f         ///< s, over which it takes up the air's drift: cells that differ would be kinks
+#define RIBBON 0.0008f      ///< m, half of its width at the ember
 #define LAMINAR 0.14f       ///< s, in the mean
 #define SWAY 0.009f         ///< m that it sways before it buckles
 #define CURL 0.036f         ///< m, by which curls move it at most
@@ -44,7 +45,7 @@ enum {
 #define EMERGES_LATE 0.040f ///< m, others
 #define HIDES 0.012f        ///< m, over which they fade before they are hidden
 #define PULSES 1.6f         ///< powers of 2, by which all threads thicken and thin together
-#define THREAD 0.0005f      ///< m, radius at the ember
+#define THREAD 0.0006f      ///< m, radius at the ember
 #define WISP_DEPTH 19e-3f   ///< m, optical depth across a wisp times its width
 #define FRESH 0.35f         ///< share of that at the ember: most vapours have not condensed yet
 #define STRONG 1.2f         ///< by which strong wisps are weakened, or they would be white cords
@@ -77,6 +78,7 @@ static inline float swing(const Wisp *wisp, float moment, float often, float pla
 static void wisp_follow(const Fire *fire, Wisp *wisp) {
     const float step = WISP_LIFE / KNOTS;
     wisp->burnt = WISP_LIFE;
+    float along[2] = {0, 0};
     for (int k = 0; k < KNOTS; k++) {
         const float rise = (RISE + 2 * SPEEDING * step * ((float)k + 0.5f)) * step;
         float f[3], at[3], drift[2] = {0, 0}, flame = 0;
@@ -101,7 +103,8 @@ static void wisp_follow(const Fire *fire, Wisp *wisp) {
         }
 
         if (flame > FLAME_FAINT) wisp->burnt = minf(wisp->burnt, step * (float)k);
-        wisp->path[k + 1] = float3_add(wisp->path[k], float3(rise * drift[0], rise * drift[1], rise));
+        for (int c = 0; c < 2; c++) along[c] += step / TURNS * (drift[c] - along[c]);
+        wisp->path[k + 1] = float3_add(wisp->path[k], float3(rise * along[0], rise * along[1], rise));
     }
 }
 
