@@ -155,10 +155,10 @@ static float ash_on_char(const PaperState *state, const Bent *bent, float cloud,
     if (cold <= 0) return 0;
     const float border = 1e3f * border_distance(state, bent); // mm
     const float threads = 0.5f * strand + 0.3f * (fibre - 0.4f), wide = maxf(0.9f + 1.6f * cloud, 0.35f);
-    const float fringe = stepf(0, 5, state->age + 2 * cloud) * stepf(-0.9f, 0, cloud + 0.4f * threads) *
+    const float fringe = stepf(0, 4.2f, state->age + 2 * cloud) * stepf(-0.9f, 0, cloud + 0.4f * threads) *
                          minf(1, 1.15f * expf(-border / wide) * (1 + threads));
     const float skin =
-        0.75f * stepf(0.53f, 0.62f, bent->burn) * stepf(2, 9, state->age) * stepf(-0.1f, 1.25f, cloud + 0.9f * threads);
+        0.75f * stepf(0.53f, 0.62f, bent->burn) * stepf(2, 8, state->age) * stepf(-0.1f, 1.25f, cloud + 0.9f * threads);
     return cold * clampf(maxf(fringe, skin), 0, 1);
 }
 
@@ -191,7 +191,7 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
     float pale = maxf(whole * stepf(1, 13, state->age + 4 * cloud), 0.85f * plate * plate);
     float rim = whole * stepf(0.25f, 0.6f, ash_lace(bent, size));
     const float thin = maxf(rim, stepf(0.35f, 0.95f, state->rim + 0.25f * bent->fine));
-    float value = mixf(0.030f, 0.38f, pale) * (1 + 0.22f * strand + 0.22f * (fibre - 0.4f) + 0.1f * bent->fine) +
+    float value = mixf(0.030f, 0.42f, pale) * (1 + 0.22f * strand + 0.22f * (fibre - 0.4f) + 0.1f * bent->fine) +
                   (0.010f + 0.05f * pale) * cloud + (0.02f + 0.06f * pale) * vein;
     value += (0.03f + 0.07f * pale) * thin;
 
@@ -199,7 +199,7 @@ static void ash_shade(const PaperState *state, const Bent *bent, float ink, Poin
     value *= 1 - 0.4f * crackle;
     value += (0.05f + 0.19f * pale) * ink * (1 - 0.3f * crackle);
 
-    Float3 tone = float3_mix(float3(0.98f, 0.99f, 1.03f), float3(1.02f, 1.0f, 0.965f), pale);
+    Float3 tone = float3_mix(float3(0.90f, 0.98f, 1.12f), float3(0.95f, 1.0f, 1.06f), pale);
     Float3 grey = float3_scale(tone, clampf(value, 0.02f, 0.64f));
     point->albedo = float3_mix(point->albedo, grey, amount);
     point->gloss *= 1 - 0.8f * amount;
@@ -478,10 +478,10 @@ static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) 
 
     float value = 1 + 0.2f * bent->medium + 0.1f * bent->fine + 0.4f * bent->coarse;
     Float3 soot =
-        float3_mix(float3(0.034f, 0.020f, 0.012f), float3(0.0125f, 0.0125f, 0.0132f), stepf(0.22f, 0.62f, bent->burn));
+        float3_mix(float3(0.034f, 0.020f, 0.012f), float3(0.0118f, 0.0125f, 0.0145f), stepf(0.22f, 0.62f, bent->burn));
     float craze = paper_cracks(bent, 3.1f, 0.04f, point->footprint);
     Float3 colour = float3_scale(soot, value * (1 - 0.6f * craze));
-    point->albedo = float3_mix(burnt, float3_mad(colour, float3(0.078f, 0.078f, 0.082f), ink), black);
+    point->albedo = float3_mix(burnt, float3_mad(colour, float3(0.072f, 0.078f, 0.088f), ink), black);
 
     // tar makes it shine
     float tar = clampf(0.75f + 0.5f * bent->coarse - 0.5f * ink, 0.2f, 1.2f);
@@ -497,7 +497,7 @@ static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) 
     const float away = 1 - maxf(float3_dot(point->normal, point->view), 0);
     const float sheen =
         SHEEN * black * away * away * away * away * (1 - 0.5f * craze) * maxf(0.8f + 0.5f * bent->coarse, 0.2f);
-    point->albedo = float3_mad(point->albedo, float3(0.96f, 0.98f, 1.0f), sheen);
+    point->albedo = float3_mad(point->albedo, float3(0.90f, 0.98f, 1.08f), sheen);
 }
 
 /// How brown paper is: by heat, up to 0.76, and by what has burnt. Near a front, where the peak temperature falls off within

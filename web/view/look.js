@@ -130,10 +130,10 @@ float ash_on_char(PaperState state, Bent bent, float cloud, float strand, float 
     if (cold <= 0.0) return 0.0;
     float border = 1e3 * border_distance(state, bent);
     float threads = 0.5 * strand + 0.3 * (fibre - 0.4), wide = max(0.9 + 1.6 * cloud, 0.35);
-    float fringe = stepf(0.0, 5.0, state.age + 2.0 * cloud) * stepf(-0.9, 0.0, cloud + 0.4 * threads) *
+    float fringe = stepf(0.0, 4.2, state.age + 2.0 * cloud) * stepf(-0.9, 0.0, cloud + 0.4 * threads) *
                          min(1.0, 1.15 * exp(-border / wide) * (1.0 + threads));
     float skin =
-        0.75 * stepf(0.53, 0.62, bent.burn) * stepf(2.0, 9.0, state.age) * stepf(-0.1, 1.25, cloud + 0.9 * threads);
+        0.75 * stepf(0.53, 0.62, bent.burn) * stepf(2.0, 8.0, state.age) * stepf(-0.1, 1.25, cloud + 0.9 * threads);
     return cold * clamp(max(fringe, skin), 0.0, 1.0);
 }
 float ash_lace(Bent bent, float footprint) {
@@ -160,13 +160,13 @@ void ash_shade(PaperState state, Bent bent, float ink, inout Point point) {
     float pale = max(whole * stepf(1.0, 13.0, state.age + 4.0 * cloud), 0.85 * plate * plate);
     float rim = whole * stepf(0.25, 0.6, ash_lace(bent, size));
     float thin = max(rim, stepf(0.35, 0.95, state.rim + 0.25 * bent.fine));
-    float value = mix(0.030, 0.38, pale) * (1.0 + 0.22 * strand + 0.22 * (fibre - 0.4) + 0.1 * bent.fine) +
+    float value = mix(0.030, 0.42, pale) * (1.0 + 0.22 * strand + 0.22 * (fibre - 0.4) + 0.1 * bent.fine) +
                   (0.010 + 0.05 * pale) * cloud + (0.02 + 0.06 * pale) * vein;
     value += (0.03 + 0.07 * pale) * thin;
     float crackle = paper_cracks(bent, 4.2, 0.03, size);
     value *= 1.0 - 0.4 * crackle;
     value += (0.05 + 0.19 * pale) * ink * (1.0 - 0.3 * crackle);
-    vec3 tone = mix(vec3(0.98, 0.99, 1.03), vec3(1.02, 1.0, 0.965), pale);
+    vec3 tone = mix(vec3(0.90, 0.98, 1.12), vec3(0.95, 1.0, 1.06), pale);
     vec3 grey = float3_scale(tone, clamp(value, 0.02, 0.64));
     point.albedo = mix(point.albedo, grey, amount);
     point.gloss *= 1.0 - 0.8 * amount;
@@ -305,10 +305,10 @@ void char_shade(Bent bent, vec3 burnt, float ink, inout Point point) {
     if (black <= 0.0) return;
     float value = 1.0 + 0.2 * bent.medium + 0.1 * bent.fine + 0.4 * bent.coarse;
     vec3 soot =
-        mix(vec3(0.034, 0.020, 0.012), vec3(0.0125, 0.0125, 0.0132), stepf(0.22, 0.62, bent.burn));
+        mix(vec3(0.034, 0.020, 0.012), vec3(0.0118, 0.0125, 0.0145), stepf(0.22, 0.62, bent.burn));
     float craze = paper_cracks(bent, 3.1, 0.04, point.footprint);
     vec3 colour = float3_scale(soot, value * (1.0 - 0.6 * craze));
-    point.albedo = mix(burnt, float3_mad(colour, vec3(0.078, 0.078, 0.082), ink), black);
+    point.albedo = mix(burnt, float3_mad(colour, vec3(0.072, 0.078, 0.088), ink), black);
     float tar = clamp(0.75 + 0.5 * bent.coarse - 0.5 * ink, 0.2, 1.2);
     point.gloss = 0.06 * black * tar;
     point.shininess = 14.0;
@@ -320,7 +320,7 @@ void char_shade(Bent bent, vec3 burnt, float ink, inout Point point) {
     float away = 1.0 - max(dot(point.normal, point.view), 0.0);
     float sheen =
         SHEEN * black * away * away * away * away * (1.0 - 0.5 * craze) * max(0.8 + 0.5 * bent.coarse, 0.2);
-    point.albedo = float3_mad(point.albedo, vec3(0.96, 0.98, 1.0), sheen);
+    point.albedo = float3_mad(point.albedo, vec3(0.90, 0.98, 1.08), sheen);
 }
 float light_mirrored(Point point) {
     float rest = 1.0 - max(dot(point.normal, point.view), 0.0), rest2 = rest * rest;
