@@ -1,10 +1,6 @@
 // Helpers for tests that parse scenes from text.
 #pragma once
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/test.h"
 
 #include "scene/scene.h"

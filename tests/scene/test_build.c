@@ -2,7 +2,6 @@
 #include "parsing.h"
 
 #include <dirent.h>
-#include <math.h>
 #include <time.h>
 #include <unistd.h>
 

@@ -3,8 +3,6 @@
 
 #include "scene/schema.h"
 
-#include <math.h>
-
 static const char full[] =
     "name: all\n"
     "frames: 12\nfps: 25\nsteps: 10\npace: 4\nseed: 18446744073709551615\nambient_temperature: 20 C\n"

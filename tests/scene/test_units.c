@@ -2,7 +2,6 @@
 #include "parsing.h"
 
 #include <locale.h>
-#include <math.h>
 
 #include "scene/units.h"
 
