@@ -22,6 +22,8 @@ with open(os.path.join(ROOT, "include", "singe", "base.h"), encoding="utf-8") as
 HAS_EXR = os.environ.get("SINGE_EXR", "1") == "1"
 SANITIZED = os.environ.get("SINGE_SANITIZED", "0") == "1"
 HAS_FFMPEG = shutil.which("ffmpeg") is not None
+# runs flush each file to the disk, so the tests' folders lie in memory where there is room
+FOLDERS = "/dev/shm" if os.path.isdir("/dev/shm") and shutil.disk_usage("/dev/shm").free > 1 << 30 else None
 
 # a corner of a sheet 6 cm wide, lit at an edge; burns through within its frames
 SCENE = """\
@@ -89,22 +91,22 @@ def at_most(kind, most):
 
 class Case(unittest.TestCase):
     def setUp(self):
-        self.dir = tempfile.mkdtemp(prefix="singe-test-")
+        self.dir = tempfile.mkdtemp(prefix="singe-test-", dir=FOLDERS)
         self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
         self.scene = self.write_scene()
 
     @classmethod
     def setUpClass(cls):
-        cls.kept = tempfile.mkdtemp(prefix="singe-test-")
+        cls.kept = tempfile.mkdtemp(prefix="singe-test-", dir=FOLDERS)
         cls.addClassCleanup(shutil.rmtree, cls.kept, ignore_errors=True)
 
-    def once(self, name, make):
-        """A folder that make(path) fills, for all tests of a class: it takes long, and is the same for each, and none
-        changes it. It is reached in the test's own folder by its name."""
+    def once(self, name, make, changes=False):
+        """A folder that make(path) fills, for all tests of a class: it takes long, and is the same for each. It is
+        reached in the test's own folder by its name; a test that changes it gets a copy."""
         folder = os.path.join(self.kept, name)
         if not os.path.exists(folder):
             make(folder)
-        os.symlink(folder, self.path(name))
+        (shutil.copytree if changes else os.symlink)(folder, self.path(name))
 
     def path(self, *parts):
         return os.path.join(self.dir, *parts)

@@ -86,7 +86,7 @@ class Begin(Case):
         self.singe(*run)
 
     def test_a_full_folder_leaves_the_earlier_run(self):
-        self.run_scene("o", preview=True)
+        self.once("o", lambda out: self.run_scene(out, preview=True), changes=True)
         os.rename(self.path("o", "stats.csv"), self.path("stats.csv"))
         os.mkdir(self.path("o", "stats.csv"))
         before = self.tree("o")
@@ -94,7 +94,7 @@ class Begin(Case):
         self.assertEqual(self.tree("o"), before)
 
     def test_a_refused_scene_leaves_the_earlier_run(self):
-        self.run_scene("o", preview=True)
+        self.once("o", lambda out: self.run_scene(out, preview=True), changes=True)
         before = self.tree("o")
         for bad in "sheets.0.grid.cells=[0, 1]", "sheets.0.material.thickness=inf", "pins=[{vertices: [4000000]}]":
             with self.subTest(bad):

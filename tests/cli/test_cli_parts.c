@@ -1,8 +1,6 @@
 // Parts of the command: odd cases that no run reaches.
 
 #include "support/test.h"
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

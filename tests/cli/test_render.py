@@ -47,7 +47,7 @@ class Render(Case):
 
     def setUp(self):
         super().setUp()
-        self.run_scene("o", "--quiet", preview=True)
+        self.once("o", lambda out: self.run_scene(out, "--quiet", preview=True), changes=True)
 
     def test_same_pictures_again(self):
         before = [digest(self.png(i)) for i in range(1, 7)]
