@@ -7,9 +7,6 @@
 #include "burn/burn.h"
 #include "shell/shell.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 typedef struct BurningSheet {
     Memory memory;
     Shell shell;

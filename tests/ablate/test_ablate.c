@@ -5,8 +5,6 @@
 #include "sim/sim_internal.h"
 #include "support/support.h"
 
-#include <string.h>
-
 enum { AMBIENT = 293 };
 
 static AblatePlan *plan_for(BurningSheet *b) {

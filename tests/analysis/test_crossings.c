@@ -1,7 +1,4 @@
 // The exact predicates against integers, pairs of triangles against known cases, the tree against all pairs.
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "support/test.h"
 

@@ -1,6 +1,4 @@
 // Rims whose curl, slope and shrinkage are known: a sheet whose left edge has burnt, rolled, shrunk, seamed or whole.
-#include <math.h>
-#include <string.h>
 
 #include "support/test.h"
 

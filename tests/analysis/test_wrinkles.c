@@ -1,8 +1,5 @@
 // Sheets whose creases and wrinkles are known, drawn as the program draws them: four triangles a cell, normals from
 // the facets.
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "support/test.h"
 

@@ -1,9 +1,6 @@
 // Eq 4 to 6 against their closed forms; ignition; determinism; the mass ledger.
 #include "ablate/burning_sheet.h"
 
-#include <math.h>
-#include <string.h>
-
 static SingeResult step(BurningSheet *b, Pool *pool, float h, float pace, float thickening) {
     double partial[64];
     float factors[4] = {thickening, thickening, thickening, thickening};

@@ -1,9 +1,6 @@
 // The second reaction, char to ash, against its closed form; where it lives; its heat; the switch to the paper's eq 4.
 #include "ablate/burning_sheet.h"
 
-#include <math.h>
-#include <string.h>
-
 static const double YIELD = 0.35, MIN = 0.15, RATE = 0.5, AIR = 0.1;
 static const double SLOWING = 4; // of char without fuel
 static const float HOT = 1500;   // K: kinetics are no limit

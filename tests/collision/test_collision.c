@@ -1,10 +1,6 @@
 // Sheets that fall on themselves and each other.
 #include "support/support.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "count_crossings.h"
 #include "collision/narrow_phase.h"
 #include "collision/feature_distance.h"

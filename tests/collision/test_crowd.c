@@ -1,10 +1,6 @@
 // Sheets that lie thicker on each other than the lists of contact have room for.
 #include "support/support.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "count_crossings.h"
 #include "collision/collision_plan.h"
 #include "dynamics/dynamics_plan.h"

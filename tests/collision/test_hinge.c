@@ -2,8 +2,6 @@
 // a corner may pass through its own cell, and leave both cells sound by themselves, but crossing each other.
 #include "support/test.h"
 
-#include <math.h>
-
 #include "count_crossings.h"
 #include "sim/sim_internal.h"
 

@@ -4,9 +4,6 @@
 #include "common/format.h"
 
 #include <locale.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static void print(char *out, size_t size, const char *format, ...) SINGE_PRINTF(3, 4);
 

@@ -4,8 +4,6 @@
 #include "common/pool.h"
 
 #include <stdatomic.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 enum { ITEMS_MAX = 10007 };

@@ -3,8 +3,6 @@
 
 #include "common/random.h"
 
-#include <math.h>
-
 static float coordinate(uint32_t *random) {
     *random = *random * 1664525u + 1013904223u;
     return ((float)(*random >> 8) / 16777216.0f - 0.5f) * 200;

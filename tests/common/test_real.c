@@ -3,9 +3,6 @@
 
 #include "common/real.h"
 
-#include <math.h>
-#include <stdint.h>
-
 static float power(float x) { return portable_powf(x, 1.7f); }
 static double double_power(double x) { return pow(x, (double)1.7f); }
 static float root(float x) { return portable_powf(x, 0.3f); }

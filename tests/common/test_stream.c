@@ -4,9 +4,6 @@
 #include "common/stream.h"
 #include "common/error.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 typedef struct Things {
     uint32_t number;
     double real;

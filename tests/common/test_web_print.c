@@ -1,10 +1,6 @@
 // The printf of singe.wasm gives what the C library's does, in every conversion that the library's messages have.
 #include "support/support.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #define snprintf web_snprintf
 #define vsnprintf web_vsnprintf
 int snprintf(char *text, size_t size, const char *format, ...);

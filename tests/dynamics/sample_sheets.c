@@ -3,8 +3,6 @@
 #include "dynamics/dynamics_plan.h"
 
 #include <assert.h>
-#include <math.h>
-#include <stdlib.h>
 
 #include "support/test.h"
 

@@ -1,10 +1,6 @@
 // Long-range attachments: what they hold, what they leave alone, and when they let go.
 #include "sample_sheets.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "common/random.h"
 #include "dynamics/dynamics_plan.h"
 #include "sim/scenes.h"

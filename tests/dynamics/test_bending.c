@@ -6,11 +6,6 @@
 // than D may depend on cells and substeps.
 #include "support/support.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 static const float length = 0.10f, width = 0.04f, clamped = 0.01f, thickness = 0.003f;
 
 static void clamp(SingeSim *sim, float cell) {

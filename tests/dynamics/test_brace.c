@@ -1,8 +1,6 @@
 // Springs between centres across vertices, with `isotropic`: no step or saved state depends on how they are stored.
 #include "sim/scenes.h"
 
-#include <stdlib.h>
-
 static SingeSimDef braced_def(int threads) {
     SingeSimDef def = scene_def();
     def.solver.isotropic = def.solver.creases = def.solver.tearing = true;

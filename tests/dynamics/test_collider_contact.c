@@ -6,11 +6,6 @@
 #include "dynamics/dynamics_plan.h"
 #include "world/solids.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/test.h"
 
 // what a case works on

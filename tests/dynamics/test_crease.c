@@ -2,10 +2,6 @@
 #include "dynamics/dynamics_plan.h"
 #include "support/support.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static const double pi = 3.14159265358979323846;
 
 /// A shell with room for creases, and what the pass over them needs.

@@ -3,10 +3,6 @@
 
 #include "dynamics/dynamics_plan.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/test.h"
 
 // what a case works on

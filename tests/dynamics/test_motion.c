@@ -4,10 +4,6 @@
 #include "common/random.h"
 #include "dynamics/dynamics_plan.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/test.h"
 
 // what a case works on

@@ -4,11 +4,6 @@
 #include "common/random.h"
 #include "dynamics/dynamics_plan.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/test.h"
 
 /// A grid without the cells of a rectangle inside it.

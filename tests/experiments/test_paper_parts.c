@@ -1,7 +1,5 @@
 // The foundations of `singe paper`: singular values against known ones, the ranks of section 7.1, and the errors of Fig
 // 8 on its two states.
-#include <math.h>
-#include <stdlib.h>
 
 #include "support/test.h"
 

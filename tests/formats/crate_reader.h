@@ -4,8 +4,6 @@
 
 #include "format_test.h"
 
-#include <string.h>
-
 typedef struct CrateFile {
     const uint8_t *bytes;
     size_t size, section[6][2]; ///< TOKENS, STRINGS, FIELDS, FIELDSETS, PATHS, SPECS: begin, size

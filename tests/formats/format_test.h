@@ -1,9 +1,6 @@
 // Helpers for the tests of formats: a temporary folder, and checks of messages.
 #pragma once
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "formats/formats.h"

@@ -1,6 +1,5 @@
 #include "format_test.h"
 
-#include <math.h>
 #include <unistd.h>
 
 TEST_IN_FOLDER("a.0001.ply")

@@ -1,7 +1,6 @@
 // EXR written here, read back by OpenEXR itself.
 #include "format_test.h"
 
-#include <math.h>
 #include <openexr.h>
 #include <unistd.h>
 

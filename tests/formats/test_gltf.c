@@ -1,8 +1,6 @@
 // glTF: kinds of numbers and primitives, transforms, and what is refused. What lies beside it is in cli_meshes.
 #include "format_test.h"
 
-#include <math.h>
-
 /// Four corners of a square as floats, as shorts of quarters, and six indices.
 static const float square[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
 static const uint32_t two[] = {0, 1, 2, 0, 2, 3};

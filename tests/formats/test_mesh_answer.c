@@ -2,8 +2,6 @@
 #include "formats/mesh_reader.h"
 #include "format_test.h"
 
-#include <math.h>
-
 /// A square with uv, and a triangle.
 typedef struct Answer {
     MeshCounts counts;

@@ -1,7 +1,6 @@
 #include "format_test.h"
 
 #include <locale.h>
-#include <math.h>
 
 #include "formats/number.h"
 

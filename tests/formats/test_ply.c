@@ -1,7 +1,5 @@
 #include "format_test.h"
 
-#include <math.h>
-
 // what a case works on
 static Polygons mesh;
 static SingeError error;

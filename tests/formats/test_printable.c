@@ -3,10 +3,6 @@
 
 #include "common/printable.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 static void expect_shown(const char *text, const char *expected) {
     assert_string_equal(shown(text).text, expected);
     assert_string_equal(shown_path(text).text, expected);

@@ -6,7 +6,6 @@
 #include "formats/output.h"
 #include "formats/usd.h"
 
-#include <math.h>
 #include <unistd.h>
 
 TEST_IN_FOLDER("scene")

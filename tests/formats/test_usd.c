@@ -4,7 +4,6 @@
 #include "formats/usd_crate.h"
 #include "formats/output.h"
 
-#include <math.h>
 #include <sys/resource.h>
 #include <unistd.h>
 

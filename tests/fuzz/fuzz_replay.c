@@ -2,7 +2,6 @@
 // takes more memory than there is.
 //
 // The input is a recording, or a list of changes to a good one, made here, so that it outlives the format.
-#include <string.h>
 
 #include "damage.h"
 #include "sim/recording.h"

@@ -2,7 +2,6 @@
 // fails, but neither crashes nor hangs.
 //
 // The input is a list of changes to one of a few good snapshots, made here, so that it outlives their layout.
-#include <string.h>
 
 #include "common/stream.h"
 #include "damage.h"

@@ -1,9 +1,6 @@
 // The gas: its heat is kept, it rises as plumes do, sheets and colliders stop it, and it heats what it flows past.
 #include "heat/rig.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "gas/gas_plan.h"
 
 /// A level sheet of 8 x 8 cells of 5 mm with gas above it, in steps of 1/72 s.

@@ -1,8 +1,5 @@
 #include "rig.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "common/random.h"
 #include "support/support.h"
 

@@ -1,8 +1,6 @@
 // The diffusion operators against solutions of the heat equation.
 #include "rig.h"
 
-#include <math.h>
-
 // what a case works on
 static Rig rig;
 

@@ -2,10 +2,6 @@
 #include "rig.h"
 #include "support/support.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 // what a case works on
 static Rig rig;
 

@@ -1,8 +1,6 @@
 // The burning front on strips: its speed must not depend on the cells, thanks to the thickening.
 #include "rig.h"
 
-#include <math.h>
-
 #include "analysis/strip.h"
 
 /// Burns a strip of cells of `size` in steps of h.

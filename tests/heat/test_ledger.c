@@ -2,8 +2,6 @@
 // number of threads.
 #include "rig.h"
 
-#include <math.h>
-
 static const SingePoseKey MIDDLE = {.position = {0.03f, 0.03f, 0}, .rotation = {0, 0, 0, 1}};
 
 static RigDef paper(SingeHeatOperator heat_operator) {

@@ -4,8 +4,6 @@
 
 #include "heat/heat_plan.h"
 
-#include <math.h>
-
 enum { COLUMNS = 18, ROWS = 14 };
 
 static float moved(int column, int row, uint32_t which) {

@@ -1,9 +1,6 @@
 // Every kind of heat source, by its formula.
 #include "rig.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 // what a case works on
 static Rig rig;
 

@@ -5,8 +5,6 @@
 #include "support/support.h"
 #include "tear/tear_plan.h"
 
-#include <string.h>
-
 enum { COLUMNS = 14, ROWS = 11, VERTICES = (COLUMNS + 1) * (ROWS + 1), CELLS = COLUMNS * ROWS, SPARES = 60 };
 
 typedef struct Torn {

@@ -1,11 +1,6 @@
 // OBJ texts of meshes, what mesh_make makes of them, and looks at that.
 #pragma once
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/test.h"
 
 #include "formats/formats.h"

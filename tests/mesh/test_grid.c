@@ -1,5 +1,4 @@
 // Grids: exact where they are plain, and with their outline where they are worn.
-#include <math.h>
 
 #include "mesh/to_quads.h"
 #include "support/support.h"

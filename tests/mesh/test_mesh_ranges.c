@@ -3,9 +3,6 @@
 #include "common/def_table.h"
 #include "support/support.h"
 
-#include <math.h>
-#include <string.h>
-
 // the ranges of the tables' rows
 typedef struct Row {
     const char *name;

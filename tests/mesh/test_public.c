@@ -1,9 +1,6 @@
 // singe/mesh.h and the named materials as callers use them: with the public headers alone.
 #include "support/support.h"
 
-#include <math.h>
-#include <string.h>
-
 // two triangles and a pentagon beside them, and a vertex of no face
 static const float positions[] = {0,    0, 0, 0.1f,  0,     0, 0.1f, 0.1f, 0, 0, 0.1f, 0,
                                   0.2f, 0, 0, 0.25f, 0.05f, 0, 0.2f, 0.1f, 0, 9, 9,    9};

@@ -3,8 +3,6 @@
 
 #include "fixture.h"
 
-#include <math.h>
-
 /// A camera at the height of the flames, looking along y at nothing but the background.
 static inline PreviewDef aside(float background) {
     PreviewDef def = small();

@@ -1,9 +1,6 @@
 // Shared by the tests of the preview: a small picture from above, a quad of paper, and a ball of gas.
 #pragma once
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "preview/preview.h"
 #include "support/test.h"
 

@@ -4,10 +4,6 @@
 #include "preview/noise_cell.h"
 #include "support/test.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 enum { SOUP = 700, PACKETS = 60, GRID = 20 };
 
 typedef float Corner[3];

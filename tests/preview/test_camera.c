@@ -2,8 +2,6 @@
 
 #include "fixture.h"
 
-#include <math.h>
-
 enum { STRIPES = 32 };
 
 /// A sheet of black and white stripes across x, straight below the camera.

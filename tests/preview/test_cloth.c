@@ -3,8 +3,6 @@
 #include "fixture.h"
 #include "synthetic.h"
 
-#include <math.h>
-
 // what a case works on
 static uint8_t rgb[BYTES];
 static Float4 q;

@@ -2,9 +2,6 @@
 
 #include "fixture.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { WIDE = 400, HIGH = 300 };
 
 typedef struct Frame {

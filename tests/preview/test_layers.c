@@ -3,8 +3,6 @@
 #include "fixture.h"
 #include "synthetic.h"
 
-#include <math.h>
-
 typedef struct Kept {
     float beauty[H * W][3], glow[H * W][3], coverage[H * W], normal[H * W][3], temperature[H * W], burn[H * W];
     float depth[H * W];

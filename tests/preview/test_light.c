@@ -2,8 +2,6 @@
 
 #include "plate.h"
 
-#include <math.h>
-
 // what a case works on
 static Float4 q;
 static Ball ball;

@@ -2,8 +2,6 @@
 
 #include "plate.h"
 
-#include <math.h>
-
 // what a case works on
 static uint8_t rgb[BYTES];
 static Float4 q;

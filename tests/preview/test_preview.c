@@ -4,10 +4,6 @@
 #include "synthetic.h"
 #include "support/support.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 // what a case works on
 static uint8_t rgb[BYTES];
 static Float4 q;

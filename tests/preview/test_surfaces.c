@@ -2,8 +2,6 @@
 
 #include "fixture.h"
 
-#include <math.h>
-
 static const PreviewSurface SURFACES[4] = {PREVIEW_SURFACE_MATT, PREVIEW_SURFACE_WOOD, PREVIEW_SURFACE_METAL,
                                            PREVIEW_SURFACE_CLOTH};
 

@@ -6,10 +6,6 @@
 #include "support/dense_solve.h"
 #include "support/support.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 // ---- free networks
 
 enum { SIDE = 7, PARTICLES = SIDE * SIDE + 1, SPRINGS_MAX = 2 * SIDE * SIDE + SIDE };

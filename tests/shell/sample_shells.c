@@ -1,9 +1,5 @@
 #include "sample_shells.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/test.h"
 
 #include "common/random.h"

@@ -1,10 +1,6 @@
 // A sheet for the tests of materials, and what the library makes of its parameters.
 #pragma once
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/test.h"
 
 #include "sample_shells.h"

@@ -1,6 +1,4 @@
 // Meshes that are refused, each with its code and its position.
-#include <math.h>
-#include <string.h>
 
 #include "support/test.h"
 

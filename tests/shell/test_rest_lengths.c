@@ -1,6 +1,4 @@
 // Rest geometry: areas, masses, where centres lie, lengths.
-#include <math.h>
-#include <stdlib.h>
 
 #include "support/test.h"
 #include "common/order.h"

@@ -1,7 +1,4 @@
 // The start of a simulation, and that a State is one block.
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "support/test.h"
 

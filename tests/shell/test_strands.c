@@ -1,5 +1,4 @@
 // Springs, strands and families on meshes whose numbers are known.
-#include <stdlib.h>
 
 #include "support/test.h"
 

@@ -1,10 +1,5 @@
 #include "scenes.h"
 
-#include <stdlib.h>
-#include <string.h>
-
-#include <math.h>
-
 SingeMaterialDef scene_quick_material(void) {
     SingeMaterialDef material = singe_default_material();
     material.thickening = 1;

@@ -1,10 +1,6 @@
 // Arrival maps: the front is where the map says, whatever the cells, the pace and the material.
 #include "support/support.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 enum { WIDE = 51, HIGH = 10 };
 
 /// A map from black at the left to grey at the right, whose upper third is white.

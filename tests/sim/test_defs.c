@@ -1,9 +1,6 @@
 // Bad Defs, beyond the ranges of their fields (test_ranges.c), and Defs of older and newer headers.
 #include "scenes.h"
 
-#include <math.h>
-#include <string.h>
-
 /// The simulation's Def with one field changed is refused and the message names the field.
 #define SIM_BAD(field, value, word)                                                   \
     do {                                                                              \

@@ -1,9 +1,6 @@
 // Objects added before the commit, objects without a path, lists of handles, and the caller's own data.
 #include "scenes.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /// The order in which sheets, objects and the commit come does not matter.
 TEST(the_order_does_not_matter) {
     SingeSimDef def = scene_def();

@@ -1,10 +1,6 @@
 // Events: an ignition for every particle that ignites, one hole for one disc, one piece for one cut.
 #include "scenes.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static SingeSimDef calm(void) {
     SingeSimDef def = singe_default_sim();
     memset(def.gravity, 0, sizeof def.gravity);

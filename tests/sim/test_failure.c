@@ -1,10 +1,7 @@
 // Failed steps leave the last good state; failed allocations leave nothing behind; steps allocate nothing.
 #include "scenes.h"
 
-#include <math.h>
 #include <stdatomic.h>
-#include <stdlib.h>
-#include <string.h>
 
 static void poison(void *context, const struct SingeView *view, float *flux, float *conductance,
                    float *conductance_temperature) {

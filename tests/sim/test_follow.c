@@ -1,10 +1,6 @@
 // Colliders whose vertices move and pins that follow positions: a character whose cape burns.
 #include "scenes.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static const float TOP = 0.1f;
 
 /// A box of triangles, its faces divided in n by n.

@@ -1,8 +1,6 @@
 // Defs filled for callers of older and newer headers.
 #include "singe/singe.h"
 
-#include <string.h>
-
 #include "support/test.h"
 
 enum { UNTOUCHED = 0xA5, LONGER = 32, MAX = sizeof(SingeSheetDef) + sizeof(SingeSimDef) + LONGER };

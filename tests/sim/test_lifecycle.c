@@ -2,9 +2,6 @@
 #include "scenes.h"
 
 #include <locale.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static SingeSim *create(void) {
     SingeSimDef def = singe_default_sim();

@@ -1,10 +1,6 @@
 // Sources, pins, colliders and wind: added, moved and removed while the simulation runs.
 #include "scenes.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static SingeSimDef weightless(void) {
     SingeSimDef def = singe_default_sim();
     memset(def.gravity, 0, sizeof def.gravity);

@@ -1,6 +1,5 @@
 // The public calls refuse what the tables of Defs say (singe/*.def, and so the headers and docs), and nothing else: each
 // field, just inside and just outside of its range, of every kind of object that has it.
-#include <string.h>
 
 #include "common/def_table.h"
 #include "support/support.h"

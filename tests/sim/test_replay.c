@@ -1,7 +1,4 @@
 // Recordings: what they hold, that a replay gives the same bits, and what it says where it does not.
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "recording.h"
 #include "scenes.h"

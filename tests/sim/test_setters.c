@@ -1,10 +1,6 @@
 // Setters while the simulation runs, frames of any length, and the ranges of sheets.
 #include "scenes.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /// A scene without its callback, which a load does not have.
 static TestScene quiet_scene(uint32_t cells) {
     TestScene scene = scene_make(NULL, cells);

@@ -1,8 +1,6 @@
 // What a step costs follows the number of cells and not their shape. In processor time, of one thread.
 #include "support/support.h"
 
-#include <math.h>
-
 enum { SHAPES = 3, ROUNDS = 6, STEPS = 5, FALLEN = 60 };
 
 /// A sheet that falls, with contact, and is lit at its centre.

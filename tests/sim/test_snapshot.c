@@ -7,10 +7,6 @@
 #include "gas/gas_plan.h"
 #include "sim/snapshot_def.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static float flux_strength = 2000;
 
 TEST(resumed_runs_are_the_same) {

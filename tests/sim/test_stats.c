@@ -3,10 +3,6 @@
 #include "common/order.h"
 #include "scenes.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 TEST(ledgers_close) {
     TestScene scene = scene_make(NULL, 20);
     double worst_heat = 0, worst_mass = 0;

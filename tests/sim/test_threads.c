@@ -1,9 +1,6 @@
 // The same bytes for any number of threads, and on the host's scheduler.
 #include "scenes.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #ifdef SINGE_THREADS_ONLY
 enum { CELLS = 20, STEPS = 24, THREADS_MAX = 4 };
 #else

@@ -2,9 +2,6 @@
 // flame off and cools; a collider or another sheet smothers.
 #include "support/support.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 static const double FLUX = 40e3;         // W/m2, into each layer
 static const double GRAMMAGE = 0.08 / 2; // kg/m2, of a layer
 static const float WHITE = 1;

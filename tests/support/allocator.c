@@ -1,8 +1,5 @@
 #include "support.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /// In front of every block: its size and a mark, so that wrong old sizes and foreign blocks are noticed.
 typedef struct BlockHead {
     size_t size;

@@ -1,7 +1,6 @@
 #include "support.h"
 
 #include <locale.h>
-#include <stdbool.h>
 
 bool test_comma_locale(void) {
     static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "ps_AF.UTF-8"};

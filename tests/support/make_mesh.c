@@ -1,9 +1,5 @@
 #include "support.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static const double pi = 3.14159265358979323846;
 
 static TestMesh mesh_make(uint32_t vertices, uint32_t cells) {

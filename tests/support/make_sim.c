@@ -1,8 +1,5 @@
 #include "support.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 void test_ok_at(const SingeSim *sim, SingeResult result, const char *call, const char *file, int line) {
     if (result == SINGE_OK) return;
     const SingeError *error = sim ? singe_sim_error(sim) : NULL;

@@ -2,9 +2,6 @@
 // SINGE_TEST_FILTER, with * and ?, or all without it.
 #include "support/test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <time.h>
 
 enum { MOST_CASES = 64 };

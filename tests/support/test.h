@@ -1,11 +1,16 @@
 // A test is a program of cases. Each case adds itself to its program, and tests/support/test.c runs them.
+// The headers of the C library that tests need again and again are here.
 #pragma once
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 

@@ -5,8 +5,6 @@
 #include "shell/split.h"
 #include "surface/surface_fine.h"
 
-#include <string.h>
-
 typedef struct Drawing {
     BurningSheet *sheet;
     AblatePlan *plan;

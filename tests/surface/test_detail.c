@@ -5,8 +5,6 @@
 #include "common/random.h"
 #include "support/support.h"
 
-#include <string.h>
-
 /// Levels of about -0.1 to 0.15, smooth over some cells or not at all.
 static void set_random_levels(Drawing *d, uint32_t seed) {
     const float scale = 0.4f / d->sheet->shell.sheets[0].cell_size;

@@ -4,9 +4,6 @@
 #include "drawn_mesh.h"
 #include "common/random.h"
 
-#include <stdio.h>
-#include <string.h>
-
 /// Both ends on the same border of a sheet that begins at 0.
 static bool on_border(const float *p, const float *q, int axis, float size) {
     float near = 1e-6f * size;

@@ -6,8 +6,6 @@
 #include "common/float3.h"
 #include "support/support.h"
 
-#include <string.h>
-
 static Drawing *plain_drawing(uint32_t nx, uint32_t ny, float cell) {
     SingeMaterialDef material = plain_material();
     return drawing_of(burning_sheet(nx, ny, cell, &material));

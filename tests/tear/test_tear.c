@@ -5,10 +5,6 @@
 #include "support/support.h"
 #include "tear/tear_plan.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 enum { ALONG = 24, ACROSS = 10, WEAK = 9, GRIP = 2, STEPS = 120 };
 static const float side = 5e-3f;
 

@@ -3,8 +3,6 @@
 
 #include "world/path.h"
 
-#include <string.h>
-
 typedef struct Fixture {
     TestAllocator hook;
     Memory memory;

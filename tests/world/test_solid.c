@@ -4,10 +4,6 @@
 #include "world/collider.h"
 #include "solids.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 static uint32_t random_state = 1;
 static float any(float low, float high) {
     random_state = random_state * 1664525u + 1013904223u;
