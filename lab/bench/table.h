@@ -1,7 +1,6 @@
 // A table of results: printed row by row as they arrive, and as JSON or CSV at the end.
 #pragma once
 
-#include <stdbool.h>
 #include <stdio.h>
 
 #include "singe/singe.h"

@@ -1,7 +1,6 @@
 #include "bench/timing.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <time.h>
 

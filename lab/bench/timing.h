@@ -1,8 +1,6 @@
 // Steps timed one by one.
 #pragma once
 
-#include <stdbool.h>
-
 #include "singe/singe.h"
 
 /// The timed parts of a step, in milliseconds of wall clock; the stages come first, in order.

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "bench/geometry.h"
 #include "bench/machine.h"
 #include "analysis/numbers.h"
 

@@ -1,7 +1,6 @@
 #include "page/appearance.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "common/store.h"
 

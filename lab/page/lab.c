@@ -2,11 +2,9 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "bench/geometry.h"
 #include "bench/hung_sheet.h"
-#include "cli/text.h"
 #include "common/float3.h"
 #include "common/order.h"
 

@@ -2,10 +2,7 @@
 
 #include <pthread.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "cli/folder.h"
-#include "cli/text.h"
 #include "common/printable.h"
 #include "scene/builtin.h"
 

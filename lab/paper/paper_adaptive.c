@@ -2,7 +2,6 @@
 // compared with uniform cells. A strip burns from its left end; one of its meshes is graded as refinement would grade
 // it when the front is halfway.
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "page/appearance.h"

@@ -1,6 +1,5 @@
 // Where the paper can be read in more than one way, or is misprinted: our reading, and what the other one does.
 #include <math.h>
-#include <stdio.h>
 
 #include "analysis/strip.h"
 #include "page/lab.h"

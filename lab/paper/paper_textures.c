@@ -1,7 +1,6 @@
 // Textures of sections 5 and 8 without a figure of their own, heat and diffusivity, and section 8.2's claim about
 // layers that may cross.
 #include <math.h>
-#include <stdio.h>
 
 #include "page/appearance.h"
 #include "paper/paper.h"

@@ -8,7 +8,6 @@
 //
 // The simulation has one reaction (`pre_exponential`, `activation_energy`): it gets (2), with char as the residue.
 #include <math.h>
-#include <stdio.h>
 
 #include "validate/validate.h"
 

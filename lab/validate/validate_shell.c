@@ -1,7 +1,6 @@
 // The shell's elasticity compared with theory: a clamped strip that sags, and a disc of two layers that shrink
 // differently.
 #include <math.h>
-#include <stdio.h>
 
 #include "bench/geometry.h"
 #include "validate/validate.h"

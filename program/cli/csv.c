@@ -1,13 +1,11 @@
 #include "cli/csv.h"
 
 #include <errno.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "cli/job.h"
-#include "formats/formats.h"
 #include "formats/lines.h"
 #include "formats/number.h"
 

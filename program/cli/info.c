@@ -1,8 +1,6 @@
 // singe info: what is in a run's folder. singe clean: removes frames of it.
-#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/args.h"
 #include "cli/folder.h"

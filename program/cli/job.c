@@ -7,17 +7,12 @@
 #include "cli/job.h"
 
 #include <dirent.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
-#include "cli/text.h"
 #include "common/allocator.h"
 #include "common/printable.h"
 #include "scene/messages.h"

@@ -2,10 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "cli/pictures.h"
-#include "cli/text.h"
 #include "common/store.h"
 #include "formats/gas_grid.h"
 #include "scene/faults.h"

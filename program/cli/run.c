@@ -1,9 +1,7 @@
 // singe run: frame 1 is the start, at time 0; each later frame is `steps` steps on from the one before it.
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "cli/args.h"

@@ -5,13 +5,11 @@
 #include <fcntl.h>
 #include <inttypes.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "cli/text.h"
 #include "common/store.h"
-#include "formats/formats.h"
 
 /// The columns of stats.csv: COLUMN(name, unit, printf's format, value), of the frame, its statistics `s`, its `cost` and
 /// the `totals` so far. Whole numbers are exact as doubles.

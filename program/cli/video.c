@@ -1,15 +1,12 @@
 #include "cli/video.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 
 #include "cli/interrupt.h"
 #include "cli/spawn.h"
 #include "cli/text.h"
-#include "formats/formats.h"
 
 enum { WHY_SIZE = sizeof(((SingeError *)0)->message) };
 

@@ -1,7 +1,6 @@
 // Decimal numbers in text, independent of the locale.
 #pragma once
 
-#include <stddef.h>
 #include <stdint.h>
 
 typedef enum NumberStatus {

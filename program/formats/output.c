@@ -1,10 +1,8 @@
-
 #include "formats/output.h"
 
 #include "common/store.h"
 
 #include <stdio.h>
-#include <string.h>
 
 #define VECTOR(name, member, width, index) \
     { name, offsetof(SingeSurface, member), false, width, index }

@@ -2,7 +2,6 @@
 #include "scene/schema.h"
 
 #include <math.h>
-#include <string.h>
 
 static void set3(float v[3], float x, float y, float z) {
     v[0] = x;

@@ -5,8 +5,6 @@
 #include "common/printable.h"
 #include "scene/schema.h"
 
-#include <string.h>
-
 /// Reports a fault of a sheet's mesh at the name of its file, with the line or the number of the face.
 static void mesh_fault(const Scene *scene, uint32_t index, const Mesh *mesh, const SingeError *error, const char *what,
                        SceneMessages *messages) {

@@ -4,7 +4,6 @@
 
 #include <stdarg.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { MESSAGES_MAX = 200, LINE_WIDTH = 110 };
 

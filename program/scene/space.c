@@ -3,8 +3,6 @@
 //   z = ca cb sc - sa sb cc      w = ca cb cc + sa sb sc
 #include "scene/space.h"
 
-#include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
 void box_add(Box *box, const double low[3], const double high[3]) {

@@ -4,7 +4,6 @@
 
 #include "common/float3.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /// A box around points, m.

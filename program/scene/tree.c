@@ -1,7 +1,5 @@
 #include "scene/tree.h"
 
-#include <string.h>
-
 #include "common/printable.h"
 #include "scene/yaml.h"
 

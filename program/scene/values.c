@@ -6,7 +6,6 @@
 #include "scene/words.h"
 
 #include <math.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

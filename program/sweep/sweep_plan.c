@@ -1,13 +1,10 @@
 // Reads a plan as scenes are read, by tables of its keys, so that errors have their lines.
 #include "sweep/sweep_plan.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/job.h"
 #include "common/printable.h"
-#include "formats/formats.h"
 #include "formats/number.h"
 #include "scene/schema_rows.h"
 

@@ -1,15 +1,12 @@
 // singe view: shows a burn in a browser, from a run's folder or while a scene burns.
 #include "view/view.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "cli/args.h"
 #include "cli/interrupt.h"
 #include "cli/spawn.h"
-#include "cli/text.h"
 #include "common/printable.h"
 
 typedef struct ViewOptions {

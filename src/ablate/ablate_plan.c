@@ -5,8 +5,6 @@
 // The sheet is left where it is not negative. A sheet that is not ablated is inside everywhere.
 #include "ablate/ablate_plan.h"
 
-#include <string.h>
-
 SingeResult ablate_plan_create(Memory *memory, const Shell *shell, AblatePlan **plan_out) {
     AblatePlan *plan;
     *plan_out = NULL;

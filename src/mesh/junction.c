@@ -6,7 +6,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /// Max distance of a vertex from a side that it lies on, as a share of the side's length.
 static const double beside = 1e-5;

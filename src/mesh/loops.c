@@ -4,7 +4,6 @@
 
 #include "common/real.h"
 
-#include <math.h>
 #include <string.h>
 
 /// Max distance from a side at which a corner of the same face lies on it, as a share of the side's length.

@@ -13,7 +13,6 @@
 #include "common/real.h"
 #include "common/order.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -3,7 +3,6 @@
 
 #include "common/store.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -22,8 +22,6 @@
 
 #include "common/real.h"
 
-#include <string.h>
-
 /// The Field of a parameter, or of the quantity computed from it (matter_value); NULL for those from which masses and
 /// capacities are computed.
 static Field *matter_field(Matter *matter, int param) {

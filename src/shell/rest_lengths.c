@@ -15,11 +15,7 @@
 // two cells has the mean of both.
 #include "shell/rest_lengths.h"
 
-#include "common/float3.h"
 #include "common/real.h"
-
-#include <math.h>
-#include <string.h>
 
 /// If a corner's share of its cell is below this, the four shares are made equal: a concave corner has little or
 /// negative area around it, but a particle needs mass.

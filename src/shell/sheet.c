@@ -5,9 +5,6 @@
 #include "common/store.h"
 #include "shell/rest_lengths.h"
 
-#include <math.h>
-#include <string.h>
-
 /// A cell is degenerate if a side, or its area, is at most this fraction of its longest side (squared).
 static const double thin = 1e-6;
 /// Coordinates (m) up to this size keep squared lengths within float.

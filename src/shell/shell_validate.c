@@ -2,8 +2,6 @@
 
 #include "common/format.h"
 
-#include <math.h>
-
 static const char *const COLOURS[SINGE_COLOUR_COUNT] = {
     [SINGE_RED] = "red", [SINGE_GREEN] = "green", [SINGE_BLUE] = "blue", [SINGE_YELLOW] = "yellow"};
 

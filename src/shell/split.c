@@ -1,10 +1,7 @@
-#include "common/assertion.h"
 #include "shell/split.h"
 
 #include "shell/matter.h"
 #include "shell/rest_lengths.h"
-
-#include <string.h>
 
 /// The side of a cell that leads to the next cell around the vertex, clockwise, and counter-clockwise.
 static int side_before(int corner) { return corner; }

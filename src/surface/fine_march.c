@@ -15,8 +15,6 @@
 #include "common/assertion.h"
 #include "surface/surface_fine.h"
 
-#include <string.h>
-
 /// `nearest` of surface_cut for fine sides: a few micrometres, which floats still resolve some metres from the origin
 /// and nobody sees.
 #define NEAREST 0.03125f

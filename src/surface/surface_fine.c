@@ -12,8 +12,6 @@
 #include "common/random.h"
 #include "surface/surface_fine.h"
 
-#include <string.h>
-
 #define LEVEL_GONE 0.12f
 
 typedef struct FineArray {

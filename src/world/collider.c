@@ -4,8 +4,6 @@
 #include "common/def_table.h"
 #include "common/real.h"
 
-#include <string.h>
-
 static float collider_round(Float3 offset, float radius, Float3 *normal) {
     float length = float3_length(offset);
     *normal = length > 0 ? float3_scale(offset, 1 / length) : float3(0, 0, 1);

@@ -3,9 +3,6 @@
 #include "common/real.h"
 #include "world/triangle.h"
 
-#include <math.h>
-#include <string.h>
-
 static SingeResult deform_no_memory(SingeError *error) {
     return error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the mesh");
 }

@@ -1,6 +1,5 @@
 #include "world/motion.h"
 
-#include <math.h>
 #include <string.h>
 
 bool motion_create(Memory *memory, uint32_t count, const float *points, Motion *motion) {

@@ -1,7 +1,5 @@
 #include "world/path.h"
 
-#include <math.h>
-
 /// Positions (m) up to this size leave room for their differences and squares in float.
 static const float path_position_max = 1e9f;
 

@@ -1,9 +1,7 @@
 // Removal by colour, ledgers, pieces and holes.
 #include "burning_sheet.h"
 
-#include "ablate/ablate.h"
 #include "sim/sim_internal.h"
-#include "support/support.h"
 
 enum { AMBIENT = 293 };
 

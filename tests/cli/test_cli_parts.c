@@ -5,12 +5,8 @@
 #include <unistd.h>
 
 #include "cli/args.h"
-#include "cli/job.h"
-#include "cli/cli.h"
-#include "cli/console.h"
 #include "cli/pictures.h"
 #include "cli/interrupt.h"
-#include "cli/text.h"
 #include "common/printable.h"
 
 static void expect_member(const char *json, const char *name, const char *expected) {

@@ -4,7 +4,6 @@
 #include "count_crossings.h"
 #include "collision/narrow_phase.h"
 #include "collision/feature_distance.h"
-#include "collision/collision_plan.h"
 
 /// A flat sheet of n x n cells from `corner` along two sides.
 typedef struct Flat {

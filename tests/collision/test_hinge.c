@@ -1,6 +1,5 @@
 // Two cells that share two sides, with a corner in between that no other cell has (a side halved by mesh/pair.c): such
 // a corner may pass through its own cell, and leave both cells sound by themselves, but crossing each other.
-#include "support/test.h"
 
 #include "count_crossings.h"
 #include "sim/sim_internal.h"

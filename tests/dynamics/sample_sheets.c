@@ -4,8 +4,6 @@
 
 #include <assert.h>
 
-#include "support/test.h"
-
 Quads quads_grid(uint32_t nx, uint32_t ny, float sx, float sy, bool wrap_x) {
     if (!wrap_x) return test_grid(nx, ny, sx, sy);
     Quads quads = test_cylinder(nx, ny, sx * (float)nx / (2 * 3.14159265f), sy * (float)ny);

@@ -6,8 +6,6 @@
 #include "dynamics/dynamics_plan.h"
 #include "world/solids.h"
 
-#include "support/test.h"
-
 // what a case works on
 static Bench bench;
 

@@ -3,8 +3,6 @@
 
 #include "dynamics/dynamics_plan.h"
 
-#include "support/test.h"
-
 // what a case works on
 static Bench bench;
 

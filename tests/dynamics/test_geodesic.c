@@ -1,8 +1,6 @@
 // Geodesic distances against those that are known: straight lines, unrolled surfaces, ways round a corner.
 #include "sample_sheets.h"
 
-#include "support/test.h"
-
 #include "dynamics/geodesic.h"
 
 typedef struct Distances {

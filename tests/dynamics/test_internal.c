@@ -1,8 +1,6 @@
 // Internal friction, the order of the layers, and the weights of springs.
 #include "sample_sheets.h"
 
-#include "support/test.h"
-
 #include "dynamics/dynamics_plan.h"
 
 // what a case works on

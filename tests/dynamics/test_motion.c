@@ -4,8 +4,6 @@
 #include "common/random.h"
 #include "dynamics/dynamics_plan.h"
 
-#include "support/test.h"
-
 // what a case works on
 static Bench bench;
 

@@ -2,7 +2,6 @@
 #include "sample_sheets.h"
 
 #include "dynamics/dynamics_plan.h"
-#include "support/support.h"
 
 /// A number from -1 to 1 that looks random.
 static float scatter(uint32_t i) { return 2 * (float)((i * 2654435761u >> 8) % 65536) / 65535 - 1; }

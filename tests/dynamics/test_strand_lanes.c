@@ -4,8 +4,6 @@
 #include "common/random.h"
 #include "dynamics/dynamics_plan.h"
 
-#include "support/test.h"
-
 /// A grid without the cells of a rectangle inside it.
 static Quads quads_with_hole(uint32_t nx, uint32_t ny) {
     Quads quads = quads_grid(nx, ny, 0.01f, 0.011f, false);

@@ -5,7 +5,6 @@
 #include "dynamics/dynamics_plan.h"
 
 #include "support/dense_solve.h"
-#include "support/test.h"
 
 enum { N_MAX = 64 };
 

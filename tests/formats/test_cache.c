@@ -1,7 +1,5 @@
 #include "format_test.h"
 
-#include <unistd.h>
-
 TEST_IN_FOLDER("a.0001.ply")
 
 // what a case works on

@@ -2,7 +2,6 @@
 #include "format_test.h"
 
 #include <openexr.h>
-#include <unistd.h>
 
 enum { WIDTH = 37, HEIGHT = 50, COUNT = WIDTH * HEIGHT };
 

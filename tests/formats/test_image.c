@@ -1,7 +1,5 @@
 #include "format_test.h"
 
-#include <unistd.h>
-
 #include <jpeglib.h>
 #include <png.h>
 

@@ -9,7 +9,6 @@
 #include <sys/time.h>
 #include <sys/wait.h>
 #include <time.h>
-#include <unistd.h>
 
 static const IsolateLimits few = {64 << 20, 1};
 

@@ -1,12 +1,8 @@
 // What stands around a burnt sheet in the files that hold a whole scene: shapes and their motion, the ground, and all
 // frames in one file.
 #include "crate_reader.h"
-#include "format_test.h"
 
-#include "formats/output.h"
 #include "formats/usd.h"
-
-#include <unistd.h>
 
 TEST_IN_FOLDER("scene")
 

@@ -5,7 +5,6 @@
 #include "formats/output.h"
 
 #include <sys/resource.h>
-#include <unistd.h>
 
 static char folder[] = "/dev/shm/singe-usd-XXXXXX", path[512];
 

@@ -4,8 +4,6 @@
 #include "gas_sample.h"
 #include "format_test.h"
 
-#include <unistd.h>
-
 TEST_IN_FOLDER("a.vdb")
 
 // what a case works on

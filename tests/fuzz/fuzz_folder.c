@@ -1,5 +1,4 @@
 // Any bytes as what a run leaves in its folder: run.json, which `render` and `verify` read, and stats.csv.
-#include <string.h>
 #include <unistd.h>
 
 #include "cli/csv.h"

@@ -6,7 +6,6 @@
 #include "damage.h"
 #include "sim/recording.h"
 #include "sim/scenes.h"
-#include "singe/replay.h"
 
 enum { RECORDINGS = 4, MESHED = 3, CHANGES = 24, WHOLE_MAX = 1 << 14, ADD_COLLIDER = 21, CALLS = 16, MESH = 4 };
 

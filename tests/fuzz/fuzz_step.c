@@ -2,8 +2,6 @@
 // the library accepts about them. Up to three steps: nothing crashes, what is left stays finite and above 0 K, a step that
 // fails changes nothing, and two threads give the bytes of one. Most have so few cells and substeps that a second has
 // many runs.
-#include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 #include "mesh/to_quads.h"

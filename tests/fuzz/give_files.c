@@ -2,7 +2,6 @@
 // corpus.
 #include <dirent.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "input.h"
 

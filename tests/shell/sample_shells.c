@@ -1,7 +1,5 @@
 #include "sample_shells.h"
 
-#include "support/test.h"
-
 #include "common/random.h"
 
 static const double pi = 3.14159265358979323846;

@@ -1,7 +1,5 @@
 // Meshes that are refused, each with its code and its position.
 
-#include "support/test.h"
-
 #include "sample_shells.h"
 
 /// Makes the source and the shell; checks code and element of the failure, the sheet's name in the

@@ -1,6 +1,5 @@
 // Rest geometry: areas, masses, where centres lie, lengths.
 
-#include "support/test.h"
 #include "common/order.h"
 
 #include "sample_shells.h"

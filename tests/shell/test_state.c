@@ -1,7 +1,5 @@
 // The start of a simulation, and that a State is one block.
 
-#include "support/test.h"
-
 #include "sample_shells.h"
 
 /// A grid with one vertex that no cell uses, moving and with a temperature of its own.

@@ -1,7 +1,5 @@
 // Springs, strands and families on meshes whose numbers are known.
 
-#include "support/test.h"
-
 #include "sample_shells.h"
 
 /// Expected numbers by colour: red, green, blue, yellow. 0 families stands for any number.

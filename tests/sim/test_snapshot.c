@@ -1,7 +1,6 @@
 // Save, load and clone: a resumed run has the bytes of an uninterrupted one, and damage is noticed.
 #include "scenes.h"
 
-#include "common/stream.h"
 #include "collision/collision_plan.h"
 #include "dynamics/dynamics_plan.h"
 #include "gas/gas_plan.h"

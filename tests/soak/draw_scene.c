@@ -4,11 +4,8 @@
 // Half of all scenes keep near the defaults; in the others any value may be anywhere in its range. What scenes cost is
 // kept small: few cells, frames and steps. Keys that name files are left out.
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "scene/arena.h"
 #include "scene/schema.h"
 
 typedef struct Draw {

@@ -3,7 +3,6 @@
 
 #include "drawn_mesh.h"
 #include "common/random.h"
-#include "support/support.h"
 
 /// Levels of about -0.1 to 0.15, smooth over some cells or not at all.
 static void set_random_levels(Drawing *d, uint32_t seed) {

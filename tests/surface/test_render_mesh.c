@@ -3,8 +3,6 @@
 
 #include "../collision/count_crossings.h"
 #include "drawn_mesh.h"
-#include "support/support.h"
-#include "surface/render_mesh.h"
 
 /// A mesh in the making.
 typedef struct Draft {

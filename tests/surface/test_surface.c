@@ -3,8 +3,6 @@
 
 #include "drawn_mesh.h"
 #include "common/random.h"
-#include "common/float3.h"
-#include "support/support.h"
 
 static Drawing *plain_drawing(uint32_t nx, uint32_t ny, float cell) {
     SingeMaterialDef material = plain_material();
