@@ -120,6 +120,9 @@ static inline void burning_sheet_free(BurningSheet *b) {
     free(b);
 }
 
+static inline void burning_sheet_end(BurningSheet **b) { burning_sheet_free(*b); }
+#define OwnBurningSheet OWNED(burning_sheet_end) BurningSheet
+
 static inline uint32_t corner_at(const BurningSheet *b, uint32_t i, uint32_t j) { return j * (b->nx + 1) + i; }
 static inline uint32_t cell_at(const BurningSheet *b, uint32_t i, uint32_t j) { return j * b->nx + i; }
 static inline uint32_t centre_at(const BurningSheet *b, uint32_t i, uint32_t j) {

@@ -162,7 +162,7 @@ TEST(a_cell_keeps_its_springs_till_it_goes) {
 /// beside those that are left.
 TEST(burnt_corners_do_not_swing) {
     const SingeSimDef def = singe_default_sim();
-    SingeSim *sim = test_sim(&def, test_grid(4, 1, 2.5e-3f, 2.5e-3f), NULL);
+    OwnSim *sim = test_sim(&def, test_grid(4, 1, 2.5e-3f, 2.5e-3f), NULL);
     const uint32_t held[] = {0, 1, 5, 6}, burnt[] = {3, 4, 9};
     SingePinDef pin = singe_default_pin();
     assert_int_equal(singe_sim_sheets(sim, &pin.sheet, 1), 1);
@@ -189,7 +189,6 @@ TEST(burnt_corners_do_not_swing) {
 
     print_message("sides up to %.2f of their length\n", (double)longest);
     assert_true(longest < 1.1f);
-    singe_sim_destroy(sim);
 }
 
 TEST(yellow_and_green_go_with_the_cell) {
@@ -486,10 +485,9 @@ TEST(the_ledger_closes_as_a_sheet_burns_to_pieces) {
 
 TEST(plan_survives_lack_of_memory) {
     SingeMaterialDef material = plain_material();
-    BurningSheet *b = burning_sheet(3, 3, 0.01f, &material);
+    OwnBurningSheet *b = burning_sheet(3, 3, 0.01f, &material);
     Memory memory;
     AblatePlan *plan;
     test_allocations_fail(3, (memory = memory_make(allocator), ablate_plan_create(&memory, &b->shell, &plan)),
                           ablate_plan_free(&memory, plan));
-    burning_sheet_free(b);
 }

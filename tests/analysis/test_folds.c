@@ -30,12 +30,11 @@ static Drawing *folded(float degrees) {
 
 static double drawn_angle(float degrees, const float *room) {
     Folds folds = {0};
-    Drawing *d = folded(degrees);
+    OwnDrawing *d = folded(degrees);
     d->detail.room = room, d->detail.bulge_max = 2.25e-4f; // of contact at its usual thickness
     draw_fine(d);
     assert_true(folds_add(&d->surface, &folds));
     assert_true(folds.count > 50);
-    drawing_free(d);
     return folds_angle(&folds);
 }
 
@@ -53,10 +52,9 @@ TEST(slanting_folds_are_smooth) {
 
 TEST(flat_sheets_have_no_folds) {
     Folds folds = {0};
-    Drawing *d = fine_drawing(CELLS, CELLS, cell, 4e-4f, 2e-3f);
+    OwnDrawing *d = fine_drawing(CELLS, CELLS, cell, 4e-4f, 2e-3f);
     draw_fine(d);
     assert_true(folds_add(&d->surface, &folds));
     assert_float_equal(folds.count, 0, 0);
     assert_true(isnan(folds_angle(&folds)));
-    drawing_free(d);
 }

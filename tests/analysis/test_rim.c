@@ -50,7 +50,7 @@ static void add_second(SingeSurface *s, uint32_t v, uint32_t *f) {
 
 static Rim look(Sheet sheet) {
     const uint32_t row = CELLS + 1, seam = 5, plain = row * row, extra = sheet.seam ? row : 0;
-    SingeSurface s;
+    OwnSurface s;
     assert_true(surface_new(&s, plain + extra + (sheet.second ? 4 : 0), 2 * CELLS * CELLS + (sheet.second ? 2 : 0)));
     for (uint32_t v = 0; v < plain + extra; v++) {
         uint32_t i = v < plain ? v % row : seam, j = v < plain ? v / row : v - plain;
@@ -73,7 +73,6 @@ static Rim look(Sheet sheet) {
     if (sheet.second) add_second(&s, plain + extra, &f);
     Rim rim = {0};
     assert_true(rim_add(&s, &rim));
-    singe_surface_free(&s);
     return rim;
 }
 

@@ -61,9 +61,8 @@ static SingeSurface draw(int cells, Height *height, double number) {
 }
 
 static void look_too(int cells, Height *height, double number, Wrinkles *wrinkles) {
-    SingeSurface s = draw(cells, height, number);
+    OwnSurface s = draw(cells, height, number);
     assert_true(wrinkles_add(&s, wrinkles));
-    singe_surface_free(&s);
 }
 
 static Wrinkles look(int cells, Height *height, double number) {

@@ -42,22 +42,20 @@ TEST(edges_glow_at_two_resistances_in_series) {
     const double temperatures[] = {700, 850, 1000, 1500};
     for (int t = 0; t < 4; t++) {
         SingeMaterialDef material = charring();
-        BurningSheet *b = leaf(1, &material, (float)temperatures[t]);
+        OwnBurningSheet *b = leaf(1, &material, (float)temperatures[t]);
         double k = 1 / (1 / kinetics(temperatures[t]) + 1 / RATE);
         for (int n = 1; n <= 60; n++) {
             assert_int_equal(step(b, 0.05f, 2, 2.5f), SINGE_OK); // 0.04 s over F
             double root = fmax(1 - 0.5 * k * 0.04 * n / SLOWING, 0);
             assert_float_equal(left_of_char(b, 0), root * root, 2e-4);
         }
-
-        burning_sheet_free(b);
     }
 }
 
 /// Little air reaches the inside of a leaf until char has begun to go; fuel keeps air away; cold char does not glow.
 TEST(leaves_glow_slower_than_edges) {
     SingeMaterialDef material = charring();
-    BurningSheet *b = leaf(6, &material, HOT);
+    OwnBurningSheet *b = leaf(6, &material, HOT);
     uint32_t inner = 3 * 7 + 3, fuelled = 2 * 7 + 3, cold = 3 * 7 + 4;
     b->state.burn.fuel[fuelled] = 0.5f, b->state.burn.mass[fuelled] = 0.5f + 0.5f * (float)YIELD;
     b->state.heat.temperature[fuelled] = b->state.heat.temperature[cold] = 400;
@@ -89,7 +87,6 @@ TEST(leaves_glow_slower_than_edges) {
     b->state.ablate.cell_flags[2 * 6 + 2] = 0;
     assert_int_equal(step(b, 0.1f * (float)SLOWING, 1, 1), SINGE_OK);
     assert_float_equal(was - sqrt(left_of_char(b, inner)), 0.5 * 0.1 * RATE, 1e-3);
-    burning_sheet_free(b);
 }
 
 /// Fuel leaves char, char leaves ash, no step passes either, and mass, gas and heat add up.
@@ -102,7 +99,7 @@ TEST(ledgers_close_from_fuel_to_ash) {
         material.heat_of_combustion = singe_param(16e6f), material.heat_share = singe_param(0.25f);
         material.loss_mass_floor = singe_param(1); // heat over the initial mass
 
-        BurningSheet *b = burning_sheet(2, 2, 0.01f, &material);
+        OwnBurningSheet *b = burning_sheet(2, 2, 0.01f, &material);
         double warmed = 0, first = 0, last = 1;
         for (uint32_t i = 0; i < b->shell.particle_count; i++) {
             b->state.heat.temperature[i] = HOT;
@@ -122,7 +119,6 @@ TEST(ledgers_close_from_fuel_to_ash) {
         double monoxide = 2500 * exp(-6240 / (double)HOT), heat = 0.28 + 0.72 / (1 + monoxide);
         double eta = 0.25 * 16e6 / 1400 * (1 - YIELD), glow = 28e6 / 1400 * heat * (YIELD - MIN);
         if (s < 2) assert_float_equal(warmed, eta + glow, 2e-3 * (eta + glow));
-        burning_sheet_free(b);
     }
 }
 
@@ -146,7 +142,7 @@ TEST(char_and_ash_have_densities_of_their_own) {
     SingeMaterialDef material = charring();
     material.char_density = singe_param(0.45f), material.ash_density = singe_param(0.22f);
     material.shrink_back = singe_param(1), material.mass_rate = singe_param(1);
-    BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
+    OwnBurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
     for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = 600;
 
     float *air = burning_sheet_vary(b, &b->shell.matter.char_rate);
@@ -162,5 +158,4 @@ TEST(char_and_ash_have_densities_of_their_own) {
 
     assert_float_equal(ratio[0], YIELD / 0.45, 1e-5);
     assert_float_equal(ratio[1], MIN / 0.22, 1e-5);
-    burning_sheet_free(b);
 }

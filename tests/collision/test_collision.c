@@ -13,7 +13,7 @@ typedef struct Flat {
 
 static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float cells_thick, float wave, const float velocity[3]) {
     uint32_t n = (uint32_t)flat->n, row = n + 1;
-    TestMesh mesh = test_grid(n, n, 1, 1);
+    OwnTestMesh mesh = test_grid(n, n, 1, 1);
     for (uint32_t j = 0; j <= n; j++)
         for (uint32_t i = 0; i <= n; i++) {
             float s = (float)i / (float)n, t = (float)j / (float)n, bend = wave * sinf(9 * t) + wave / 2 * sinf(7 * s);
@@ -26,7 +26,6 @@ static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float cells_thick,
         cells_thick * sqrtf(flat->u[0] * flat->u[0] + flat->u[1] * flat->u[1] + flat->u[2] * flat->u[2]) / (float)n);
     for (int k = 0; k < 3; k++) def.velocity[k] = velocity ? velocity[k] : 0;
     const SingeSheetId id = test_add_sheet(sim, &def);
-    test_mesh_free(&mesh);
     return id;
 }
 
@@ -82,7 +81,7 @@ TEST(a_heap_does_not_cross) {
 }
 
 TEST(thrown_sheets_do_not_cross) {
-    SingeSim *sim = new_sim(1, true);
+    OwnSim *sim = new_sim(1, true);
 
     // two that fly into each other on edge, at 12 m/s: some ten thicknesses a substep
     add_flat(sim, &(Flat){14, {-0.05f, -0.03f, 1}, {0.1f, 0, 0.01f}, {0, 0.02f, 0.1f}}, 0.6f, 2e-3f,
@@ -94,11 +93,10 @@ TEST(thrown_sheets_do_not_cross) {
         assert_int_equal(crossings(sim), 0);
     }
     assert_true(singe_sim_timers(sim).contact_stops > 0);
-    singe_sim_destroy(sim);
 }
 
 TEST(layers_keep_their_thickness) {
-    SingeSim *sim = new_sim(1, true);
+    OwnSim *sim = new_sim(1, true);
     for (int k = 0; k < 3; k++)
         add_flat(
             sim,
@@ -116,14 +114,13 @@ TEST(layers_keep_their_thickness) {
         assert_true(apart > 0.8 * 0.5e-3 && apart < 2 * 0.5e-3); // 0.5 mm is the default
     }
     assert_int_equal(crossings(sim), 0);
-    singe_sim_destroy(sim);
 }
 
 /// How far the upper of two sheets has slid in 0.2 s; the lower one lies on the ground.
 static double slide(float friction) {
     SingeSimDef def = singe_default_sim();
     def.contact.enabled = true, def.contact.friction = friction, def.air_density = 0;
-    SingeSim *sim = test_create(&def);
+    OwnSim *sim = test_create(&def);
     add_flat(sim, &(Flat){20, {0, 0, 1.01e-3f}, {0.1f, 0, 0}, {0, 0.1f, 0}}, 0.6f, 0, NULL);
     add_flat(sim, &(Flat){8, {0.02f, 0.03f, 1.6e-3f}, {0.04f, 0, 0}, {0, 0.04f, 0}}, 0.6f, 0, (float[3]){0.2f, 0, 0});
     test_ok(sim, singe_sim_commit(sim));
@@ -133,7 +130,6 @@ static double slide(float friction) {
     for (uint32_t v = 441; v < view.vertex_count; v++) before += (double)view.position[v][0] / 81;
     test_steps(sim, 96);
     for (uint32_t v = 441; v < view.vertex_count; v++) after += (double)view.position[v][0] / 81;
-    singe_sim_destroy(sim);
     return after - before;
 }
 
@@ -147,7 +143,7 @@ TEST(friction_slows_sheets) {
 }
 
 TEST(crossing_input_is_left_alone) {
-    SingeSim *sim = new_sim(1, true);
+    OwnSim *sim = new_sim(1, true);
     add_flat(sim, &(Flat){10, {0, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
     add_flat(sim, &(Flat){10, {0.0112f, 0.0253f, 0.98f}, {0.04f, 0, 0}, {0, 0, 0.05f}}, 0.6f, 0, NULL);
     test_ok(sim, singe_sim_commit(sim));
@@ -156,7 +152,6 @@ TEST(crossing_input_is_left_alone) {
     test_steps(sim, 120);
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.strain_max < 0.2 && stats.speed_rms_unburnt < 4);
-    singe_sim_destroy(sim);
 }
 
 /// Two cells that approach: each crossed by another cell, or both by a third. They still keep each other apart.
@@ -164,7 +159,7 @@ static void crossed_cells_stay_apart(bool one_between, int intersecting) {
     const float side = 0.02f, speed = 0.5f;
     SingeSimDef def = singe_default_sim();
     def.contact.enabled = true, def.air_density = 0, def.gravity[2] = 0;
-    SingeSim *sim = test_create(&def);
+    OwnSim *sim = test_create(&def);
     for (int upper = 0; upper < 2; upper++) {
         float z = upper ? 0.01f : 0, x = upper ? 0.013f : 0.006f, velocity[3] = {0, 0, upper ? -speed : speed};
         add_flat(sim, &(Flat){1, {0, 0, z}, {side, 0, 0}, {0, side, 0}}, 0.6f, 0, velocity);
@@ -187,7 +182,6 @@ static void crossed_cells_stay_apart(bool one_between, int intersecting) {
     for (uint32_t v = 0; v < 4; v++) lower += view.position[v][2] / 4, upper += view.position[second + v][2] / 4;
     print_message("the upper cell is %.1f mm above the lower one\n", 1e3 * (double)(upper - lower));
     assert_true(upper > lower);
-    singe_sim_destroy(sim);
 }
 
 TEST(cells_crossed_by_others_are_kept_apart) { crossed_cells_stay_apart(false, 4); }
@@ -195,7 +189,7 @@ TEST(cells_crossed_by_others_are_kept_apart) { crossed_cells_stay_apart(false, 4
 TEST(cells_crossed_by_one_cell_are_kept_apart) { crossed_cells_stay_apart(true, 3); }
 
 TEST(coincident_sheets_are_left_alone) {
-    SingeSim *sim = new_sim(1, true);
+    OwnSim *sim = new_sim(1, true);
     for (int sheet = 0; sheet < 3; sheet++)
         add_flat(sim, &(Flat){10, {0, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
 
@@ -207,7 +201,6 @@ TEST(coincident_sheets_are_left_alone) {
     test_steps(sim, 20);
     assert_int_equal(singe_sim_stats(sim).intersecting_cells, 300);
     assert_int_equal(singe_sim_timers(sim).contact_stops, 0);
-    singe_sim_destroy(sim);
 }
 
 TEST(any_number_of_threads_gives_the_same_bytes) {
@@ -236,7 +229,7 @@ typedef struct Searched {
 static Searched *searched(uint32_t n) {
     Searched *s = calloc(1, sizeof *s);
     uint32_t row = n + 1, next = 1;
-    TestMesh mesh = test_grid(n, n, 1, 1);
+    OwnTestMesh mesh = test_grid(n, n, 1, 1);
     float *x = mesh.positions, cell = 2e-3f;
     for (uint32_t v = 0; v < row * row; v++) {
         float i = (float)(v % row), j = (float)(v / row);
@@ -257,7 +250,6 @@ static Searched *searched(uint32_t n) {
     assert_int_equal(collision_open(&s->memory, s->plan, &s->shell, STATE_INPUT(&s->state), NULL, s->plan->time_step,
                                     true, &s->state.dynamics),
                      SINGE_OK);
-    test_mesh_free(&mesh);
     return s;
 }
 

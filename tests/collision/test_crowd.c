@@ -99,7 +99,7 @@ typedef struct Crowd {
 static const Crowd stack = {8, 6, 0.5e-3f, false}, soup = {1, 12, 0, true};
 
 static void add_soup(SingeSim *sim, uint32_t count) {
-    TestMesh mesh = {.vertex_count = 4 * count, .cell_count = count};
+    OwnTestMesh mesh = {.vertex_count = 4 * count, .cell_count = count};
     mesh.positions = malloc(12 * count * sizeof *mesh.positions);
     mesh.cells = malloc(4 * count * sizeof *mesh.cells);
 
@@ -116,7 +116,6 @@ static void add_soup(SingeSim *sim, uint32_t count) {
 
     SingeSheetDef def = test_sheet(&mesh);
     test_add_sheet(sim, &def);
-    test_mesh_free(&mesh);
 }
 
 static SingeSim *crowd(const Crowd *crowd, int threads, const SingeAllocator *allocator) {
@@ -127,11 +126,10 @@ static SingeSim *crowd(const Crowd *crowd, int threads, const SingeAllocator *al
 
     SingeSim *sim = test_create(&def);
     for (int s = 0; s < crowd->sheets && !crowd->soup; s++) {
-        TestMesh mesh = test_grid((uint32_t)crowd->cells, (uint32_t)crowd->cells, 5e-3f, 5e-3f);
+        OwnTestMesh mesh = test_grid((uint32_t)crowd->cells, (uint32_t)crowd->cells, 5e-3f, 5e-3f);
         test_mesh_move(&mesh, 1e-3f * sinf((float)s), 1e-3f * cosf((float)(3 * s)), 1e-3f + crowd->apart * (float)s);
         SingeSheetDef sheet = test_sheet(&mesh);
         test_add_sheet(sim, &sheet);
-        test_mesh_free(&mesh);
     }
 
     if (crowd->soup) add_soup(sim, (uint32_t)(crowd->cells * crowd->cells));
@@ -344,7 +342,7 @@ TEST(only_what_moves_splits_the_step) {
     enum { FEW, ALL, TURNS, MOTIONS };
     int parts[MOTIONS];
     for (int motion = 0; motion < MOTIONS; motion++) {
-        SingeSim *sim = flag(28, 0, 1);
+        OwnSim *sim = flag(28, 0, 1);
         const float spin = 0.4f / sim->def.time_step;
         float(*velocity)[4] = sim->state.dynamics.velocity;
         for (uint32_t v = 0; v < sim->shell.particle_count; v++) {
@@ -355,7 +353,6 @@ TEST(only_what_moves_splits_the_step) {
 
         test_steps(sim, 1);
         parts[motion] = collision_parts(collision(sim));
-        singe_sim_destroy(sim);
     }
 
     print_message("%d part if two vertices tremble, %d if all do, %d if all turn\n", parts[FEW], parts[ALL],
@@ -377,7 +374,7 @@ static double compared(uint32_t nx, uint32_t ny, float dx, float dy, int positio
         p[0] = p[1], p[1] = p[2], p[2] = x;
     }
 
-    SingeSim *sim = test_sim(&def, mesh, NULL);
+    OwnSim *sim = test_sim(&def, mesh, NULL);
     test_steps(sim, 1);
 
     const CollisionPlan *plan = collision(sim);
@@ -388,7 +385,6 @@ static double compared(uint32_t nx, uint32_t ny, float dx, float dy, int positio
     }
 
     sum /= plan->cell_count;
-    singe_sim_destroy(sim);
     return sum;
 }
 

@@ -34,6 +34,7 @@ SingeMaterialDef bench_plain_material(void);
 /// Adds the only collider.
 void bench_add_collider(Bench *bench, SingeColliderDef def, uint32_t count, const SingePoseKey *keys);
 void bench_close(Bench *bench);
+#define OwnBench OWNED(bench_close) Bench
 
 /// What a step begins with.
 void bench_prepare(Bench *bench);

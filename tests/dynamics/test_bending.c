@@ -34,11 +34,10 @@ static double sag(float cell, double stiffness, double give, int substeps) {
     material.compliance[SINGE_GREEN] = singe_param((float)((double)(thickness * thickness) / stiffness));
     material.compliance[SINGE_RED] = singe_param((float)give);
     uint32_t nx = (uint32_t)lroundf(length / cell), ny = (uint32_t)lroundf(width / cell);
-    SingeSim *sim = test_sim(&def, test_grid(nx, ny, cell, cell), &material);
+    OwnSim *sim = test_sim(&def, test_grid(nx, ny, cell, cell), &material);
     clamp(sim, cell);
     test_steps(sim, 960);
     double z = (double)singe_sim_view(sim).position[ny / 2 * (nx + 1) + nx][2];
-    singe_sim_destroy(sim);
     return -z;
 }
 
@@ -99,7 +98,7 @@ static double strip_stiffness(bool diagonal, bool isotropic) {
     }
     grid.cell_count = cells;
 
-    SingeSim *sim = test_sim(&def, grid, &material);
+    OwnSim *sim = test_sim(&def, grid, &material);
     const SingeView view = singe_sim_view(sim);
     static float points[3 * 4096];
     SingePinDef pin = singe_default_pin();
@@ -121,7 +120,6 @@ static double strip_stiffness(bool diagonal, bool isotropic) {
             fabsf(view.rest_position[i][1] - (diagonal ? 0 : middle)) < 0.008f)
             sag -= (double)view.position[i][2], count++;
     const double l = longest - 0.0125 + 0.5 * (double)reach, load = 0.08 * 0.2;
-    singe_sim_destroy(sim);
     return load * pow(l, 4) / 8 / (sag / count - load * l * l / 2);
 }
 

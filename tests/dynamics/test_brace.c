@@ -11,16 +11,14 @@ static SingeSimDef braced_def(int threads) {
 /// While two sheets burn, tear and crease.
 TEST(bytes_do_not_depend_on_threads_or_saving) {
     SingeSimDef def = braced_def(1), hooks = braced_def(3);
-    TestScene scene = scene_make(&def, 14);
+    OwnTestScene scene = scene_make(&def, 14);
     test_steps(scene.sim, 60);
-    SingeSim *other = test_reload(&hooks, scene.sim);
+    OwnSim *other = test_reload(&hooks, scene.sim);
     static float flux = 2000; // the scene's
     test_ok(other, singe_sim_set_source_callback(other, scene.callback, scene_flux, &flux));
     test_steps(scene.sim, 60), test_steps(other, 60);
     assert_true(singe_sim_stats(scene.sim).mass_burnt > 0);
     test_assert_same(scene.sim, other);
-    singe_sim_destroy(other);
-    singe_sim_destroy(scene.sim);
 }
 
 /// A flat sheet, a tube and a torus are at rest with their braces.
@@ -32,12 +30,11 @@ TEST(rest_shapes_have_no_braces_to_move_them) {
         TestMesh mesh = shape == 0   ? test_grid(6, 5, 0.01f, 0.01f)
                         : shape == 1 ? test_cylinder(12, 4, 0.02f, 0.04f)
                                      : test_torus(16, 8, 0.05f, 0.02f);
-        SingeSim *sim = test_sim(&def, mesh, NULL);
+        OwnSim *sim = test_sim(&def, mesh, NULL);
         test_steps(sim, 20);
         const SingeView view = singe_sim_view(sim);
         for (uint32_t i = 0; i < view.particle_count; i++)
             for (int k = 0; k < 3; k++) assert_float_equal(view.position[i][k], view.rest_position[i][k], 1e-6f);
-        singe_sim_destroy(sim);
     }
 }
 
@@ -46,8 +43,7 @@ TEST(meshes_without_inner_vertices_have_none) {
     for (uint32_t cells = 1; cells < 4; cells++) {
         SingeSimDef def = singe_default_sim();
         def.solver.isotropic = true;
-        SingeSim *sim = test_sim(&def, test_grid(cells, 1, 0.01f, 0.01f), NULL);
+        OwnSim *sim = test_sim(&def, test_grid(cells, 1, 0.01f, 0.01f), NULL);
         test_steps(sim, 3);
-        singe_sim_destroy(sim);
     }
 }

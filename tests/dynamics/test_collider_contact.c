@@ -52,7 +52,7 @@ TEST(nothing_passes_thin_plates) {
         SingeColliderDef box = singe_default_collider();
         box.kind = SINGE_COLLIDER_BOX;
         box.half_size[0] = box.half_size[1] = 0.03f, box.half_size[2] = thickness / 2;
-        Triangles triangles = triangles_box(6, 0.06f, 0.06f, thickness);
+        OwnTriangles triangles = triangles_box(6, 0.06f, 0.06f, thickness);
         SingeColliderDef mesh = triangles_def(&triangles);
         for (float speed = 0.5f; speed <= 8; speed *= 2) {
             const int behind[6] = {passed(box, speed, 0, level),   passed(box, 0, speed, level),
@@ -63,8 +63,6 @@ TEST(nothing_passes_thin_plates) {
                     fail_msg("%d particles passed a plate of %g mm at %g m/s (case %d)", behind[k],
                              1e3 * (double)thickness, (double)speed, k);
         }
-
-        triangles_free(&triangles);
     }
 }
 
@@ -99,7 +97,7 @@ static double slide(SingeColliderDef def, float slope, double *late) {
 }
 
 TEST(sheets_slip_above_the_angle_of_friction) {
-    Triangles triangles = triangles_box(2, 2, 2, 0.1f);
+    OwnTriangles triangles = triangles_box(2, 2, 2, 0.1f);
     const float heights[25] = {0};
     const float angle = atanf(0.4f);
 
@@ -114,12 +112,10 @@ TEST(sheets_slip_above_the_angle_of_friction) {
         assert_true(held < 0.5e-3);
         assert_true(fabs(free_displacement - expected) < 0.1 * expected);
     }
-
-    triangles_free(&triangles);
 }
 
 TEST(resting_sheets_do_not_creep) {
-    Triangles triangles = triangles_box(2, 2, 2, 0.1f);
+    OwnTriangles triangles = triangles_box(2, 2, 2, 0.1f);
     const float heights[25] = {0};
     for (int kind = SINGE_COLLIDER_PLANE; kind <= SINGE_COLLIDER_MESH; kind++) {
         if (kind == SINGE_COLLIDER_SPHERE || kind == SINGE_COLLIDER_CAPSULE) continue;
@@ -130,8 +126,6 @@ TEST(resting_sheets_do_not_creep) {
         printf("kind %d: creeps %.4f mm/s on the level, %.4f mm/s at 0.3 rad\n", kind, 4e3 * level, 4e3 * slope);
         assert_true(4 * level < 0.02e-3 && 4 * slope < 0.2e-3);
     }
-
-    triangles_free(&triangles);
 }
 
 /// m that a sheet stays behind a belt in 0.4 s, which starts from rest with this acceleration.
@@ -152,14 +146,13 @@ static double behind_belt(SingeColliderDef def, float acceleration) {
 }
 
 TEST(a_belt_carries_what_friction_allows) {
-    Triangles triangles = triangles_box(2, 2, 2, 0.1f);
+    OwnTriangles triangles = triangles_box(2, 2, 2, 0.1f);
     SingeColliderDef def = slab(SINGE_COLLIDER_MESH, &triangles, NULL);
     double held = behind_belt(def, 0.9f * 0.4f * 9.81f), left = behind_belt(def, 1.5f * 0.4f * 9.81f);
     double expected = 0.5 * 0.5 * 0.4 * 9.81 * 0.16;
     printf("belt: at 0.9 mu g the sheet stays %.2f mm behind, at 1.5 mu g %.1f mm (Coulomb: %.1f)\n", 1e3 * held,
            1e3 * left, 1e3 * expected);
     assert_true(held < 2.5e-3 && fabs(left - expected) < 0.1 * expected);
-    triangles_free(&triangles);
 }
 
 // ---- at rest
@@ -261,7 +254,7 @@ TEST(pressed_sheets_stay_and_rest) {
     for (float gap = 2e-3f; gap > 0.2e-3f; gap /= 2) {
         SingeMaterialDef material = singe_default_material();
         bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
-        Triangles triangles = triangles_box(4, 0.02f, 0.02f, 0.01f);
+        OwnTriangles triangles = triangles_box(4, 0.02f, 0.02f, 0.01f);
         SingeColliderDef def = triangles_def(&triangles), plate = singe_default_collider();
         const float high = 0.005f + 0.006f, low = 0.005f + gap, x = 0.016f;
         SingePoseKey keys[] = {{0, {x, x, high}, {0, 0, 0, 1}},
@@ -295,14 +288,13 @@ TEST(pressed_sheets_stay_and_rest) {
         assert_true(ever == 0 && max < 2 && last < 0.02);
         collider_free(&bench.memory, &both[1]);
         bench_close(&bench);
-        triangles_free(&triangles);
     }
 }
 
 /// A plate that turns about its edge hits a sheet in flight: nothing gets through.
 TEST(swung_plates_let_nothing_through) {
     bench_open_plain(&bench, quads_grid(16, 16, 0.002f, 0.002f, false));
-    Triangles triangles = triangles_box(6, 0.1f, 0.1f, 0.0005f);
+    OwnTriangles triangles = triangles_box(6, 0.1f, 0.1f, 0.0005f);
     for (uint32_t v = 0; v < triangles.vertex_count; v++) triangles.vertices[3 * (size_t)v] += 0.06f; // about its edge
     enum { KEYS = 40 };
     SingePoseKey keys[KEYS];
@@ -325,7 +317,6 @@ TEST(swung_plates_let_nothing_through) {
 
     printf("swat: %d of %u particles hit, %d through\n", hit, bench.shell.particle_count, through);
     assert_true(hit > 400 && through == 0);
-    triangles_free(&triangles);
     bench_close(&bench);
 }
 
@@ -478,7 +469,7 @@ TEST(far_colliders_cost_almost_nothing) {
     SingeMaterialDef material = bench_plain_material();
     material.thickness = singe_param(0.0004f); // both layers in reach
     bench_open(&bench, quads_grid(70, 70, 0.001f, 0.001f, false), &material, 1);
-    Triangles triangles = triangles_box(29, 0.1f, 0.1f, 0.02f);
+    OwnTriangles triangles = triangles_box(29, 0.1f, 0.1f, 0.02f);
     SingePoseKey key = {0, {0.035f, 0.035f, -0.01f}, {0, 0, 0, 1}};
     bench_add_collider(&bench, triangles_def(&triangles), 1, &key);
     uint64_t none, some, all;
@@ -488,6 +479,5 @@ TEST(far_colliders_cost_almost_nothing) {
            bench.shell.particle_count, triangles.triangle_count, far, above, touching);
     assert_true(none == 0 && some == 0 && all == bench.shell.particle_count);
     assert_true(far < touching / 20);
-    triangles_free(&triangles);
     bench_close(&bench);
 }

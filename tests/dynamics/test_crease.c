@@ -37,6 +37,7 @@ static void rig_close(Rig *rig) {
     sheet_source_free(&rig->memory, &rig->source);
     assert_int_equal(rig->memory.held, 0);
 }
+#define OwnRig OWNED(rig_close) Rig
 
 /// Rolls a flat sheet of cells dx long about the y axis so that neighbouring cells along x meet at an angle, positive
 /// away from the centres, which stay upright over their cells.
@@ -88,7 +89,7 @@ static double distance(const float *a, const float *b) {
 /// A rolled sheet has the length that the crease's formula gives: on it every spring of every colour is at rest.
 TEST(lengths_fit_a_rolled_sheet) {
     const double dx = 0.004, angles[] = {0.5, 0.2, -0.3, -0.9};
-    Rig rig;
+    OwnRig rig;
     rig_open(&rig, test_grid(12, 4, (float)dx, 0.003f), NULL, 1);
     const SpringSet *green = &rig.shell.springs[SINGE_GREEN];
     for (int a = 0; a < 4; a++) {
@@ -101,13 +102,11 @@ TEST(lengths_fit_a_rolled_sheet) {
             assert_true(fabs(ratio - expected) < 1e-4);
         }
     }
-
-    rig_close(&rig);
 }
 
 /// From wherever it is seen, a creased spring bends as a flat sheet does: moment 4 t^2 a rad of alpha.
 TEST(a_creased_spring_bends_as_a_flat_one) {
-    Rig rig;
+    OwnRig rig;
     rig_open(&rig, test_grid(4, 4, 0.003f, 0.003f), NULL, 1);
     const Hinge *hinge = &rig.plan->hinges[0];
     const double rest = (double)rig.shell.springs[SINGE_GREEN].rest[0], thickness = 1e-3, step = 1e-2;
@@ -123,8 +122,6 @@ TEST(a_creased_spring_bends_as_a_flat_one) {
         double moment = (length[1] - target) * (length[2] - length[0]) / step;
         assert_true(fabs(moment / (4 * thickness * thickness * (now - stays) / 2) - 1) < 0.01);
     }
-
-    rig_close(&rig);
 }
 
 /// The mesh holds no more than its greatest length, and at no crease a ratio of exactly 1, however it lies at rest.
@@ -132,7 +129,7 @@ TEST(a_mesh_bounds_its_creases) {
     const TestMesh meshes[] = {test_grid(6, 6, 0.004f, 0.004f), test_cylinder(24, 6, 0.02f, 0.03f),
                                test_torus(24, 12, 0.05f, 0.015f)};
     for (int m = 0; m < 3; m++) {
-        Rig rig;
+        OwnRig rig;
         rig_open(&rig, meshes[m], NULL, 1);
         for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++) {
             const Hinge *hinge = &rig.plan->hinges[k];
@@ -145,8 +142,6 @@ TEST(a_mesh_bounds_its_creases) {
                 before = ratio;
             }
         }
-
-        rig_close(&rig);
     }
 }
 
@@ -159,7 +154,7 @@ TEST(a_share_of_the_curvature_stays) {
     for (int fine = 0; fine < 2; fine++)
         for (int b = 0; b < 4; b++) {
             const double dx = fine ? 0.002 : 0.004, angle = bends[b] * dx;
-            Rig rig;
+            OwnRig rig;
             rig_open(&rig, test_grid(fine ? 16 : 8, 4, (float)dx, 0.003f), &material, 1);
             rig_roll(&rig, dx, angle);
             rig_pass(&rig, 200);
@@ -178,7 +173,6 @@ TEST(a_share_of_the_curvature_stays) {
             rig_roll(&rig, dx, ((double)kept - copysign(0.9 * yield, bends[b])) * dx);
             rig_pass(&rig, 200);
             assert_true(rig.state.dynamics.crease[0] == kept);
-            rig_close(&rig);
         }
 }
 
@@ -193,7 +187,7 @@ TEST(the_share_does_not_depend_on_direction) {
     for (int t = 0; t < 5; t++)
         for (int b = 0; b < 3; b++) {
             const double turn = turns[t] * pi / 180, k = bends[b];
-            Rig rig;
+            OwnRig rig;
             rig_open(&rig, test_grid(12, 12, 0.001f, 0.001f), NULL, 1);
             rig_roll_aslant(&rig, k, turn);
             rig_pass(&rig, 200);
@@ -204,8 +198,6 @@ TEST(the_share_does_not_depend_on_direction) {
                 if (!isnan(expected)) assert_true(fabs(kept - expected) < 0.03 * fabs(k) * part);
                 else assert_true(kept * k >= 0 && fabs(kept) <= share * fabs(k) * part + 0.3);
             }
-
-            rig_close(&rig);
         }
 }
 
@@ -214,7 +206,7 @@ TEST(a_single_edge_keeps_less) {
     const SingeMaterialDef material = singe_default_material();
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
     const float dx = 0.004f, middle = 4 * dx, c = cosf(150 * dx), s = sinf(150 * dx);
-    Rig rig;
+    OwnRig rig;
 
     rig_open(&rig, test_grid(8, 4, dx, 0.003f), NULL, 1);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
@@ -233,7 +225,6 @@ TEST(a_single_edge_keeps_less) {
     }
 
     assert_int_equal(creased, 4);
-    rig_close(&rig);
 }
 
 /// Bending beyond the limit of curvature leaves no more than bending to the limit; below it, the limit has no effect.
@@ -243,33 +234,31 @@ TEST(no_crease_is_sharper_than_the_limit) {
     const double bends[] = {150, -150, 90}, dx = 0.004;
     material.curvature_max = singe_param(100);
     for (int b = 0; b < 3; b++) {
-        Rig rig;
+        OwnRig rig;
         rig_open(&rig, test_grid(8, 4, (float)dx, 0.003f), &material, 1);
         rig_roll(&rig, dx, bends[b] * dx);
         rig_pass(&rig, 200);
         double expected = copysign(share * (fmin(fabs(bends[b]), 100) - yield), bends[b]);
         for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++)
             assert_true(fabs((double)rig.state.dynamics.crease[k] - (along_x(&rig.shell, k) ? expected : 0)) < 0.3);
-        rig_close(&rig);
     }
 }
 
 /// Sharp bends that last a step or two leave nothing.
 TEST(trembling_leaves_no_crease) {
-    Rig rig;
+    OwnRig rig;
     rig_open(&rig, test_grid(8, 4, 0.004f, 0.003f), NULL, 1);
     for (int s = 0; s < 400; s++) {
         rig_roll(&rig, 0.004, s & 2 ? 0.7 : -0.7); // 175 1/m, by 60 Hz and more
         rig_pass(&rig, 1);
     }
     for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++) assert_true(rig.state.dynamics.crease[k] == 0);
-    rig_close(&rig);
 }
 
 /// A sheet folded flat may look folded to the other side; its crease stays on the side it came from.
 TEST(a_flat_fold_stays_on_its_side) {
     for (int side = -1; side <= 1; side += 2) {
-        Rig rig;
+        OwnRig rig;
         rig_open(&rig, test_grid(2, 1, 0.004f, 0.004f), NULL, 1);
         for (int s = 0; s <= 100; s++) {
             rig_roll(&rig, 0.004, side * (s < 90 ? 3.0 * s / 90 : s & 1 ? 3.0 : 3.28));
@@ -278,7 +267,6 @@ TEST(a_flat_fold_stays_on_its_side) {
         }
 
         assert_true(side * rig.state.dynamics.bend[0] * 0.004f > 2.9f);
-        rig_close(&rig);
     }
 }
 
@@ -286,7 +274,7 @@ TEST(a_flat_fold_stays_on_its_side) {
 TEST(char_forgets_creases) {
     const double dx = 0.004;
     for (int ash = 0; ash < 2; ash++) {
-        Rig rig;
+        OwnRig rig;
         rig_open(&rig, test_grid(8, 4, (float)dx, 0.003f), NULL, 1);
         rig_roll(&rig, dx, 0.7);
         if (!ash) rig_pass(&rig, 200);
@@ -298,14 +286,13 @@ TEST(char_forgets_creases) {
         assert_true(rig.state.dynamics.crease[0] == crease && (crease == 0) == (ash == 1));
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = 0.5f * (1 + min);
         assert_true(fabsf(crease_kept(&rig.shell, STATE_INPUT(&rig.state), 0) - 0.5f) < 1e-6f);
-        rig_close(&rig);
     }
 }
 
 /// Curling by unequal shrinkage of the layers is no bending: no crease stays.
 TEST(curl_leaves_no_crease) {
     const double dx = 0.003, angle = -0.6; // 200 1/m
-    Rig rig;
+    OwnRig rig;
     rig_open(&rig, test_grid(8, 4, (float)dx, 0.003f), NULL, 1);
     rig_roll(&rig, dx, angle);
     float *length = rig.state.burn.spring_length[SINGE_GREEN];
@@ -315,7 +302,6 @@ TEST(curl_leaves_no_crease) {
     rig.state.burn.mass_burnt = 1;
     rig_pass(&rig, 200);
     for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++) assert_true(rig.state.dynamics.crease[k] == 0);
-    rig_close(&rig);
 }
 
 /// A strip of 20 x 5 cells whose right half is turned over onto the left within 0.2 s.

@@ -21,6 +21,7 @@ static void distances_close(Distances *d) {
     geodesic_free(&d->bench.memory, d->bench.shell.vertex_count, &d->search);
     bench_close(&d->bench);
 }
+#define OwnDistances OWNED(distances_close) Distances
 
 static void distances_from(Distances *d, uint32_t source) {
     geodesic_from(&d->search, &d->bench.shell, STATE_INPUT(&d->bench.state), source, 0, d->bench.shell.vertex_count,
@@ -34,7 +35,7 @@ static double apart(const Distances *d, uint32_t a, uint32_t b) {
 
 /// The largest relative error against straight lines, from some sources to all vertices.
 static double straight_error(Quads quads) {
-    Distances d;
+    OwnDistances d;
     distances_open(&d, quads);
     const uint32_t n = d.bench.shell.vertex_count, sources[] = {0, n / 3, n / 2, n - 1};
     double worst = 0;
@@ -47,7 +48,6 @@ static double straight_error(Quads quads) {
         }
     }
 
-    distances_close(&d);
     return worst;
 }
 
@@ -64,7 +64,7 @@ TEST(flat_distances_are_straight_lines) {
 TEST(a_cylinder_is_as_far_across_as_flat) {
     enum { AROUND = 40, ALONG = 24 };
     const float side = 0.01f;
-    Distances d;
+    OwnDistances d;
     distances_open(&d, quads_grid(AROUND, ALONG, side, side, true));
     const double chord = apart(&d, 0, 1);
     double worst = 0;
@@ -78,7 +78,6 @@ TEST(a_cylinder_is_as_far_across_as_flat) {
 
     print_message("worst error on a cylinder: %.1e\n", worst);
     assert_true(worst < 1e-3);
-    distances_close(&d);
 }
 
 enum { SIDE = 40, ROW = SIDE + 1 };
@@ -103,7 +102,7 @@ static void assert_displacement(const Distances *d, uint32_t to, double expected
 }
 
 TEST(distances_go_around_a_slit) {
-    Distances d;
+    OwnDistances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     remove_cells(&d, 0, 20, 20, 21);
     const uint32_t source = vertex(5, 8);
@@ -114,11 +113,10 @@ TEST(distances_go_around_a_slit) {
             assert_displacement(&d, corners[3], displacement(&d, 4, corners));
         }
     assert_displacement(&d, vertex(35, 30), apart(&d, source, vertex(35, 30))); // in sight
-    distances_close(&d);
 }
 
 TEST(distances_go_around_a_hole) {
-    Distances d;
+    OwnDistances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     remove_cells(&d, 12, 28, 14, 26);
     const uint32_t source = vertex(20, 4), to = vertex(20, 36);
@@ -126,23 +124,21 @@ TEST(distances_go_around_a_hole) {
     const uint32_t corners[] = {source, vertex(12, 14), vertex(12, 26), to};
     assert_displacement(&d, to, displacement(&d, 4, corners));
     assert_true(isinf(d.distance[vertex(20, 20)])); // within the hole
-    distances_close(&d);
 }
 
 /// No path leads across cells that are gone.
 TEST(paths_avoid_removed_cells) {
-    Distances d;
+    OwnDistances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     remove_cells(&d, 0, SIDE, 20, 21);
     distances_from(&d, vertex(3, 3));
     for (uint32_t v = 0; v < d.bench.shell.vertex_count; v++)
         if (isinf(d.distance[v]) == (v < vertex(0, 21))) fail_msg("vertex %u: %g m", v, (double)d.distance[v]);
-    distances_close(&d);
 }
 
 /// A sheet that has shrunk to 0.8 has distances of 0.8.
 TEST(distances_follow_target_lengths) {
-    Distances d;
+    OwnDistances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         for (uint32_t k = 0; k < d.bench.shell.springs[colour].count; k++)
@@ -150,12 +146,11 @@ TEST(distances_follow_target_lengths) {
     distances_from(&d, vertex(3, 3));
     for (uint32_t v = 0; v < d.bench.shell.vertex_count; v++)
         assert_true(fabs((double)d.distance[v] - 0.8 * apart(&d, vertex(3, 3), v)) < 1e-5);
-    distances_close(&d);
 }
 
 /// Held vertices stay where they are, whatever their target lengths: distances between them do not shrink.
 TEST(held_vertices_do_not_shrink_distances) {
-    Distances d;
+    OwnDistances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         for (uint32_t k = 0; k < d.bench.shell.springs[colour].count; k++)
@@ -165,11 +160,10 @@ TEST(held_vertices_do_not_shrink_distances) {
     distances_from(&d, vertex(0, 20));
     assert_displacement(&d, vertex(10, 20), 0.10);
     assert_displacement(&d, vertex(30, 20), 0.10 + 0.5 * 0.20);
-    distances_close(&d);
 }
 
 TEST(distances_are_symmetric) {
-    Distances d;
+    OwnDistances d;
     distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
     remove_cells(&d, 10, 30, 15, 17);
     remove_cells(&d, 25, 40, 28, 29);
@@ -185,5 +179,4 @@ TEST(distances_are_symmetric) {
         for (int t = 0; t < s; t++) worst = fmax(worst, fabs(between[s][t] / between[t][s] - 1));
     print_message("worst difference between there and back: %.1e\n", worst);
     assert_true(worst < 0.01);
-    distances_close(&d);
 }

@@ -36,7 +36,7 @@ static double parting(const Bench *bench, uint32_t c) {
 }
 
 TEST(only_centres_move) {
-    Bench bench;
+    OwnBench bench;
     open_jumble(&bench, 1);
     const uint32_t vertices = bench.shell.vertex_count, cells = bench.shell.cell_count;
     size_t size = bench.shell.particle_count * sizeof *bench.state.dynamics.position;
@@ -59,7 +59,6 @@ TEST(only_centres_move) {
     }
 
     free(x), free(v), free(before);
-    bench_close(&bench);
 }
 
 /// Positions after one projection of all heights, some cells of which are gone.
@@ -74,7 +73,7 @@ static void lift(Bench *bench, SingeInstructions instructions, const float (*sta
 }
 
 TEST(heights_are_the_same_in_lanes_of_every_width) {
-    Bench bench;
+    OwnBench bench;
     open_jumble(&bench, 2);
     const size_t size = bench.shell.particle_count * sizeof *bench.state.dynamics.position;
     float(*start)[4] = malloc(size), (*four)[4] = malloc(size), (*lanes)[4] = malloc(size);
@@ -95,7 +94,6 @@ TEST(heights_are_the_same_in_lanes_of_every_width) {
     }
     assert_memory_not_equal(start, four, size);
     free(start), free(four), free(lanes);
-    bench_close(&bench);
 }
 
 TEST(bytes_do_not_depend_on_threads) {
@@ -108,7 +106,7 @@ TEST(bytes_do_not_depend_on_threads) {
 
 /// A pinned centre gives way as well. A cell crushed to a line has no front: its centre stays where it is.
 TEST(pinned_and_crushed_cells_stay_ordered) {
-    Bench bench;
+    OwnBench bench;
     bench_open(&bench, quads_grid(3, 3, 0.005f, 0.005f, false), NULL, 1);
     float(*x)[4] = bench.state.dynamics.position, *pinned = x[shell_centre(&bench.shell, 0)];
     float *crushed = x[shell_centre(&bench.shell, 8)];
@@ -120,7 +118,6 @@ TEST(pinned_and_crushed_cells_stay_ordered) {
     order(&bench);
     assert_true(bench_height(&bench, 0) > 0);
     assert_true(crushed[2] == -0.002f);
-    bench_close(&bench);
 }
 
 static uint32_t step_and_count(SingeSim *sim, int steps) {
@@ -150,7 +147,7 @@ TEST(a_sheet_pressed_on_the_ground_stays_ordered) {
 
         SingeSimDef def = singe_default_sim();
         def.time_step = 1.0f / 240;
-        SingeSim *sim = test_sim(&def, mesh, NULL);
+        OwnSim *sim = test_sim(&def, mesh, NULL);
         SingeColliderDef ground = singe_default_collider(), box = singe_default_collider();
         const SingePoseKey floor = test_key(0, 0, 0, 0);
         const SingePoseKey displacement[] = {test_key(0, 0.06f, 0.06f, 0.08f), test_key(0.3f, 0.06f, 0.06f, 0.032f),
@@ -161,7 +158,6 @@ TEST(a_sheet_pressed_on_the_ground_stays_ordered) {
         test_add_collider(sim, &ground);
         test_add_collider(sim, &box);
         assert_int_equal(step_and_count(sim, 140), 0);
-        singe_sim_destroy(sim);
     }
 }
 
@@ -177,7 +173,7 @@ TEST(a_shrinking_sheet_stays_ordered) {
     test_mesh_raise(&mesh);
     SingeSimDef def = singe_default_sim();
     def.time_step = 1.0f / 240;
-    SingeSim *sim = test_sim(&def, mesh, &material);
+    OwnSim *sim = test_sim(&def, mesh, &material);
     SingePinDef pin = singe_default_pin();
     const float corner[3] = {0, 0, 0.3f};
     pin.sheet = (SingeSheetId){0, 1}, pin.point_count = 1, pin.points = corner, pin.radius = 0.02f;
@@ -185,5 +181,4 @@ TEST(a_shrinking_sheet_stays_ordered) {
     assert_int_equal(step_and_count(sim, 180), 0);
     SingeView view = singe_sim_view(sim); // yellow, the first of the middle's cells
     assert_true(view.spring_length[SINGE_YELLOW][view.spring_count[SINGE_YELLOW] / 2] < 0.6f * 0.01414f);
-    singe_sim_destroy(sim);
 }

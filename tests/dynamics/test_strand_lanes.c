@@ -110,7 +110,7 @@ static void read_compliances(Bench *bench, bool vary) {
 
 /// Every kernel against the plain one. What compliances do is the same however they are read.
 static void compare_kernels(Quads quads, bool vary) {
-    Bench bench;
+    OwnBench bench;
     SingeMaterialDef material = singe_default_material();
     material.curvature_max = singe_param(vary ? 100 : 0);
     bench_open(&bench, quads, &material, 2);
@@ -132,7 +132,6 @@ static void compare_kernels(Quads quads, bool vary) {
     project(&bench, SINGE_INSTRUCTIONS_BEST, NULL, start, other);
     assert_memory_equal(plain, other, bytes);
     free(start), free(plain), free(other);
-    bench_close(&bench);
 }
 
 TEST(kernels_agree) {
@@ -233,7 +232,7 @@ static void rub(Bench *bench, SingeInstructions instructions, bool apart, float 
 
 /// Internal friction in lanes of every width, against that of single strands. Returns the number of groups in lanes.
 static uint32_t compare_friction(Quads quads) {
-    Bench bench;
+    OwnBench bench;
     uint32_t groups = 0;
     bench_open(&bench, quads, NULL, 2);
     disturb(&bench);
@@ -249,7 +248,6 @@ static uint32_t compare_friction(Quads quads) {
     const StrandSet *blue = &bench.plan->strands.sets[SINGE_BLUE];
     for (uint32_t g = 0; g < blue->group_count; g++) groups += !blue->groups[g].apart;
     free(single), free(lanes);
-    bench_close(&bench);
     return groups;
 }
 

@@ -65,9 +65,9 @@ static Bytes written(const SingeSurface *surface, double time) {
 }
 
 TEST(round_trip_is_bitwise) {
-    SingeSurface sample = make_sample();
-    Bytes bytes = written(&sample, 1 / 24.0 + 7);
-    SingeSurface read;
+    OwnSurface sample = make_sample();
+    OwnBytes bytes = written(&sample, 1 / 24.0 + 7);
+    OwnSurface read;
     double time = 0;
     if (ply_read_surface("a.ply", bytes.data, bytes.size, (SingeAllocator){0}, &read, &time, &error))
         fail_msg("%s", error.message);
@@ -82,18 +82,14 @@ TEST(round_trip_is_bitwise) {
     assert_memory_equal(read.triangles, sample.triangles, TRIANGLES * sizeof *read.triangles);
 
     // and once more through the file gives the same bytes
-    Bytes again = written(&read, time);
+    OwnBytes again = written(&read, time);
     assert_int_equal(again.size, bytes.size);
     assert_memory_equal(again.data, bytes.data, bytes.size);
-    bytes_free(&again);
-    bytes_free(&bytes);
-    singe_surface_free(&read);
-    singe_surface_free(&sample);
 }
 
 TEST(header_is_as_documented) {
-    SingeSurface sample = make_sample();
-    Bytes bytes = written(&sample, 0.5);
+    OwnSurface sample = make_sample();
+    OwnBytes bytes = written(&sample, 0.5);
     static const char header[] =
         "ply\nformat binary_little_endian 1.0\ncomment singe " SINGE_VERSION " time 0.5\nelement vertex 5\n"
         "property float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
@@ -116,13 +112,11 @@ TEST(header_is_as_documented) {
 
     static const uint8_t face[] = {3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0};
     assert_memory_equal(p + VERTICES * 25 * 4, face, sizeof face);
-    bytes_free(&bytes);
-    singe_surface_free(&sample);
 }
 
 TEST(a_column_of_another_name_is_refused) {
-    SingeSurface sample = make_sample();
-    Bytes bytes = written(&sample, 0.5);
+    OwnSurface sample = make_sample();
+    OwnBytes bytes = written(&sample, 0.5);
     char *at = strstr((char *)bytes.data, "float burnt\n");
     assert_non_null(at);
     memcpy(at, "float coals\n", 12);
@@ -130,35 +124,31 @@ TEST(a_column_of_another_name_is_refused) {
     SingeSurface read;
     assert_int_equal(ply_read_surface("a.ply", bytes.data, bytes.size, (SingeAllocator){0}, &read, NULL, &error),
                      SINGE_ERROR_FORMAT);
-    bytes_free(&bytes);
-    singe_surface_free(&sample);
 }
 
 TEST(nothing_left_is_a_surface_too) {
     SingeSurface empty = {0}, read;
-    Bytes bytes = written(&empty, 12);
+    OwnBytes bytes = written(&empty, 12);
 
     assert_int_equal(ply_read_surface("a.ply", bytes.data, bytes.size, (SingeAllocator){0}, &read, NULL, NULL),
                      SINGE_OK);
     assert_int_equal(read.vertex_count, 0);
     assert_int_equal(read.triangle_count, 0);
     singe_surface_free(&read);
-    bytes_free(&bytes);
 }
 
 static SingeResult read_copy(const uint8_t *data, size_t size, SingeError *why) {
     uint8_t *copy = calloc(size ? size : 1, 1);
-    SingeSurface read;
+    OwnSurface read;
     memcpy(copy, data, size);
     SingeResult result = ply_read_surface("a.ply", copy, size, (SingeAllocator){0}, &read, NULL, why);
     free(copy);
     if (result) assert_null(read.position);
-    singe_surface_free(&read);
     return result;
 }
 
 TEST(damage_is_noticed) {
-    SingeSurface sample = make_sample();
+    OwnSurface sample = make_sample();
     Bytes bytes = written(&sample, 3);
     for (size_t size = 0; size < bytes.size; size++)
         if (read_copy(bytes.data, size, &error) == SINGE_OK) fail_msg("cut to %d bytes", (int)size);
@@ -190,19 +180,17 @@ TEST(damage_is_noticed) {
                                 "property float x\nend_header\n";
     assert_int_equal(read_copy((const uint8_t *)other, sizeof other - 1, &error), SINGE_ERROR_FORMAT);
     assert_message(&error, "not a cache of this version");
-    singe_surface_free(&sample);
 }
 
 TEST(refuses_to_write_nonsense) {
-    SingeSurface sample = make_sample();
+    OwnSurface sample = make_sample();
     assert_int_equal(ply_write_surface(path, &sample, NAN, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(ply_write_surface("/proc/nowhere/a.ply", &sample, 0, &error), SINGE_ERROR_FILE);
     assert_int_equal(access(path, F_OK), -1);
-    singe_surface_free(&sample);
 }
 
 TEST(allocation_failure_is_clean) {
-    SingeSurface sample = make_sample();
+    OwnSurface sample = make_sample();
     Bytes bytes = written(&sample, 3);
     SingeSurface read;
     test_allocations_fail(14, ply_read_surface("a.ply", bytes.data, bytes.size, allocator, &read, NULL, &error),
@@ -214,5 +202,4 @@ TEST(allocation_failure_is_clean) {
     assert_int_equal(ply_write_surface(path, &sample, 3, &error), SINGE_ERROR_MEMORY);
     test_allocator_check(&counter);
     sample.allocator = (SingeAllocator){0};
-    singe_surface_free(&sample);
 }

@@ -28,11 +28,10 @@ static int files_in_folder(void) {
 }
 
 static void assert_contents(const char *target, const char *expected) {
-    Bytes bytes;
+    OwnBytes bytes;
     assert_int_equal(file_read(target, libc_allocator, &bytes, NULL), SINGE_OK);
     assert_string_equal((char *)bytes.data, expected);
     assert_int_equal(bytes.size, strlen(expected));
-    bytes_free(&bytes);
 }
 
 TEST(writes_and_reads) {

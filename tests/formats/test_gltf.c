@@ -244,12 +244,11 @@ TEST(numbers_of_every_width_are_read) {
         char *end = strstr(json, "\"accessors\":[{\"bufferView\":0");
         sprintf(end, "\"accessors\":[{\"bufferView\":0%s}]}", cases[i].accessor);
 
-        Polygons mesh;
+        OWNED(polygons_free) Polygons mesh;
         SingeError error = {0};
         if (polygons_read("a.gltf", (const uint8_t *)json, strlen(json), (SingeAllocator){0}, &mesh, &error))
             fail_msg("%s: %s", json, error.message);
         assert_true(mesh.positions[3] == cases[i].x);
-        polygons_free(&mesh);
     }
 }
 

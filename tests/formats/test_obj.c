@@ -183,7 +183,7 @@ TEST(allocation_failure_is_clean) {
 // The example's sheet: A4, in low waves over the table, borders straight from above, at most 30,000 springs
 // (4 + 2 + 2 + 2 a cell, fewer at the border).
 TEST(the_letter_is_a4) {
-    Bytes bytes;
+    OwnBytes bytes;
     SingeAllocator libc = {0};
 
     if (file_read("examples/letter/letter.obj", libc, &bytes, &error)) fail_msg("%s", error.message);
@@ -217,5 +217,4 @@ TEST(the_letter_is_a4) {
 
     assert_int_equal(on_border, 2 * (46 + 65));
     polygons_free(&mesh);
-    bytes_free(&bytes);
 }

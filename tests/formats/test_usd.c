@@ -132,24 +132,22 @@ static void check_triangles(const CrateFile *file, const SingeSurface *s, const 
 }
 
 TEST(every_value_comes_back) {
-    SingeSurface s;
+    OwnSurface s;
     CrateFile file;
 
     make_sheet(&s, 40, 1);
-    Bytes bytes = written(&s, 1, NULL);
+    OwnBytes bytes = written(&s, 1, NULL);
     crate_open(&file, bytes.data, bytes.size);
     assert_string_equal(crate_text(&file, "", "upAxis"), "Z");
     assert_string_equal(crate_text(&file, "", "defaultPrim"), "_7_up");
     check_mesh(&file, &s, "/_7_up/sheets/a_b", 0);
     check_triangles(&file, &s, "/_7_up/sheets/a_b");
     crate_close(&file);
-    bytes_free(&bytes);
-    singe_surface_free(&s);
 }
 
 /// Two sheets whose vertices take turns, with names that become one.
 TEST(sheets_are_meshes_of_their_own) {
-    SingeSurface s;
+    OwnSurface s;
     CrateFile file;
     SingeError error;
 
@@ -169,18 +167,17 @@ TEST(sheets_are_meshes_of_their_own) {
     s.triangle_count = 0, s.sheet[5] = 2;
     assert_int_equal(write_sheet(&s, 2, NULL, &error), SINGE_ERROR_FORMAT);
     assert_non_null(strstr(error.message, "vertex 5 belongs to sheet 2"));
-    singe_surface_free(&s);
 }
 
 /// With a picture every face is in one of two subsets: those that look as at the start, and the others.
 TEST(pictured_sheets_have_subsets) {
-    SingeSurface s;
+    OwnSurface s;
     CrateFile file;
     double time;
     size_t fresh, burnt;
 
     make_sheet(&s, 30, 1);
-    Bytes bytes = written(&s, 1, "./a.png");
+    OwnBytes bytes = written(&s, 1, "./a.png");
     crate_open(&file, bytes.data, bytes.size);
     uint32_t *a = crate_samples(&file, "/_7_up/sheets/a_b/fresh.indices", 3, 1, &time, &fresh);
     uint32_t *b = crate_samples(&file, "/_7_up/sheets/a_b/burnt.indices", 3, 1, &time, &burnt);
@@ -190,19 +187,16 @@ TEST(pictured_sheets_have_subsets) {
     for (size_t i = 0; i < fresh; i++) assert_true(s.temperature_peak[s.triangles[a[i]][0]] < 300);
     free(a), free(b);
     crate_close(&file);
-    bytes_free(&bytes);
-    singe_surface_free(&s);
 }
 
 TEST(nothing_left_is_a_frame_too) {
     const SingeSurface none = {0};
     CrateFile file;
-    Bytes bytes = written(&none, 1, "a.png");
+    OwnBytes bytes = written(&none, 1, "a.png");
     crate_open(&file, bytes.data, bytes.size);
     check_mesh(&file, &none, "/_7_up/sheets/a_b", 0);
     check_triangles(&file, &none, "/_7_up/sheets/a_b");
     crate_close(&file);
-    bytes_free(&bytes);
 }
 
 /// The tests' reader unpacks the output of lz4_pack; repeats are short.
@@ -244,7 +238,7 @@ static void *stingy(void *context, void *block, size_t old_size, size_t new_size
 
 /// Each allocation fails once, in every format: an error and no file, unless it can do without.
 static void check_memory(int format) {
-    SingeSurface s;
+    OwnSurface s;
     size_t failures = 0;
 
     make_sheet(&s, 20, 1);
@@ -264,7 +258,6 @@ static void check_memory(int format) {
     }
 
     assert_true(failures > 0 && failures < 900);
-    singe_surface_free(&s);
 }
 
 TEST(without_memory_there_is_no_file) {
@@ -304,7 +297,7 @@ static double yardstick(void) {
 
 /// At 25,000 vertices a frame takes at most 5 ms of the program's time and 75 % of the bytes of the PLY.
 TEST(is_fast_and_small) {
-    SingeSurface s;
+    OwnSurface s;
     Bytes ply;
     make_sheet(&s, 158, 1);
     enum { FRAMES = 20, TIMES = 20 };
@@ -335,7 +328,6 @@ TEST(is_fast_and_small) {
     assert_true(mean <= bar);
 #endif
     bytes_free(&usd), bytes_free(&ply);
-    singe_surface_free(&s);
 }
 
 static void make_path(int argc, char **argv) {

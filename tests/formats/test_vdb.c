@@ -147,7 +147,7 @@ TEST(no_memory_is_reported) {
     Gas gas, read;
 
     assert_true(gas_sample_make(&sample, 12, 9, 20));
-    Bytes bytes = {0};
+    OwnBytes bytes = {0};
     for (long fail_at = 1;; fail_at++) {
         TestAllocator counter = {.fail_at = fail_at, .once = true};
         SingeResult result = gas_copy(&sample.gas, test_allocator(&counter), &gas, &error);
@@ -166,6 +166,5 @@ TEST(no_memory_is_reported) {
     }
 
     unlink(path);
-    bytes_free(&bytes);
     gas_sample_free(&sample);
 }

@@ -40,6 +40,7 @@ RigDef rig_default(int nx, int ny, float dx, float dy);
 void rig_open(Rig *rig, const RigDef *def);
 /// Frees everything and fails when something was leaked.
 void rig_close(Rig *rig);
+#define OwnRig OWNED(rig_close) Rig
 /// One heat step, which may fail; time stays.
 SingeResult rig_try_step(Rig *rig);
 /// One heat step that must succeed; time goes on.

@@ -214,7 +214,7 @@ TEST(thickening_follows_the_means) {
     for (int k = 0; k < 2; k++) *params[k] = singe_param_field(k ? 5e-3f : 100, k ? 15e-3f : 300, &field);
     def.material.thickening = 0;
 
-    Rig rig;
+    OwnRig rig;
     rig_open(&rig, &def);
 
     FrontMatter front = {.diffusivity = 1e-4f,
@@ -225,5 +225,4 @@ TEST(thickening_follows_the_means) {
     double expected = (double)heat_thickening_for(0, &front, 293, 0.01f);
     assert_true(expected > 1.5);
     CHECK_NEAR(heat_thickening(rig.plan, 0), expected, 1e-5 * expected);
-    rig_close(&rig);
 }

@@ -124,7 +124,7 @@ static uint64_t check_range(const Bad *mesh, const SingeMaterialDef *material, f
     def.material = *material;
     def.settings.tolerance = 1e-5f;
 
-    Rig rig;
+    OwnRig rig;
     rig_open(&rig, &def);
     rig.h = h;
     for (int step = 0; step < 12; step++) {
@@ -153,7 +153,6 @@ static uint64_t check_range(const Bad *mesh, const SingeMaterialDef *material, f
 
     if (rig.counters.iterations > 12 * 200) fail_msg("%s: iterations", mesh->name);
     uint64_t forced = rig.counters.bounded;
-    rig_close(&rig);
     return forced;
 }
 
@@ -183,7 +182,7 @@ TEST(no_tolerance_lets_a_particle_reach_0_K) {
     for (int k = 0; k < 3; k++) {
         RigDef def = rig_default(COLUMNS, ROWS, 0.002f, 0.002f);
         def.settings.tolerance = 1;
-        Rig rig;
+        OwnRig rig;
         rig_open(&rig, &def);
         rig.h = steps[k];
 
@@ -197,7 +196,6 @@ TEST(no_tolerance_lets_a_particle_reach_0_K) {
                 if (!(rig.state.heat.temperature[i] >= 99))
                     fail_msg("steps of %g s: %g K", (double)steps[k], (double)rig.state.heat.temperature[i]);
         }
-        rig_close(&rig);
     }
 }
 

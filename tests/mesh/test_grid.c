@@ -66,7 +66,7 @@ TEST(slim_cells_stay_slim) {
     for (int turn = 0; turn < 2; turn++) {
         const uint32_t nx = turn ? SHORT : LONG, ny = turn ? LONG : SHORT;
         const double side[2] = {1.0 / nx, 1.0 / ny}, width = fmin(side[0], side[1]), length = fmax(side[0], side[1]);
-        Mesh mesh;
+        OWNED(mesh_free) Mesh mesh;
         assert_int_equal(mesh_grid(1, 1, nx, ny, (SingeAllocator){0}, &mesh, NULL), SINGE_OK);
         mesh_grid_wear(&mesh, nx, ny, &(GridWear){.jitter = 0.15f, .seed = 1});
 
@@ -83,6 +83,5 @@ TEST(slim_cells_stay_slim) {
 
         print_message("cells of %g by %g: sides up to %g by %g\n", width, length, widest, longest);
         assert_true(widest < 1.7 * width && longest < 1.01 * length);
-        mesh_free(&mesh);
     }
 }

@@ -142,7 +142,7 @@ TEST(attributes_and_ids_follow_their_vertices) {
         "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
         "property float wet\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
         "9 9 9 7\n0 0 0 1\n2 0 0 3\n0 1 0 5\n8 8 8 8\n3 1 2 3\n";
-    Polygons polygons;
+    OWNED(polygons_free) Polygons polygons;
     Made made;
     MeshOptions options = mesh_default_options();
 
@@ -159,7 +159,6 @@ TEST(attributes_and_ids_follow_their_vertices) {
     assert_memory_equal(made.mesh.attributes[0].values, wet, sizeof wet);
     assert_int_equal(made.mesh.source_count, 5);
     mesh_free(&made.mesh);
-    polygons_free(&polygons);
 }
 
 // A mesh numbered at random is numbered row by row, and keeps the file's numbers beside.

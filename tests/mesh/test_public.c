@@ -34,14 +34,13 @@ static void burn(const SingeMesh *mesh, uint32_t held) {
     singe_mesh_fill_sheet(mesh, &sheet);
     pin.vertex_count = 1, pin.vertices = &held;
 
-    SingeSim *sim = test_create(&def);
+    OwnSim *sim = test_create(&def);
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &pin.sheet));
     test_add_pin(sim, &pin);
     test_ok(sim, singe_sim_commit(sim));
     test_steps(sim, 10);
     assert_true(singe_sim_view(sim).particle_flags[held] & SINGE_PINNED);
     assert_true(singe_sim_stats(sim).particles > 8);
-    singe_sim_destroy(sim);
 }
 
 TEST(polygons_become_a_sheet) {

@@ -202,7 +202,7 @@ TEST(seams_keep_their_vertices) {
     if (singe_sim_commit(sim)) fail_msg("%s", singe_sim_error(sim)->message);
     mesh_free(&made.mesh);
 
-    SingeSurface surface = {0};
+    OwnSurface surface = {0};
     assert_int_equal(singe_sim_surface(sim, &surface), SINGE_OK);
     assert_int_equal(surface.vertex_count, 2 * (8 + 2));
 
@@ -218,6 +218,5 @@ TEST(seams_keep_their_vertices) {
     }
 
     assert_int_equal(seen, 0xffff);
-    singe_surface_free(&surface);
     singe_sim_destroy(sim);
 }

@@ -5,6 +5,10 @@
 
 #include "scene/scene.h"
 
+static inline void parsed_end(Scene **scene) { scene_free(*scene); }
+#define OwnScene OWNED(parsed_end) Scene
+#define OwnMessages OWNED(scene_messages_free) SceneMessages
+
 /// A complete scene with one sheet; `more` is appended.
 #define SHEET "sheets:\n  - grid: {size: [0.2, 0.3], cells: [20, 30]}\n"
 

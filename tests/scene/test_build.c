@@ -146,10 +146,9 @@ TEST(a_simulation_has_what_the_scene_says) {
 
 // A refusal of the library is reported at the object it concerns.
 TEST(refused_objects_are_named) {
-    SceneMessages messages = refused(SHEET "pins:\n  - {vertices: [0]}\n  - {vertices: [99999]}\n", NULL);
+    OwnMessages messages = refused(SHEET "pins:\n  - {vertices: [0]}\n  - {vertices: [99999]}\n", NULL);
     assert_int_equal(messages.count, 1);
     assert_string_equal(messages.items[0].origin, "t.yaml:5:5");
-    scene_messages_free(&messages);
 }
 
 // Files of the wrong kind are all reported, each at the line of its name.
@@ -195,7 +194,7 @@ TEST(bad_meshes_are_reported) {
                  "sheets:\n  - mesh: line.obj\n  - mesh: flat.ply\n  - mesh: far.obj\n"
                  "  - grid: {size: [1, 1], cells: [2, 2]}\n%s",
                  reader ? "  - mesh: words.obj\n" : "");
-        SceneMessages messages = refused(text, folder);
+        OwnMessages messages = refused(text, folder);
         assert_int_equal(messages.count, 3 + reader);
         for (int i = 0; i < 3; i++) {
             assert_string_equal(messages.items[i].origin, meshes[i].origin);
@@ -203,7 +202,6 @@ TEST(bad_meshes_are_reported) {
         }
 
         if (reader) assert_string_equal(messages.items[3].origin, "t.yaml:6:11");
-        scene_messages_free(&messages);
     }
 
     SceneMessages messages =
@@ -666,7 +664,7 @@ TEST(mesh_files_are_scaled_and_welded) {
 /// The camera passes its path's entries at their times, smoothly: its speed at an entry does not jump, as on straight
 /// lines. It stands still before and after, and pulls its focus.
 TEST(a_camera_follows_its_path) {
-    Scene *scene =
+    OwnScene *scene =
         good_scene("{sheets: [{grid: {size: [1, 1], cells: [2, 2]}}], preview: {camera: {fov: 40}, camera_path: ["
                    "{time: 1, eye: [0, -2, 1], target: [0, 0, 1]},"
                    "{time: 2, eye: [1, -2, 1], target: [0, 0, 1], fov: 20, focus: 1},"
@@ -690,7 +688,6 @@ TEST(a_camera_follows_its_path) {
         print_message("speed along %c into the entry %.2f, out of it %.2f m/s\n", "xy"[c], (double)in, (double)out);
         assert_float_equal(in, out, 0.1); // straight lines: 1 and 0, 0 and -1
     }
-    scene_free(scene);
 }
 
 /// Half of what the default camera shows in height at its target, m, of an upright sheet of 20 x 30 cm.

@@ -42,9 +42,9 @@ static void see(const PreviewDef *light, float *white, float *colour) {
 /// Paper that fire lights is not white, and flames before it keep their colour. Under the light of day, which was the
 /// default before, both were lost. The bar of the colour was .44, then .50, while flames were paler; by day it was .36, then .45.
 TEST(the_default_light_leaves_room_for_fire) {
-    Scene *scene = good_scene("sheets: [{grid: {size: [1.2, 1.2], cells: [2, 2]}}]", NULL, 0);
+    OwnScene *scene = good_scene("sheets: [{grid: {size: [1.2, 1.2], cells: [2, 2]}}]", NULL, 0);
     SceneAssets assets = {0};
-    SceneMessages messages = {0};
+    OwnMessages messages = {0};
     assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
 
     for (int day = 0; day < 2; day++) {
@@ -60,7 +60,5 @@ TEST(the_default_light_leaves_room_for_fire) {
         assert_true((white < 0.05f) == !day && (colour > 0.56f) == !day); // .51 by day
     }
 
-    scene_messages_free(&messages);
     scene_assets_free(&assets);
-    scene_free(scene);
 }

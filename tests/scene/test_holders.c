@@ -14,9 +14,8 @@ typedef struct Hung {
 
 static Hung hang_text(const char *text) {
     Hung hung = {.scene = good_scene(text, NULL, 0)};
-    SceneMessages messages = {0};
+    OwnMessages messages = {0};
     assert_int_equal(scene_load(hung.scene, &hung.assets, &messages), SINGE_OK);
-    scene_messages_free(&messages);
     return hung;
 }
 

@@ -30,7 +30,7 @@ static void expect_location(const Sweep *sweep, const SceneMessage *message, con
 
 static void parse(Sweep *sweep, const char *bytes, size_t size) {
     Scene *scene = NULL;
-    SceneMessages messages = {0};
+    OwnMessages messages = {0};
     char *text = malloc(size + 1); // its end is the end of a block, for the sanitizer
 
     memcpy(text, bytes, size);
@@ -45,7 +45,6 @@ static void parse(Sweep *sweep, const char *bytes, size_t size) {
 
     sweep->parsed++;
     sweep->refused += result != SINGE_OK;
-    scene_messages_free(&messages);
     scene_free(scene);
     free(text);
 }
@@ -101,7 +100,7 @@ TEST(every_prefix_of_the_examples_has_its_line) {
 
     int words = 0;
     for (size_t i = 0; i < files.gl_pathc; i++) {
-        Bytes bytes;
+        OwnBytes bytes;
         Sweep sweep = {.name = files.gl_pathv[i]};
         snprintf(sweep.folder, sizeof sweep.folder, "%.*s", (int)(strrchr(sweep.name, '/') - sweep.name), sweep.name);
         assert_int_equal(file_read(sweep.name, (SingeAllocator){0}, &bytes, NULL), SINGE_OK);
@@ -110,8 +109,6 @@ TEST(every_prefix_of_the_examples_has_its_line) {
             if (words++ < 1 || all) sweep_words(&sweep, (char *)bytes.data);
             assert_true(sweep.refused > sweep.parsed / 4);
         }
-
-        bytes_free(&bytes);
     }
 
     assert_true(words >= 10);

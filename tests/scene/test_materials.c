@@ -38,11 +38,10 @@ static SingeResult folder_parse(const Folder *folder, const char *text, const ch
 
 static Scene *folder_scene(const Folder *folder, const char *text, const char *const *sets, int count) {
     Scene *scene = NULL;
-    SceneMessages messages = {0};
+    OwnMessages messages = {0};
     SingeResult result = folder_parse(folder, text, sets, count, &scene, &messages);
     scene_messages_print(&messages, stderr);
     assert_int_equal(result, SINGE_OK);
-    scene_messages_free(&messages);
     return scene;
 }
 
@@ -73,7 +72,7 @@ TEST(built_in_materials_are_good) {
         assert_string_equal(scene_material_name(i), names[i]);
         snprintf(text, sizeof text, SHEET "    material: %s\n", names[i]);
 
-        Scene *scene = good_scene(text, NULL, 0);
+        OwnScene *scene = good_scene(text, NULL, 0);
         const SceneMaterial *material = material_of(scene);
         assert_string_equal(material->name, names[i]);
         assert_true(material->def.grammage.value == grammage[i]);
@@ -81,7 +80,6 @@ TEST(built_in_materials_are_good) {
         assert_true(material->measured.given && material->measured.speed[1] > material->measured.speed[0]);
         assert_true(material->measured.calibrated == (i == 2));
         if (i == 2) expect_same_def(&material->def, &standard);
-        scene_free(scene);
     }
 
     assert_null(scene_material_name(5));
@@ -113,11 +111,10 @@ TEST(set_changes_materials) {
                                         SHEET "    material: {base: newsprint}\n", SHEET "    material: {}\n"};
     for (int i = 0; i < 4; i++) {
         const char *sets[] = {"sheets.0.material.base=tissue", "sheets.0.material.thickness=3 mm"};
-        Scene *scene = good_scene(texts[i], sets, 2);
+        OwnScene *scene = good_scene(texts[i], sets, 2);
         assert_string_equal(material_of(scene)->name, "tissue");
         assert_true(material_of(scene)->def.grammage.value == 0.020f);
         assert_true(material_of(scene)->def.thickness.value == 0.003f);
-        scene_free(scene);
     }
 
     // what the scene itself says of its material stays
@@ -150,7 +147,7 @@ TEST(material_files_are_found) {
     folder_file(&folder, "below/rate.png", "");
     folder_file(&folder, "below/t.png", "");
 
-    Scene *scene = folder_scene(&folder, SHEET "    material: below/mine.yml\n", NULL, 0);
+    OwnScene *scene = folder_scene(&folder, SHEET "    material: below/mine.yml\n", NULL, 0);
     const SceneMaterial *material = material_of(scene);
     assert_string_equal(material->name, "my paper");
     assert_true(material->def.grammage.value == 0.045f && material->def.drag.value == 2);
@@ -166,16 +163,14 @@ TEST(material_files_are_found) {
     assert_null(strstr(yaml, "base:"));
 
     for (int k = 0; k < 2; k++) {
-        Scene *again = folder_scene(NULL, k ? json : yaml, NULL, 0);
+        OwnScene *again = folder_scene(NULL, k ? json : yaml, NULL, 0);
         char *text = dump_text(again, SCENE_YAML);
         assert_string_equal(text, yaml);
         expect_same_def(&material_of(again)->def, &material->def);
         free(text);
-        scene_free(again);
     }
 
     free(yaml), free(json);
-    scene_free(scene);
 }
 
 /// A material file may be one that the reader of the messages must not see: no message repeats any of its text.
@@ -212,7 +207,7 @@ TEST(messages_quote_no_other_file) {
     Folder folder = folder_make();
     for (size_t i = 0; i < sizeof secrets / sizeof *secrets; i++) {
         Scene *scene = NULL;
-        SceneMessages messages = {0};
+        OwnMessages messages = {0};
         folder_file(&folder, "other.yaml", secrets[i]);
         SingeResult result = folder_parse(&folder, SHEET "    material: other.yaml\n", NULL, 0, &scene, &messages);
         assert_int_equal(result, SINGE_ERROR_FORMAT);
@@ -226,8 +221,6 @@ TEST(messages_quote_no_other_file) {
                 fail_msg("%s: %s: %s\n", secrets[i], message->origin, message->text);
             assert_non_null(strstr(message->origin, "other.yaml:"));
         }
-
-        scene_messages_free(&messages);
     }
 
     folder_remove(&folder);
@@ -237,7 +230,7 @@ TEST(messages_quote_no_other_file) {
 static void expect_mistake(const Folder *folder, const char *line, const char *origin, const char *says, int count) {
     char text[400];
     Scene *scene = NULL;
-    SceneMessages messages = {0};
+    OwnMessages messages = {0};
 
     snprintf(text, sizeof text, SHEET "%s", line);
     SingeResult result = folder_parse(folder, text, NULL, 0, &scene, &messages);
@@ -249,7 +242,6 @@ static void expect_mistake(const Folder *folder, const char *line, const char *o
     const char *found = messages.items[0].origin, *slash = strrchr(found, '/'); // the folder's name is any
     if (strcmp(slash ? slash + 1 : found, origin) != 0 || !strstr(messages.items[0].text, says))
         fail_msg("%s: %s", found, messages.items[0].text);
-    scene_messages_free(&messages);
     scene_free(scene);
 }
 
@@ -343,9 +335,8 @@ TEST(looks_come_with_their_base) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[200];
         snprintf(text, sizeof text, "%s%s\n", head, cases[i].material);
-        Scene *scene = folder_scene(NULL, text, NULL, 0);
+        OwnScene *scene = folder_scene(NULL, text, NULL, 0);
         assert_float_equal(material_of(scene)->look.weave, cases[i].weave, 1e-7);
         assert_int_equal(material_of(scene)->measured.speed[1] > 0, cases[i].measured);
-        scene_free(scene);
     }
 }

@@ -26,21 +26,19 @@ static void expect_message(const SceneMessages *messages, uint32_t index, const 
 static void one(const char *line, const char *origin, const char *part) {
     char text[2000];
     snprintf(text, sizeof text, "%s%s\n", SHEET, line);
-    SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
+    OwnMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
     expect_message(&messages, 0, origin, part);
     if (messages.count != 1) scene_messages_print(&messages, stderr);
     assert_int_equal(messages.count, 1);
-    scene_messages_free(&messages);
 }
 
 /// A material with one parameter that is wrong.
 static void one_of(const char *param, const char *part) {
     char text[400];
     snprintf(text, sizeof text, "sheets: [{grid: {size: [1, 1], cells: [2, 2]}, material: {%s}}]\n", param);
-    SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
+    OwnMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
     if (!strstr(messages.items[0].text, part)) fail_msg("%s", messages.items[0].text);
     assert_int_equal(messages.count, 1);
-    scene_messages_free(&messages);
 }
 
 TEST(wrong_values_are_reported) {
@@ -123,11 +121,10 @@ TEST(messages_name_both_bounds) {
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         char text[400];
         snprintf(text, sizeof text, "%s%s\n", SHEET, rows[i].line);
-        SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
+        OwnMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
         assert_int_equal(messages.count, 1);
         assert_string_equal(messages.items[0].text, rows[i].text);
         assert_int_equal(messages.items[0].location.line, 3);
-        scene_messages_free(&messages);
     }
 }
 
@@ -140,11 +137,10 @@ TEST(all_ranges_are_reported_at_once) {
     static const char *const origins[] = {"bad.yaml:3:7",  "bad.yaml:4:17", "bad.yaml:5:22",
                                           "bad.yaml:6:14", "bad.yaml:7:17", "bad.yaml:8:20",
                                           "bad.yaml:8:49", "bad.yaml:9:19", "bad.yaml:10:6"};
-    SceneMessages messages = failing(text, sizeof text - 1, NULL, NULL, 0, SINGE_ERROR_FORMAT);
+    OwnMessages messages = failing(text, sizeof text - 1, NULL, NULL, 0, SINGE_ERROR_FORMAT);
     assert_int_equal(messages.count, 9);
     for (uint32_t i = 0; i < 9; i++)
         expect_message(&messages, i, origins[i], i < 8 ? "is out of range" : "0.02 steps a second");
-    scene_messages_free(&messages);
 }
 
 TEST(impossible_steps_are_reported) {
@@ -234,9 +230,8 @@ TEST(wrong_sheets_are_reported) {
 }
 
 static void whole(const char *text, const char *origin, const char *part) {
-    SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
+    OwnMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
     expect_message(&messages, 0, origin, part);
-    scene_messages_free(&messages);
 }
 
 TEST(wrong_syntax_is_reported) {
@@ -367,11 +362,10 @@ TEST(impossible_names_are_reported) {
         char text[1000] = SHEET "name: ";
         for (int n = 0; n < names[i].count; n++) strcat(text, names[i].piece);
         Scene *scene = NULL;
-        SceneMessages messages = {0};
+        OwnMessages messages = {0};
         SingeResult result = scene_parse("t", text, strlen(text), NULL, NULL, 0, &scene, &messages);
         assert_int_equal(result, names[i].good ? SINGE_OK : SINGE_ERROR_FORMAT);
         if (!names[i].good) assert_non_null(strstr(messages.items[0].text, "at most 100 characters and 200 bytes"));
-        scene_messages_free(&messages);
         scene_free(scene);
     }
 }
@@ -412,7 +406,7 @@ TEST(all_mistakes_are_reported_at_once) {
 
     static const char *const sets[] = {"fps=-1", "nme=x", "sources.3.kind=ball", "steps.x=1", "novalue", "=3",
                                        "pace=[", "a..b=1"};
-    SceneMessages messages = failing(text, strlen(text), NULL, sets, 8, SINGE_ERROR_FORMAT);
+    OwnMessages messages = failing(text, strlen(text), NULL, sets, 8, SINGE_ERROR_FORMAT);
     expect_message(&messages, 0, "bad.yaml:1:9", "frames must be a whole number, not 'x'");
     expect_message(&messages, 1, "bad.yaml:3:5", "did you mean 'grid'?");
     expect_message(&messages, 2, "bad.yaml:3:5", "needs 'mesh'");
@@ -430,7 +424,6 @@ TEST(all_mistakes_are_reported_at_once) {
     expect_message(&messages, messages.count - 1, "--set a..b=1", "expected PATH=VALUE");
     assert_string_equal(messages.items[4].source, "    material: {gramage: 3, thickness: 3 K}");
     assert_int_equal(messages.items[4].caret, 39);
-    scene_messages_free(&messages);
 }
 
 TEST(messages_print_with_their_line) {
@@ -484,10 +477,9 @@ TEST(truncated_flow_scenes_are_refused) {
         char *prefix = malloc(length + 1); // its end is the end of a block, for the sanitizer
         memcpy(prefix, text, length);
         prefix[length] = 0;
-        SceneMessages messages = {0};
+        OwnMessages messages = {0};
         assert_int_equal(scene_parse("t", prefix, length, NULL, NULL, 0, &scene, &messages), SINGE_ERROR_FORMAT);
         assert_true(messages.count > 0);
-        scene_messages_free(&messages);
         free(prefix);
     }
 }
@@ -501,7 +493,7 @@ TEST(truncated_block_scenes_read_back) {
 
     for (size_t length = 0; length <= strlen(text); length++) {
         Scene *scene;
-        SceneMessages messages = {0};
+        OwnMessages messages = {0};
         char *prefix = malloc(length + 1);
         memcpy(prefix, text, length);
         prefix[length] = 0;
@@ -510,13 +502,11 @@ TEST(truncated_block_scenes_read_back) {
         if (result == SINGE_OK) {
             good++;
             char *dump = dump_text(scene, SCENE_YAML);
-            Scene *again = good_scene(dump, NULL, 0);
-            scene_free(again);
+            OwnScene *again = good_scene(dump, NULL, 0);
             free(dump);
         }
 
         scene_free(scene);
-        scene_messages_free(&messages);
         free(prefix);
     }
 

@@ -107,10 +107,9 @@ static void check_objects(const Scene *scene) {
 }
 
 TEST(values_are_read) {
-    Scene *scene = good_scene(full, NULL, 0);
+    OwnScene *scene = good_scene(full, NULL, 0);
     check_full(scene);
     check_objects(scene);
-    scene_free(scene);
 }
 
 /// Each parameter of a material that may vary is written under its key, fills its own slot and no other, keeps its
@@ -144,11 +143,10 @@ TEST(every_parameter_that_may_vary_does) {
             for (int i = 0; scene_param(i, &other); i++)
                 assert_memory_equal(scene_param_at(&def, &other), scene_param_at(&standard, &other), sizeof *param);
             char *dump = dump_text(scene, SCENE_YAML);
-            Scene *again = good_scene(dump, NULL, 0);
+            OwnScene *again = good_scene(dump, NULL, 0);
             def = again->sheets[0].material.def;
             assert_true(scene_param_at(&def, &row)->to == to);
             free(dump);
-            scene_free(again);
             scene_free(scene);
         }
     }
@@ -200,14 +198,13 @@ TEST(a_yaml_dump_reads_back) { round_trip(SCENE_YAML); }
 TEST(a_json_dump_reads_back) { round_trip(SCENE_JSON); }
 
 TEST(json_is_read) {
-    Scene *scene =
+    OwnScene *scene =
         good_scene("{\"sheets\": [{\"grid\": {\"size\": [\"20 cm\", 0.3], \"cells\": [2, 3]},\n"
                    "\t\"material\": {\"ignition_temperature\": \"240 C\", \"ablate\": false}}], \"frames\": 7}",
                    NULL, 0);
     assert_true(scene->sheets[0].material.def.ignition_temperature.value == 513.15f);
     assert_false(scene->sheets[0].material.def.ablate);
     assert_int_equal(scene->frames, 7);
-    scene_free(scene);
 }
 
 /// Quoted texts in every style of YAML, read as the name of an attribute, which may be any text.
@@ -236,22 +233,19 @@ TEST(quoted_texts_are_read) {
                  "name: 'a''''b'\n" SHEET "    material:\n      mass_loss: {from: 0.1, to: 0.3, 'attribute': %s}\n",
                  texts[i].written);
 
-        Scene *scene = good_scene(text, NULL, 0);
+        OwnScene *scene = good_scene(text, NULL, 0);
         assert_string_equal(scene->name, "a''b");
         assert_string_equal(scene->sheets[0].material.def.mass_loss.field->attribute, texts[i].read);
 
         char *dump = dump_text(scene, SCENE_YAML);
-        Scene *again = good_scene(dump, NULL, 0);
+        OwnScene *again = good_scene(dump, NULL, 0);
         assert_string_equal(again->sheets[0].material.def.mass_loss.field->attribute, texts[i].read);
         free(dump);
-        scene_free(again);
-        scene_free(scene);
     }
 
     const char *set = "name='x''''y'";
-    Scene *scene = good_scene(SHEET, &set, 1);
+    OwnScene *scene = good_scene(SHEET, &set, 1);
     assert_string_equal(scene->name, "x''y");
-    scene_free(scene);
 }
 
 TEST(set_overrides_values) {
@@ -270,7 +264,7 @@ TEST(set_overrides_values) {
         "sheets.0.material.mass_rate.to=5",
     };
 
-    Scene *scene = good_scene(SHEET "sources: [{kind: spot, position: [1, 2, 3]}]\nframes: 2\n", sets, 12);
+    OwnScene *scene = good_scene(SHEET "sources: [{kind: spot, position: [1, 2, 3]}]\nframes: 2\n", sets, 12);
     assert_true(scene->sheets[0].material.def.grammage.value == 0.06f);
     assert_true(scene->sheets[0].material.def.weight[SINGE_RED].value == 0.25f);
     assert_int_equal(scene->frames, 4); // the last one counts
@@ -282,7 +276,6 @@ TEST(set_overrides_values) {
     assert_true(scene->sources[0].keys[0].position[2] == 0.007f);
     assert_true(scene->sheets[0].material.def.mass_rate.to == 5);
     assert_string_equal(scene->name, "a=b");
-    scene_free(scene);
 }
 
 // A scene has gas unless it switches it off, by `gas: no` or inside the map.
@@ -304,10 +297,9 @@ TEST(gas_is_there_unless_switched_off) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[400];
         snprintf(text, sizeof text, "%s%s", SHEET, cases[i].text);
-        Scene *scene = good_scene(text, &cases[i].set, cases[i].set ? 1 : 0);
+        OwnScene *scene = good_scene(text, &cases[i].set, cases[i].set ? 1 : 0);
         assert_int_equal(scene->sim.gas.enabled, cases[i].enabled);
         assert_true(scene->sim.gas.height == cases[i].height);
-        scene_free(scene);
     }
 
     assert_false(singe_default_sim().gas.enabled);

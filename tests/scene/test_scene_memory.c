@@ -58,7 +58,7 @@ static char *undisturbed; // what the scene is where nothing fails
 static SingeResult attempt(const char *scene_text, long at, bool once, uint32_t *reported) {
     static const char *const sets[] = {"preview.camera.eye=[0, 1, 2]", "fps=30"};
     Scene *scene = NULL;
-    SceneMessages messages = {0};
+    OwnMessages messages = {0};
     calls = 0, fail_at = at, fail_once = once;
 
     SingeResult result = scene_parse("t.yaml", scene_text, strlen(scene_text), NULL, sets, 2, &scene, &messages);
@@ -74,7 +74,6 @@ static SingeResult attempt(const char *scene_text, long at, bool once, uint32_t 
     }
 
     scene_free(scene);
-    scene_messages_free(&messages);
     return result;
 }
 

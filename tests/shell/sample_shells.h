@@ -13,6 +13,7 @@ typedef struct QuadMesh {
 void mesh_add_vertex(QuadMesh *mesh, float x, float y, float z);
 void mesh_add_cell(QuadMesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t d);
 void mesh_release(QuadMesh *mesh);
+#define OwnQuadMesh OWNED(mesh_release) QuadMesh
 
 /// n x m cells of dx x dy in the plane z = 0, numbered row by row; its origin at (x, y).
 QuadMesh mesh_grid(uint32_t n, uint32_t m, float dx, float dy);

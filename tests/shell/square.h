@@ -28,6 +28,7 @@ static inline void square_free(Square *square) {
     mesh_release(&square->mesh);
     free(square->uv);
 }
+#define OwnSquare OWNED(square_free) Square
 
 static inline SheetSource evaluate(Memory *memory, const SingeSheetDef *def) {
     SheetSource source;

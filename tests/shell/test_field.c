@@ -36,7 +36,7 @@ TEST(textures_are_sampled_linearly) {
 // A picture that is linear in u between its two pixels.
 TEST(pictures_are_sampled_by_uv) {
     Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(8);
+    OwnSquare square = square_make(8);
     static const float values[] = {0, 1};
     SingeField field = {.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, values}};
 
@@ -59,13 +59,12 @@ TEST(pictures_are_sampled_by_uv) {
     static const float broken[] = {0, NAN};
     field.texture = (SingeTexture){2, 1, broken};
     refuse(&square.def, 0, "thickness"); // bilinear: a pixel beside NaN is not known either
-    square_free(&square);
 }
 
 // Attributes are taken as they are, beyond [0, 1] too; centres take the mean of their corners.
 TEST(attributes_are_taken_as_they_are) {
     Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(3);
+    OwnSquare square = square_make(3);
     float values[16];
 
     for (int v = 0; v < 16; v++) values[v] = 0.25f * (float)v;
@@ -95,13 +94,12 @@ TEST(attributes_are_taken_as_they_are) {
     refuse(&square.def, -1, "no attribute 'char'");
     field.attribute = NULL;
     refuse(&square.def, -1, "needs the name of an attribute");
-    square_free(&square);
 }
 
 // Noise lies between the two values, varies, and depends on the seed and on the position alone.
 TEST(noise_depends_on_seed_and_position) {
     Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(24);
+    OwnSquare square = square_make(24);
     SingeField field = {.kind = SINGE_FIELD_NOISE, .noise = {0.2f, 3, 5}};
     square.def.material.weight[SINGE_BLUE] = singe_param_field(0.2f, 1, &field);
     SheetSource a = evaluate(&memory, &square.def), b = evaluate(&memory, &square.def);
@@ -130,5 +128,4 @@ TEST(noise_depends_on_seed_and_position) {
     refuse(&square.def, -1, "octaves");
     field.kind = (SingeFieldKind)7;
     refuse(&square.def, -1, "unknown kind");
-    square_free(&square);
 }

@@ -34,7 +34,7 @@ enum { VARYING = sizeof varying / sizeof varying[0] };
 /// Every parameter goes through the shell into its own field of Matter, front and back of shrinkage each to its layer.
 TEST(every_number_goes_to_its_slot) {
     Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(2);
+    OwnSquare square = square_make(2);
     SingeMaterialDef *m = &square.def.material;
     float numbers[VARYING];
     m->reference_grammage = 0;
@@ -66,14 +66,13 @@ TEST(every_number_goes_to_its_slot) {
 
     shell_free(&memory, &shell);
     sheet_source_free(&memory, &source);
-    square_free(&square);
 }
 
 /// Every parameter follows a texture, an attribute and noise, each in its own slot: the same field gives every one
 /// the values that it gives the thickness, and leaves the others alone.
 TEST(every_parameter_can_vary) {
     Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(6);
+    OwnSquare square = square_make(6);
     static const float pixels[] = {0.25f, 1, 0, 0.5f};
     float values[49];
 
@@ -125,13 +124,12 @@ TEST(every_parameter_can_vary) {
     }
 
     sheet_source_free(&memory, &plain);
-    square_free(&square);
 }
 
 /// Mass and capacity where both factors vary, and where their product leaves what a float can hold.
 TEST(mass_and_capacity_vary) {
     Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(4);
+    OwnSquare square = square_make(4);
     static const float pixels[] = {0, 1};
     square.def.material.grammage =
         singe_param_field(0.05f, 0.2f, &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, pixels}});
@@ -173,14 +171,13 @@ TEST(mass_and_capacity_vary) {
     assert_int_equal(error.element, 10); // the first cell at vertex 18
     assert_non_null(strstr(error.message, "mass or heat capacity"));
     assert_int_equal(memory.held, 0);
-    square_free(&square);
 }
 
 /// Diffusivity, layer exchange and mass rate are stated for one grammage and are larger where the sheet is lighter; the
 /// product of conductance and capacity, a flux per area, is the same everywhere. Heat is stated by its share.
 TEST(rates_are_stated_for_a_grammage) {
     Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(4);
+    OwnSquare square = square_make(4);
     static const float pixels[] = {0, 1};
     SingeMaterialDef *m = &square.def.material;
     m->grammage =
@@ -216,14 +213,13 @@ TEST(rates_are_stated_for_a_grammage) {
     refuse(&square.def, -1, "mass_rate is too large for its grammage");
     m->reference_grammage = 0, m->heat_of_combustion = singe_param(1e38f), m->specific_heat = singe_param(0.01f);
     refuse(&square.def, -1, "heat_of_combustion is too large for its specific heat");
-    square_free(&square);
 }
 
 /// A stated bending stiffness D gives green springs the compliance t^2/D, less that of blue ones in series, where it
 /// stands and where it varies; without one their own compliance counts.
 TEST(bending_is_stated_as_a_stiffness) {
     Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(4);
+    OwnSquare square = square_make(4);
     static const float pixels[] = {0, 1};
     const SingeField texture = {.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, pixels}};
     SingeMaterialDef *m = &square.def.material;
@@ -250,13 +246,12 @@ TEST(bending_is_stated_as_a_stiffness) {
 
     m->bending = singe_param(1e-38f), m->thickness = singe_param(10);
     refuse(&square.def, -1, "thickness is too large for its bending");
-    square_free(&square);
 }
 
 // The ends of every range, as its row states them: the last number that is allowed and the first that is not.
 TEST(ranges_end_where_stated) {
     Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(1);
+    OwnSquare square = square_make(1);
     for (int i = 0; i < VARYING; i++) {
         const FieldRange *range = &varying[i].range;
         const float low = range->low, high = range->high;
@@ -309,14 +304,13 @@ TEST(ranges_end_where_stated) {
     SingeSheetDef def = square.def;
     def.material.heat_operator = (SingeHeatOperator)3;
     refuse(&def, -1, "heat operator");
-    square_free(&square);
 }
 
 // A caller's header had fewer fields in the material and in the sheet: the rest take their defaults, and
 // the sheet's fields after the material are found where that caller has them.
 TEST(older_defs_take_defaults) {
     Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(1);
+    OwnSquare square = square_make(1);
     square.def.material.grammage = singe_param(0.2f);
     square.def.material.damping = singe_param(77); // beyond the older material
     square.def.velocity[0] = 3;
@@ -351,13 +345,12 @@ TEST(older_defs_take_defaults) {
     square.def.material.struct_size = sizeof square.def;
     refuse(&square.def, -1, "struct_size");
     free(old);
-    square_free(&square);
 }
 
 // Long names are cut at a character, and the sheet keeps a copy.
 TEST(long_names_are_cut) {
     Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(1);
+    OwnSquare square = square_make(1);
     char name[80];
 
     memset(name, 'a', sizeof name);
@@ -371,5 +364,4 @@ TEST(long_names_are_cut) {
     source = evaluate(&memory, &square.def);
     assert_string_equal(source.sheet.name, "sheet");
     sheet_source_free(&memory, &source);
-    square_free(&square);
 }

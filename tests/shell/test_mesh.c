@@ -84,7 +84,7 @@ TEST(touching_spheres_are_refused) {
 // The element is the second sheet's own, not the shell's.
 TEST(errors_name_the_element_within_its_sheet) {
     Memory memory = memory_make((SingeAllocator){0});
-    QuadMesh good = mesh_grid(3, 3, 1, 1), bad = mesh_grid(2, 2, 1, 1);
+    OwnQuadMesh good = mesh_grid(3, 3, 1, 1), bad = mesh_grid(2, 2, 1, 1);
     memcpy(bad.cells[1], bad.cells[3], sizeof bad.cells[1]);
     bad.cell_count = 2;
     SingeSheetDef defs[2] = {mesh_sheet(&good), mesh_sheet(&bad)};
@@ -100,8 +100,6 @@ TEST(errors_name_the_element_within_its_sheet) {
     assert_non_null(strstr(error.message, "'bad'"));
     for (int i = 0; i < 2; i++) sheet_source_free(&memory, &sources[i]);
     assert_int_equal(memory.held, 0);
-    mesh_release(&good);
-    mesh_release(&bad);
 }
 
 TEST(bad_numbers_are_refused) {
@@ -161,7 +159,7 @@ TEST(degenerate_cells_are_refused) {
 
 // A tube as thick as its radius: the centre layer would be a line.
 TEST(a_tube_as_thick_as_its_radius_is_refused) {
-    QuadMesh mesh = mesh_cylinder(4, 3, 1, 1);
+    OwnQuadMesh mesh = mesh_cylinder(4, 3, 1, 1);
     for (uint32_t c = 0; c < mesh.cell_count; c++) {
         uint32_t swap = mesh.cells[c][1];
         mesh.cells[c][1] = mesh.cells[c][3], mesh.cells[c][3] = swap;
@@ -175,7 +173,6 @@ TEST(a_tube_as_thick_as_its_radius_is_refused) {
     SingeSheetDef def = mesh_sheet(&mesh);
     def.material.thickness = singe_param(1);
     refuse_def(&def, SINGE_ERROR_MESH, 0, "too thick");
-    mesh_release(&mesh);
 }
 
 TEST(bad_defs_are_refused) {
@@ -248,10 +245,9 @@ static SingeResult build_all(Memory *memory, const SingeSheetDef *def, SingeErro
 
 // The n-th allocation fails, for every n: the right code, nothing leaked.
 TEST(every_allocation_fails_once) {
-    QuadMesh mesh = mesh_sphere(3);
+    OwnQuadMesh mesh = mesh_sphere(3);
     SingeSheetDef def = mesh_sheet(&mesh);
     Memory memory;
     SingeError error;
     test_allocations_fail(100, (memory = memory_make(allocator), build_all(&memory, &def, &error)), (void)0);
-    mesh_release(&mesh);
 }

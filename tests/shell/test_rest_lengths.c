@@ -31,7 +31,7 @@ static void check_layers(const Shell *shell, double area, double tolerance) {
 TEST(rectangles_match_lengths_by_hand) {
     Memory memory = memory_make((SingeAllocator){0});
     const float dx = 0.02f, dy = 0.01f, t = 0.003f;
-    QuadMesh mesh = mesh_grid(4, 3, dx, dy);
+    OwnQuadMesh mesh = mesh_grid(4, 3, dx, dy);
     SingeSheetDef def = mesh_sheet(&mesh);
     def.material.thickness = singe_param(t);
 
@@ -71,14 +71,13 @@ TEST(rectangles_match_lengths_by_hand) {
     assert_near((double)shell.sheets[0].cell_size, 0.02, 1e-6);
     shell_free(&memory, &shell);
     sheet_source_free(&memory, &source);
-    mesh_release(&mesh);
 }
 
 // The median by histograms is the median by sorting.
 TEST(the_median_cell_size_is_exact) {
     for (uint32_t seed = 1; seed < 6; seed++) {
         Memory memory = memory_make((SingeAllocator){0});
-        QuadMesh mesh = mesh_random(2 + seed, seed);
+        OwnQuadMesh mesh = mesh_random(2 + seed, seed);
         for (uint32_t v = 0; v < mesh.vertex_count; v++) mesh.position[v][2] = 0.1f * sinf((float)(v * v));
 
         Shell shell = mesh_shell(&memory, &mesh);
@@ -91,7 +90,6 @@ TEST(the_median_cell_size_is_exact) {
         assert_true(shell.sheets[0].cell_size == sorted[blue->count / 2]);
         free(sorted);
         shell_free(&memory, &shell);
-        mesh_release(&mesh);
     }
 }
 
@@ -115,7 +113,7 @@ TEST(parts_of_a_planar_mesh_sum_to_the_whole) {
 // A dart: the triangle (0,0) (2,0) (1,2) without (0,0) (2,0) (1,1), its corners equal for want of better.
 TEST(a_concave_cell_has_equal_corners) {
     Memory memory = memory_make((SingeAllocator){0});
-    QuadMesh mesh = {0};
+    OwnQuadMesh mesh = {0};
     static const float position[4][2] = {{0, 0}, {1, 1}, {2, 0}, {1, 2}};
 
     for (int v = 0; v < 4; v++) mesh_add_vertex(&mesh, position[v][0], position[v][1], 0);
@@ -124,7 +122,6 @@ TEST(a_concave_cell_has_equal_corners) {
     check_layers(&shell, 1, 1e-6);
     for (uint32_t v = 0; v < 4; v++) assert_near((double)shell.matter.area[v], 0.25, 1e-6);
     shell_free(&memory, &shell);
-    mesh_release(&mesh);
 }
 
 // A curved shell: the centre layer of a cylinder is longer outside, at the radius of its own prism.
@@ -132,7 +129,7 @@ TEST(the_centre_layer_of_a_cylinder_is_longer_outside) {
     Memory memory = memory_make((SingeAllocator){0});
     const uint32_t n = 16;
     const double pi = 3.14159265358979, r = 0.1, t = 0.01, h = 0.3;
-    QuadMesh mesh = mesh_cylinder(n, 6, (float)r, (float)h);
+    OwnQuadMesh mesh = mesh_cylinder(n, 6, (float)r, (float)h);
     SingeSheetDef def = mesh_sheet(&mesh);
     def.material.thickness = singe_param((float)t);
 
@@ -154,5 +151,4 @@ TEST(the_centre_layer_of_a_cylinder_is_longer_outside) {
     assert_int_equal(rings, 6);
     shell_free(&memory, &shell);
     sheet_source_free(&memory, &source);
-    mesh_release(&mesh);
 }

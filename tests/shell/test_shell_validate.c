@@ -5,7 +5,7 @@
 
 TEST(good_ones_pass) {
     SingeMaterialDef material = plain_material();
-    BurningSheet *b = burning_sheet(5, 4, 0.01f, &material);
+    OwnBurningSheet *b = burning_sheet(5, 4, 0.01f, &material);
     AblatePlan *plan;
 
     assert_int_equal(ablate_plan_create(&b->memory, &b->shell, &plan), SINGE_OK);
@@ -15,7 +15,6 @@ TEST(good_ones_pass) {
     assert_true(shell_validate(&b->shell, &fault));
     assert_true(state_validate(&b->shell, &b->state, &fault));
     ablate_plan_free(&b->memory, plan);
-    burning_sheet_free(b);
 }
 
 /// Checks what a validator says while `target` has another value, and that it says nothing afterwards.
@@ -31,7 +30,7 @@ TEST(good_ones_pass) {
 
 TEST(faults_are_named) {
     SingeMaterialDef material = plain_material();
-    BurningSheet *b = burning_sheet(5, 4, 0.01f, &material);
+    OwnBurningSheet *b = burning_sheet(5, 4, 0.01f, &material);
     AblatePlan *plan;
 
     assert_int_equal(ablate_plan_create(&b->memory, &b->shell, &plan), SINGE_OK);
@@ -68,5 +67,4 @@ TEST(faults_are_named) {
            "live springs have 398 ends, the particles' degrees sum to 400");
 
     ablate_plan_free(&b->memory, plan);
-    burning_sheet_free(b);
 }

@@ -4,7 +4,7 @@
 
 /// A grid with one vertex that no cell uses, moving and with a temperature of its own.
 static Shell start_shell(Memory *memory) {
-    QuadMesh mesh = mesh_grid(3, 2, 0.01f, 0.01f);
+    OwnQuadMesh mesh = mesh_grid(3, 2, 0.01f, 0.01f);
     mesh_add_vertex(&mesh, 9, 9, 9);
     SingeSheetDef def = mesh_sheet(&mesh);
     float warm[13] = {0};
@@ -22,7 +22,6 @@ static Shell start_shell(Memory *memory) {
     assert_int_equal(sheet_source_create(memory, &def, &source, NULL), SINGE_OK);
     assert_int_equal(shell_create(memory, &source, 1, &shell, NULL), SINGE_OK);
     sheet_source_free(memory, &source);
-    mesh_release(&mesh);
     return shell;
 }
 

@@ -78,7 +78,7 @@ TEST(strands_of_a_torus_are_rings) {
 // Two cells around: green rings of two springs between the same centres are cut open into two strands.
 TEST(rings_of_two_springs_are_cut) {
     Memory memory = memory_make((SingeAllocator){0});
-    QuadMesh mesh = {0};
+    OwnQuadMesh mesh = {0};
     static const float square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 
     for (int i = 0; i < 4; i++) mesh_add_vertex(&mesh, square[i][0], square[i][1], 0);
@@ -95,7 +95,6 @@ TEST(rings_of_two_springs_are_cut) {
     assert_int_equal(shell.springs[SINGE_BLUE].family_count, 1);
 
     shell_free(&memory, &shell);
-    mesh_release(&mesh);
 }
 
 TEST(strands_go_around_a_cylinder) {
@@ -118,7 +117,7 @@ TEST(strands_go_around_a_cylinder) {
 // Eight vertices of valence three: the cube's 12 edges are chains, the other lines go round.
 TEST(strands_of_a_cube_sphere_end_at_its_corners) {
     for (uint32_t n = 1; n <= 8; n++) {
-        QuadMesh mesh = mesh_sphere(n);
+        OwnQuadMesh mesh = mesh_sphere(n);
         assert_int_equal(mesh.vertex_count, 6 * n * n + 2);
 
         Memory memory = memory_make((SingeAllocator){0});
@@ -140,7 +139,6 @@ TEST(strands_of_a_cube_sphere_end_at_its_corners) {
                       shell.cell_family_count);
         shell_free(&memory, &shell);
         assert_int_equal(memory.held, 0);
-        mesh_release(&mesh);
     }
 }
 
@@ -173,7 +171,7 @@ TEST(strands_end_at_vertices_of_odd_valence) {
 // The inner corner has three cells: both boundary lines run on into the mesh.
 TEST(strands_run_on_from_an_inner_corner) {
     const uint32_t n = 4;
-    QuadMesh mesh = mesh_ell(n);
+    OwnQuadMesh mesh = mesh_ell(n);
     uint32_t cells = 3 * n * n;
     Memory memory = memory_make((SingeAllocator){0});
     Shell shell = mesh_shell(&memory, &mesh);
@@ -190,7 +188,6 @@ TEST(strands_run_on_from_an_inner_corner) {
         assert_int_equal(count_rings(&shell.springs[colour]), 0);
     }
     shell_free(&memory, &shell);
-    mesh_release(&mesh);
 }
 
 TEST(components_are_separate) {
@@ -262,7 +259,7 @@ TEST(random_meshes_have_valid_strands) {
 // A hub of 201 cells: more strands meet than one word of families holds.
 TEST(a_hub_has_many_families) {
     Memory memory = memory_make((SingeAllocator){0});
-    QuadMesh mesh = mesh_polygon(201, 1);
+    OwnQuadMesh mesh = mesh_polygon(201, 1);
     Shell shell = mesh_shell(&memory, &mesh);
 
     check_shell(&shell);
@@ -270,5 +267,4 @@ TEST(a_hub_has_many_families) {
     assert_int_equal(shell.springs[SINGE_YELLOW].family_count, 201);
     assert_int_equal(shell.cell_family_count, 201);
     shell_free(&memory, &shell);
-    mesh_release(&mesh);
 }

@@ -38,8 +38,8 @@ void scene_flux(void *context, const struct SingeView *view, float *flux, float 
 
 static SingeResult scene_sheets(TestScene *scene, uint32_t cells) {
     const float side = 0.2f;
-    TestMesh grid = test_grid(cells, cells, side / (float)cells, side / (float)cells),
-             tube = test_cylinder(8, 5, 0.03f, 0.1f);
+    OwnTestMesh grid = test_grid(cells, cells, side / (float)cells, side / (float)cells),
+                tube = test_cylinder(8, 5, 0.03f, 0.1f);
 
     test_mesh_add_vertex(&grid, 1, 1, 1); // belongs to no cell
     test_mesh_move(&tube, 0.1f, 0.1f, 0.06f);
@@ -57,8 +57,6 @@ static SingeResult scene_sheets(TestScene *scene, uint32_t cells) {
     sheet.material.heat_operator = SINGE_HEAT_UMBRELLA;
     sheet.velocity[2] = -0.1f;
     if (!result) result = singe_sim_add_sheet(scene->sim, &sheet, &scene->sheets[1]);
-    test_mesh_free(&grid);
-    test_mesh_free(&tube);
     return result;
 }
 
@@ -167,6 +165,8 @@ SingeResult scene_build_early(const SingeSimDef *def, uint32_t cells, TestScene 
     SCENE_TRY(scene_pins(scene));
     return singe_sim_commit(scene->sim);
 }
+
+void scene_end(TestScene *scene) { singe_sim_destroy(scene->sim); }
 
 TestScene scene_make(const SingeSimDef *def, uint32_t cells) {
     TestScene scene;

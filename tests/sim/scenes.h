@@ -16,6 +16,9 @@ typedef struct TestScene {
     SingePinId points, vertices;
 } TestScene;
 
+void scene_end(TestScene *scene);
+#define OwnTestScene OWNED(scene_end) TestScene
+
 /// Builds it up to the commit and all objects. On failure what was made is in scene->sim (NULL when not
 /// even that), for the caller to destroy. `cells` is the larger sheet's side.
 SingeResult scene_build(const SingeSimDef *def, uint32_t cells, TestScene *scene);

@@ -52,7 +52,7 @@ TEST(the_front_arrives_when_the_map_says) {
 
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         SingeSourceId id;
-        SingeSim *sim = mapped(cases[k].cell, cases[k].pace, cases[k].mass_rate, &id);
+        OwnSim *sim = mapped(cases[k].cell, cases[k].pace, cases[k].mass_rate, &id);
         double h = 1.0 / 480;
         for (int half = 0; half < 2; half++) {
             test_steps(sim, half ? 180 : 150);
@@ -80,13 +80,12 @@ TEST(the_front_arrives_when_the_map_says) {
         // without the map the fire is on its own; what it did not reach cannot be missed
         test_ok(sim, singe_sim_remove_source(sim, id));
         assert_true(singe_sim_stats(sim).arrival_error == 0 && singe_sim_stats(sim).arrival_missed == 0);
-        singe_sim_destroy(sim);
     }
 }
 
 TEST(particles_that_miss_the_map_are_counted) {
     SingeSourceId id;
-    SingeSim *sim = mapped(10, 1, 9e-3f, &id);
+    OwnSim *sim = mapped(10, 1, 9e-3f, &id);
     test_steps(sim, 100);
     test_ok(sim, singe_sim_remove_source(sim, id));
 
@@ -101,7 +100,6 @@ TEST(particles_that_miss_the_map_are_counted) {
     for (int k = 0; k < HIGH * WIDE; k++) values[k] = 1;
     test_ok(sim, singe_sim_add_source(sim, &source, &id));
     assert_true(singe_sim_stats(sim).arrival_missed > 20); // burnt where nothing may
-    singe_sim_destroy(sim);
 }
 
 TEST(a_map_is_saved) {
@@ -109,7 +107,7 @@ TEST(a_map_is_saved) {
     SingeSim *sim = mapped(10, 2, 9e-3f, &id), *copy;
     test_steps(sim, 120);
 
-    TestBytes bytes = test_save(sim);
+    OwnTestBytes bytes = test_save(sim);
     SingeSimDef hooks = singe_default_sim();
     hooks.thread_count = 2;
     SingeSim *loaded = test_load(&hooks, &bytes);
@@ -134,12 +132,11 @@ TEST(a_map_is_saved) {
     memcpy(bytes.data + at, &bad, sizeof bad);
     SingeError error;
     assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &loaded, &error), SINGE_ERROR_FORMAT);
-    free(bytes.data);
 }
 
 TEST(bad_maps_are_refused) {
     SingeSourceId id;
-    SingeSim *sim = mapped(20, 1, 9e-3f, &id);
+    OwnSim *sim = mapped(20, 1, 9e-3f, &id);
     float values[HIGH * WIDE];
     SingeTexture texture = ramp(values);
     SingeSourceDef good = map_of(&texture), bad[5];
@@ -161,5 +158,4 @@ TEST(bad_maps_are_refused) {
 
     values[7] = 0.5f;
     test_ok(sim, singe_sim_add_source(sim, &good, &id));
-    singe_sim_destroy(sim);
 }

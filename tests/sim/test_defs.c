@@ -61,7 +61,7 @@ static SingeSim *small_sim(void) { return test_sim(NULL, test_grid(4, 4, 0.01f, 
     } while (0)
 
 TEST(bad_sources_are_refused) {
-    SingeSim *sim = small_sim();
+    OwnSim *sim = small_sim();
     SingePoseKey key = test_key(0, 0, 0, 0), keys[2] = {key, key};
     const float grey = 1, nan_grey = NAN;
     SingeValueKey strengths[2] = {{0, 1}, {0, 1}};
@@ -91,7 +91,6 @@ TEST(bad_sources_are_refused) {
     SOURCE_BAD((SingeSourceKind)17, (void)0);
     SOURCE_BAD((SingeSourceKind)-1, (void)0);
     test_steps(sim, 2);
-    singe_sim_destroy(sim);
 }
 
 #define PIN_BAD(result, change)                                         \
@@ -107,7 +106,7 @@ TEST(bad_sources_are_refused) {
     } while (0)
 
 TEST(bad_pins_are_refused) {
-    SingeSim *sim = small_sim();
+    OwnSim *sim = small_sim();
     const float point[3] = {0, 0, 0}, bad_point[3] = {0, NAN, 0}, far_point[3] = {1e30f, 0, 0};
     const uint32_t vertices[2] = {0, 25};
     SingePoseKey key = test_key(NAN, 0, 0, 0);
@@ -128,11 +127,10 @@ TEST(bad_pins_are_refused) {
 
     SingeView view = singe_sim_view(sim);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_int_equal(view.particle_flags[i], SINGE_ALIVE);
-    singe_sim_destroy(sim);
 }
 
 TEST(bad_colliders_and_wind_are_refused) {
-    SingeSim *sim = small_sim();
+    OwnSim *sim = small_sim();
     SingeColliderDef def = singe_default_collider();
     SingeColliderId id;
     def.rotation[3] = 0;
@@ -158,7 +156,6 @@ TEST(bad_colliders_and_wind_are_refused) {
     wind.struct_size = 0;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_wind(sim, &wind));
     test_steps(sim, 1);
-    singe_sim_destroy(sim);
 }
 
 /// The size of an older header's struct whose fields end there, or before the padding that it would need.
@@ -169,8 +166,8 @@ TEST(rubbish_beyond_an_older_def_is_not_read) {
     SingeSimDef def = singe_default_sim();
     def.struct_size = OLDER(SingeSimDef, heat_tolerance);
     def.heat_tolerance = NAN, def.wind.struct_size = 0, def.solver.substeps = -1;
-    SingeSim *sim = test_create(&def);
-    TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
+    OwnSim *sim = test_create(&def);
+    OwnTestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     sheet.struct_size = OLDER(SingeSheetDef, drop_pieces_below);
     sheet.drop_pieces_below = NAN;
@@ -201,8 +198,6 @@ TEST(rubbish_beyond_an_older_def_is_not_read) {
     wind.gust = 1, wind.gust_time = NAN;
     test_ok(sim, singe_sim_set_wind(sim, &wind));
     test_steps(sim, 3);
-    singe_sim_destroy(sim);
-    test_mesh_free(&mesh);
 }
 
 /// An older header's wind inside the simulation's Def is smaller, and what comes after it lies earlier.
@@ -228,7 +223,7 @@ TEST(a_def_inside_may_be_older) {
     def.wind.struct_size = sizeof def.wind;
     assert_int_equal(singe_sim_create(&def, &new, NULL), SINGE_OK);
 
-    TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
+    OwnTestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     SingeSim *both[2] = {old, new};
     for (int i = 0; i < 2; i++) {
@@ -240,7 +235,6 @@ TEST(a_def_inside_may_be_older) {
     test_assert_same(old, new);
     singe_sim_destroy(old);
     singe_sim_destroy(new);
-    test_mesh_free(&mesh);
 }
 
 TEST(fields_of_newer_defs_are_ignored) {
@@ -250,15 +244,14 @@ TEST(fields_of_newer_defs_are_ignored) {
     } wind = {singe_default_wind(), {NAN, 1, 2, 3}};
 
     wind.wind.struct_size = sizeof wind;
-    SingeSim *sim = small_sim();
+    OwnSim *sim = small_sim();
     test_ok(sim, singe_sim_set_wind(sim, &wind.wind));
     test_steps(sim, 1);
-    singe_sim_destroy(sim);
 }
 
 /// The simulation copies what it is given.
 TEST(defs_are_copied) {
-    SingeSim *a = small_sim(), *b = small_sim();
+    OwnSim *a = small_sim(), *b = small_sim();
     for (int i = 0; i < 2; i++) {
         SingePoseKey keys[2] = {test_key(0, 0, 0, 0), test_key(0.1f, 0.04f, 0, 0)};
         float grey[4] = {0, 1, 0.5f, 0.2f};
@@ -276,6 +269,4 @@ TEST(defs_are_copied) {
     }
 
     test_steps_alike(a, b, 10);
-    singe_sim_destroy(a);
-    singe_sim_destroy(b);
 }

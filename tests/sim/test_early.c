@@ -12,9 +12,8 @@ TEST(the_order_does_not_matter) {
     assert_memory_equal(&early.ball, &late.ball, sizeof late.ball);
     assert_memory_equal(&early.vertices, &late.vertices, sizeof late.vertices);
     for (int k = 0; k < 2; k++, test_steps(late.sim, 40), test_steps(early.sim, 40)) {
-        TestBytes bytes = test_save(late.sim);
+        OwnTestBytes bytes = test_save(late.sim);
         test_assert_saved(early.sim, &bytes);
-        free(bytes.data);
     }
 
     test_assert_same(late.sim, early.sim);
@@ -26,8 +25,8 @@ TEST(the_order_does_not_matter) {
 /// An object that is invalid fails at the commit as it would after it, and the commit can be repeated.
 TEST(invalid_objects_fail_at_the_commit) {
     SingeSimDef def = singe_default_sim();
-    SingeSim *sim = test_create(&def);
-    TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
+    OwnSim *sim = test_create(&def);
+    OwnTestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     sheet.uv = NULL;
 
@@ -57,8 +56,6 @@ TEST(invalid_objects_fail_at_the_commit) {
     assert_false(singe_sim_view(sim).particle_flags[4] & SINGE_PINNED);
     test_ok(sim, singe_sim_remove_pin(sim, pin_id));
     assert_false(singe_sim_view(sim).particle_flags[3] & SINGE_PINNED);
-    test_mesh_free(&mesh);
-    singe_sim_destroy(sim);
 }
 
 /// Removed before the commit, an object leaves nothing behind.
@@ -128,7 +125,7 @@ TEST(handles_may_be_left_out) {
         SingeSimDef def = singe_default_sim();
         test_ok(NULL, singe_sim_create(&def, &sims[k], NULL));
 
-        TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
+        OwnTestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
         SingeSheetDef sheet = test_sheet(&mesh);
         SingePinDef pin = singe_default_pin();
         SingeSourceDef spot = singe_default_source();
@@ -151,7 +148,6 @@ TEST(handles_may_be_left_out) {
         test_refused(sims[k], SINGE_ERROR_ARGUMENT, singe_sim_add_pin(sims[k], &pin, k ? NULL : &pin_id));
         test_ok(sims[k], singe_sim_commit(sims[k]));
         test_steps(sims[k], 10);
-        test_mesh_free(&mesh);
     }
 
     test_assert_same(sims[0], sims[1]);
@@ -166,7 +162,7 @@ TEST(user_data_is_the_callers) {
     SingeSimDef def = singe_default_sim();
 
     test_ok(NULL, singe_sim_create(&def, &sim, NULL));
-    TestMesh mesh = test_grid(2, 2, 0.01f, 0.01f);
+    OwnTestMesh mesh = test_grid(2, 2, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     SingeSourceDef source = singe_default_source();
     SingeColliderDef collider = singe_default_collider();
@@ -206,7 +202,6 @@ TEST(user_data_is_the_callers) {
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_collider_user_data(sim, collider_id, ours));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_pin_user_data(sim, (SingePinId){5, 5}, ours));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_sheet_user_data(sim, (SingeSheetId){5, 1}, ours));
-    test_mesh_free(&mesh);
     singe_sim_destroy(sim);
     singe_sim_destroy(copy);
 }

@@ -9,7 +9,7 @@ static SingeSimDef calm(void) {
 }
 
 TEST(a_particle_ignites_once) {
-    TestScene scene = scene_make(NULL, 14);
+    OwnTestScene scene = scene_make(NULL, 14);
     SingeView view = singe_sim_view(scene.sim);
     unsigned char *seen = calloc(view.particle_count, 1);
 
@@ -40,7 +40,6 @@ TEST(a_particle_ignites_once) {
 
     assert_true(ignited > 50);
     free(seen);
-    singe_sim_destroy(scene.sim);
 }
 
 typedef struct Tally {
@@ -61,7 +60,7 @@ static void tally(const SingeSim *sim, Tally *tally_) {
 TEST(a_disc_burns_one_hole) {
     SingeSimDef def = calm();
     SingeMaterialDef material = scene_quick_material();
-    SingeSim *sim = test_sim(&def, test_grid(24, 24, 0.005f, 0.005f), &material);
+    OwnSim *sim = test_sim(&def, test_grid(24, 24, 0.005f, 0.005f), &material);
 
     test_spot(sim, 0.061f, 0.0605f, 0, 0.01f, 1500, 2000);
     Tally seen = {0};
@@ -79,7 +78,6 @@ TEST(a_disc_burns_one_hole) {
     assert_true(hypotf(seen.hole.position[0] - 0.06f, seen.hole.position[1] - 0.06f) < 0.012f);
     assert_true(singe_sim_view(sim).time_burnt[seen.hole.element] >= 0);
     assert_int_equal(singe_sim_stats(sim).pieces, 1);
-    singe_sim_destroy(sim);
 }
 
 /// Heats a line across the strip at rest position x.
@@ -96,7 +94,7 @@ TEST(a_cut_makes_one_piece) {
     SingeSimDef def = calm();
     SingeMaterialDef material = scene_quick_material();
     material.heat_share = singe_param(0); // burns where it is heated and nowhere else
-    SingeSim *sim = test_sim(&def, test_grid(30, 4, 0.005f, 0.005f), &material);
+    OwnSim *sim = test_sim(&def, test_grid(30, 4, 0.005f, 0.005f), &material);
     float line = 0.05f;
     SingeSourceDef source = singe_default_source();
     source.kind = SINGE_SOURCE_CALLBACK, source.callback = hot_line, source.callback_context = &line;
@@ -122,8 +120,6 @@ TEST(a_cut_makes_one_piece) {
         int32_t expected = !alive ? -1 : view.rest_position[i][0] > line ? 0 : view.piece[0];
         assert_int_equal(view.piece[i], expected);
     }
-
-    singe_sim_destroy(sim);
 }
 
 /// The switches: nothing goes with ablation off, or with m_loss under m_min.
@@ -133,7 +129,7 @@ TEST(no_cells_vanish_with_ablation_off) {
         SingeMaterialDef material = scene_quick_material();
         if (which) material.mass_loss = singe_param(0.1f);
         else material.ablate = false;
-        SingeSim *sim = test_sim(&def, test_grid(10, 10, 0.005f, 0.005f), &material);
+        OwnSim *sim = test_sim(&def, test_grid(10, 10, 0.005f, 0.005f), &material);
         test_spot(sim, 0.025f, 0.025f, 0, 0.02f, 1500, 2000);
 
         Tally seen = {0};
@@ -148,6 +144,5 @@ TEST(no_cells_vanish_with_ablation_off) {
         assert_int_equal(stats.particles, singe_sim_view(sim).particle_count);
         assert_int_equal(seen.holes + seen.pieces, 0);
         assert_true(seen.ignited > 50);
-        singe_sim_destroy(sim);
     }
 }

@@ -51,7 +51,7 @@ TEST(a_failed_step_changes_nothing) {
 /// undone.
 TEST(a_failure_late_in_the_step_changes_nothing) {
     TestScene scene = scene_make(NULL, 10);
-    SingeSim *sim = scene.sim;
+    OwnSim *sim = scene.sim;
     test_steps(sim, 30);
 
     float now = (float)singe_sim_view(sim).time;
@@ -73,7 +73,6 @@ TEST(a_failure_late_in_the_step_changes_nothing) {
     test_assert_same(sim, copy);
     test_steps_alike(sim, copy, 20);
     singe_sim_destroy(copy);
-    singe_sim_destroy(sim);
 }
 
 typedef struct Asked {
@@ -93,7 +92,7 @@ static SingeSim *crowd_make(Asked *asked, int threads) {
 
     SingeSim *sim = test_create(&def);
     for (int s = 0; s < 4; s++) {
-        TestMesh mesh = test_grid(9, 9, 0.007f, 0.007f);
+        OwnTestMesh mesh = test_grid(9, 9, 0.007f, 0.007f);
         test_mesh_move(&mesh, -0.03f, -0.03f, 0.0015f * (float)(s / 2 + 10));
         for (uint32_t v = 0; v < mesh.vertex_count && s == 1; v++)
             mesh.positions[3 * v + 2] += 0.1f * (mesh.positions[3 * v] + 0.01f);
@@ -102,7 +101,6 @@ static SingeSim *crowd_make(Asked *asked, int threads) {
         sheet.velocity[2] = s < 2 ? 3 : -3;
         sheet.material.temperature = singe_param(s == 0 ? 800 : 300);
         test_add_sheet(sim, &sheet);
-        test_mesh_free(&mesh);
     }
 
     SingeColliderDef ball = singe_default_collider();
@@ -145,7 +143,7 @@ static int give_up(SingeSim *sim, Asked *asked) {
 TEST(a_step_that_is_given_up_changes_nothing) {
     for (int threads = 1; threads <= 2; threads++) {
         Asked asked = {0}, never = {0};
-        SingeSim *sim = crowd_make(&asked, threads), *twin = crowd_make(&never, 1);
+        OwnSim *sim = crowd_make(&asked, threads), *twin = crowd_make(&never, 1);
         int given_up = 0;
         for (int step = 0; step < 30; step++) {
             given_up += give_up(sim, &asked);
@@ -160,8 +158,6 @@ TEST(a_step_that_is_given_up_changes_nothing) {
         assert_true(given_up > 150 && timers.contact_stops > 0 && singe_sim_stats(sim).intersecting_cells > 0);
         assert_int_equal(timers.contact_stops, other.contact_stops);
         assert_int_equal(timers.contact_pairs, other.contact_pairs);
-        singe_sim_destroy(sim);
-        singe_sim_destroy(twin);
     }
 }
 
@@ -271,7 +267,7 @@ TEST(failed_calls_can_be_repeated) {
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
     SingeSim *sim = test_create(&def);
-    TestMesh mesh = test_grid(5, 5, 0.01f, 0.01f);
+    OwnTestMesh mesh = test_grid(5, 5, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     SingeSheetId sheet_id;
     SingePoseKey key = test_key(0, 0, 0, 0);
@@ -319,5 +315,4 @@ TEST(failed_calls_can_be_repeated) {
     test_steps(sim, 3);
     singe_sim_destroy(sim);
     assert_int_equal(hook.blocks, 0);
-    test_mesh_free(&mesh);
 }

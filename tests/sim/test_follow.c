@@ -130,7 +130,7 @@ static void sweep(double speed, bool at_once, double *behind, double *ahead) {
         p[0] = p[1], p[1] = x - 0.05f, p[2] -= 0.05f;
     }
 
-    SingeSim *sim = test_sim(&def, mesh, NULL);
+    OwnSim *sim = test_sim(&def, mesh, NULL);
     SingeColliderDef collider = block_def(&block, SINGE_COLLIDER_DEFORMING);
     SingeColliderId id = test_add_collider(sim, &collider);
     const double end = 0.2 / speed; // to x = 0.1
@@ -145,8 +145,6 @@ static void sweep(double speed, bool at_once, double *behind, double *ahead) {
         *behind = fmin(*behind, (double)view.position[v][0]);
         *ahead = fmax(*ahead, (double)view.position[v][0]);
     }
-
-    singe_sim_destroy(sim);
 }
 
 TEST(nothing_passes_a_thin_plate) {
@@ -168,7 +166,7 @@ TEST(a_swelling_block_lifts) {
     block_make(&block, half, centre);
 
     SingeSimDef def = quiet();
-    SingeSim *sim = sheet_at(&def, TOP + 0.002f);
+    OwnSim *sim = sheet_at(&def, TOP + 0.002f);
     SingeColliderDef collider = block_def(&block, SINGE_COLLIDER_DEFORMING);
     SingeColliderId id = test_add_collider(sim, &collider);
     test_steps(sim, 120);
@@ -183,7 +181,6 @@ TEST(a_swelling_block_lifts) {
     assert_true(fabs(mean_of(sim, 2) - (double)TOP - 0.04) < 0.003);
     test_steps(sim, 120); // and it stays
     assert_true(fabs(mean_of(sim, 2) - (double)TOP - 0.04) < 0.002);
-    singe_sim_destroy(sim);
 }
 
 /// Two corners go round; frame by frame they are where they were set.
@@ -262,10 +259,10 @@ TEST(pins_follow_and_runs_resume) {
     test_ok(sim, singe_sim_set_collider_vertices(sim, body, moved[0], 13 / 48.0));
     test_steps(sim, 4);
 
-    TestBytes bytes = test_save(sim);
+    OwnTestBytes bytes = test_save(sim);
     SingeSimDef hooks = singe_default_sim();
     SingeError error = {0};
-    SingeSim *resumed = test_load(NULL, &bytes);
+    OwnSim *resumed = test_load(NULL, &bytes);
     test_assert_same(sim, resumed);
 
     test_steps_alike(sim, resumed, 6);
@@ -292,8 +289,6 @@ TEST(pins_follow_and_runs_resume) {
     test_ok(sim, singe_sim_move_pin(sim, pin, 1, &still));
     test_steps(sim, 3);
     assert_true(fabsf(singe_sim_view(sim).position[corner][2] - before) < 1e-6f);
-    free(bytes.data);
-    singe_sim_destroy(resumed);
     singe_sim_destroy(threads);
     singe_sim_destroy(sim);
 }
@@ -303,7 +298,7 @@ TEST(bad_positions_are_refused) {
     SingePinId pin;
     SingeColliderId body, box;
     Block block;
-    SingeSim *sim = cape(&def, &pin, &body, &block), *twin = cape(&def, &pin, &body, &block);
+    OwnSim *sim = cape(&def, &pin, &body, &block), *twin = cape(&def, &pin, &body, &block);
     SingeColliderDef rigid = singe_default_collider();
     rigid.kind = SINGE_COLLIDER_SPHERE;
     rigid.position[2] = -5;
@@ -333,8 +328,6 @@ TEST(bad_positions_are_refused) {
     open.triangle_count--;
     test_refused(sim, SINGE_ERROR_MESH, singe_sim_add_collider(sim, &open, &box));
     test_steps_alike(sim, twin, 20);
-    singe_sim_destroy(sim);
-    singe_sim_destroy(twin);
 }
 
 /// Makes a simulation of the block alone.

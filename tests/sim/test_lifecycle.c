@@ -55,8 +55,8 @@ TEST(calls_before_the_commit_are_refused) {
 }
 
 TEST(sheets_after_the_commit_are_refused) {
-    SingeSim *sim = test_sim(NULL, test_grid(3, 3, 0.01f, 0.01f), NULL);
-    TestMesh mesh = test_grid(1, 1, 1, 1);
+    OwnSim *sim = test_sim(NULL, test_grid(3, 3, 0.01f, 0.01f), NULL);
+    OwnTestMesh mesh = test_grid(1, 1, 1, 1);
     SingeSheetDef sheet = test_sheet(&mesh);
     SingeSheetId id = {7, 7};
 
@@ -65,14 +65,12 @@ TEST(sheets_after_the_commit_are_refused) {
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_commit(sim));
     test_ok(sim, singe_sim_step(sim));
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_add_sheet(sim, &sheet, &id));
-    test_mesh_free(&mesh);
-    singe_sim_destroy(sim);
 }
 
 /// A sheet that is refused leaves the simulation as it was; so does a commit that is refused.
 TEST(a_refused_sheet_changes_nothing) {
     SingeSim *sim = create();
-    TestMesh good = test_grid(2, 2, 0.01f, 0.01f), bad = test_grid(2, 2, 0.01f, 0.01f);
+    OwnTestMesh good = test_grid(2, 2, 0.01f, 0.01f), bad = test_grid(2, 2, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&bad);
     SingeSheetId id;
 
@@ -96,7 +94,7 @@ TEST(a_refused_sheet_changes_nothing) {
     singe_sim_destroy(sim);
 
     sim = create(); // the third cell on one edge is found at the commit
-    TestMesh fan = test_grid(1, 2, 0.01f, 0.01f);
+    OwnTestMesh fan = test_grid(1, 2, 0.01f, 0.01f);
     for (int i = 0; i < 2; i++) test_mesh_add_vertex(&fan, 0.01f * (float)i, 0.005f, 0.02f);
     uint32_t cells[12];
     memcpy(cells, fan.cells, sizeof fan.cells[0] * 8);
@@ -118,14 +116,11 @@ TEST(a_refused_sheet_changes_nothing) {
     }
 
     singe_sim_destroy(sim);
-    test_mesh_free(&fan);
-    test_mesh_free(&good);
-    test_mesh_free(&bad);
 }
 
 TEST(particles_are_numbered_as_documented) {
-    SingeSim *sim = create();
-    TestMesh first = test_grid(2, 3, 0.01f, 0.02f), second = test_grid(1, 1, 0.03f, 0.03f);
+    OwnSim *sim = create();
+    OwnTestMesh first = test_grid(2, 3, 0.01f, 0.02f), second = test_grid(1, 1, 0.03f, 0.03f);
     test_mesh_add_vertex(&first, 5, 5, 5);
     test_mesh_move(&second, 1, 0, 0);
     SingeSheetDef a = test_sheet(&first), b = test_sheet(&second);
@@ -177,10 +172,6 @@ TEST(particles_are_numbered_as_documented) {
     assert_int_equal(counts.springs[SINGE_YELLOW], 14);
     assert_int_equal(counts.springs[SINGE_BLUE], 17 + 4);
     assert_int_equal(counts.springs[SINGE_GREEN], 7);
-
-    singe_sim_destroy(sim);
-    test_mesh_free(&first);
-    test_mesh_free(&second);
 }
 
 typedef struct Heard {
@@ -215,14 +206,13 @@ TEST(the_commit_is_logged) {
         def.log = (SingeLog){hear, &heard};
         if (slow) def.time_step = 0.1f;
 
-        SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.005f, 0.005f), NULL);
+        OwnSim *sim = test_sim(&def, test_grid(8, 8, 0.005f, 0.005f), NULL);
         assert_int_equal(heard.lines[SINGE_LOG_INFO], 2);
         assert_non_null(strstr(heard.last[SINGE_LOG_INFO], "cells of 5 mm"));
         assert_int_equal(heard.lines[SINGE_LOG_WARNING], slow);
         if (slow) assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], "12.5 ms"));
         test_steps(sim, 1);
         assert_int_equal(heard.lines[SINGE_LOG_INFO] + heard.lines[SINGE_LOG_WARNING], 2 + slow);
-        singe_sim_destroy(sim);
     }
 }
 
@@ -233,7 +223,7 @@ TEST(sheets_that_begin_inside_a_collider_are_logged) {
         Heard heard = {0};
         SingeSimDef def = singe_default_sim();
         def.log = (SingeLog){hear, &heard};
-        SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.005f, 0.005f), NULL);
+        OwnSim *sim = test_sim(&def, test_grid(8, 8, 0.005f, 0.005f), NULL);
         SingeColliderDef plane = singe_default_collider();
         SingePoseKey key = {.position = {0, 0, deep ? 0.0041f : 0.0039f}, .rotation = {0, 0, 0, 1}};
 
@@ -244,7 +234,6 @@ TEST(sheets_that_begin_inside_a_collider_are_logged) {
 
         const char *reported = "100 % of the sheets begin inside it, up to 0.0051 m";
         if (deep) assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], reported));
-        singe_sim_destroy(sim);
     }
 }
 
@@ -256,10 +245,10 @@ TEST(pins_that_miss_their_sheet_are_logged) {
             Heard heard = {0};
             SingeSimDef def = singe_default_sim();
             def.log = (SingeLog){hear, &heard};
-            TestMesh mesh = test_grid(8, 8, 0.005f, 0.005f);
+            OwnTestMesh mesh = test_grid(8, 8, 0.005f, 0.005f);
             const SingeSheetDef sheet = test_sheet(&mesh);
             SingePinDef pin = singe_default_pin();
-            SingeSim *sim = test_create(&def);
+            OwnSim *sim = test_create(&def);
             const SingeSheetId id = test_add_sheet(sim, &sheet);
             pin.sheet = id;
             pin.point_count = 2;
@@ -272,13 +261,11 @@ TEST(pins_that_miss_their_sheet_are_logged) {
             assert_int_equal(heard.lines[SINGE_LOG_WARNING], misses);
             if (misses)
                 assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], "pin 0: its point [0, 0, 0.3] m misses sheet"));
-            singe_sim_destroy(sim);
-            test_mesh_free(&mesh);
         }
 }
 
 TEST(timers_and_time_grow) {
-    TestScene scene = scene_make(NULL, 10);
+    OwnTestScene scene = scene_make(NULL, 10);
     SingeTimers last = singe_sim_timers(scene.sim);
     assert_int_equal(last.steps, 0);
 
@@ -299,7 +286,6 @@ TEST(timers_and_time_grow) {
     assert_true(last.heat_iterations > 40 && last.contacts > 0);
     for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++)
         assert_true(last.seconds[stage] > 0 && last.seconds[stage] < 60);
-    singe_sim_destroy(scene.sim);
 }
 
 static void count_warnings(void *context, SingeLogLevel level, const char *line) {

@@ -18,7 +18,7 @@ static float mean_height(SingeSim *sim) {
 
 TEST(handles_go_stale) {
     TestScene scene = scene_make(NULL, 8);
-    SingeSim *sim = scene.sim;
+    OwnSim *sim = scene.sim;
     SingePoseKey key = test_key(0, 0, 0, 0);
     SingeSourceDef source = singe_default_source();
     source.path_count = 1, source.path = &key;
@@ -56,7 +56,6 @@ TEST(handles_go_stale) {
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_source(sim, (SingeSourceId){1000000, 1}));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_pin(sim, (SingePinId){UINT32_MAX, UINT32_MAX}));
     test_steps(sim, 5);
-    singe_sim_destroy(sim);
 }
 
 TEST(refused_moves_change_nothing) {
@@ -80,7 +79,7 @@ TEST(refused_moves_change_nothing) {
 
 TEST(sources_come_and_go) {
     SingeSimDef def = weightless();
-    SingeSim *sim = test_sim(&def, test_grid(10, 10, 0.01f, 0.01f), NULL);
+    OwnSim *sim = test_sim(&def, test_grid(10, 10, 0.01f, 0.01f), NULL);
     test_steps(sim, 2);
     assert_true(heat_in(sim) == 0);
 
@@ -113,12 +112,10 @@ TEST(sources_come_and_go) {
         test_ok(sim, singe_sim_step(sim));
         assert_int_equal(heat_in(sim) > before, i == 2 || i == 3);
     }
-
-    singe_sim_destroy(sim);
 }
 
 TEST(pins_hold_move_and_let_go) {
-    SingeSim *sim = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL);
+    OwnSim *sim = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL);
     SingeView view = singe_sim_view(sim);
     test_steps(sim, 10);
     assert_true(view.position[0][2] < 0); // falls
@@ -172,7 +169,6 @@ TEST(pins_hold_move_and_let_go) {
     assert_false(view.particle_flags[0] & SINGE_PINNED);
     test_steps(sim, 20);
     assert_true(view.position[0][2] < at[0][2]);
-    singe_sim_destroy(sim);
 }
 
 /// As if the host had removed them at that time; saved and loaded before and after it, too.
@@ -183,7 +179,7 @@ TEST(pins_end) {
     def.sheet = (SingeSheetId){0, 1}, def.vertex_count = 1, def.vertices = &corner;
     def.path_count = 2, def.path = path;
 
-    SingeSim *by_hand = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL);
+    OwnSim *by_hand = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL);
     SingeSim *by_end = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL), *loaded = NULL;
     SingePinId removed, ended;
     test_ok(by_hand, singe_sim_add_pin(by_hand, &def, &removed));
@@ -214,14 +210,13 @@ TEST(pins_end) {
     assert_int_equal(count, 0);
     test_ok(by_end, singe_sim_move_pin(by_end, ended, 1, path)); // its handle is still good
     test_ok(by_end, singe_sim_remove_pin(by_end, ended));
-    singe_sim_destroy(by_hand);
     singe_sim_destroy(by_end);
     singe_sim_destroy(loaded);
 }
 
 TEST(a_turning_pin_turns) {
     SingeSimDef def = weightless();
-    SingeSim *sim = test_sim(&def, test_grid(4, 4, 0.01f, 0.01f), NULL);
+    OwnSim *sim = test_sim(&def, test_grid(4, 4, 0.01f, 0.01f), NULL);
     SingePinDef pin = singe_default_pin();
     const uint32_t vertices[] = {0, 4};
     const float s = sqrtf(0.5f);
@@ -235,7 +230,6 @@ TEST(a_turning_pin_turns) {
     SingeView view = singe_sim_view(sim);
     assert_true(fabsf(view.position[4][0]) < 1e-6f && fabsf(view.position[4][1] - 0.04f) < 1e-6f);
     assert_true(fabsf(view.position[0][0]) < 1e-6f && fabsf(view.position[0][1]) < 1e-6f);
-    singe_sim_destroy(sim);
 }
 
 /// The nearest vertex of a point is never one that no cell uses.
@@ -243,18 +237,17 @@ TEST(unused_vertices_are_not_pinned) {
     TestMesh mesh = test_grid(2, 2, 0.01f, 0.01f);
     test_mesh_add_vertex(&mesh, 0.03f, 0.03f, 0);
 
-    SingeSim *sim = test_sim(NULL, mesh, NULL);
+    OwnSim *sim = test_sim(NULL, mesh, NULL);
     const float point[3] = {0.03f, 0.03f, 0};
     SingePinDef pin = singe_default_pin();
     pin.sheet = (SingeSheetId){0, 1}, pin.point_count = 1, pin.points = point, pin.radius = 0;
     test_add_pin(sim, &pin);
     assert_true(singe_sim_view(sim).particle_flags[8] & SINGE_PINNED);
     assert_int_equal(singe_sim_view(sim).particle_flags[9], 0);
-    singe_sim_destroy(sim);
 }
 
 TEST(pins_on_one_particle_are_limited) {
-    SingeSim *sim = test_sim(NULL, test_grid(2, 2, 0.01f, 0.01f), NULL);
+    OwnSim *sim = test_sim(NULL, test_grid(2, 2, 0.01f, 0.01f), NULL);
     const uint32_t vertex = 4;
     SingePinDef pin = singe_default_pin();
     SingePinId ids[256];
@@ -270,13 +263,12 @@ TEST(pins_on_one_particle_are_limited) {
     }
 
     assert_false(singe_sim_view(sim).particle_flags[4] & SINGE_PINNED);
-    singe_sim_destroy(sim);
 }
 
 /// Neighbours pinned anywhere on a ring of springs, and all of it.
 TEST(rings_can_be_pinned) {
     for (uint32_t first = 0; first < 9; first++) {
-        SingeSim *sim = test_sim(NULL, test_cylinder(8, 4, 0.03f, 0.05f), NULL);
+        OwnSim *sim = test_sim(NULL, test_cylinder(8, 4, 0.03f, 0.05f), NULL);
         uint32_t vertices[8];
         for (uint32_t k = 0; k < 8; k++) vertices[k] = first < 8 && k > 1 ? (first + 1) % 8 : (first + k) % 8;
 
@@ -285,12 +277,11 @@ TEST(rings_can_be_pinned) {
         test_add_pin(sim, &pin);
         for (int i = 0; i < 20; i++)
             if (singe_sim_step(sim)) fail_msg("vertices from %u on pinned: %s", first, singe_sim_error(sim)->message);
-        singe_sim_destroy(sim);
     }
 }
 
 TEST(colliders_catch_move_and_go) {
-    SingeSim *sim = test_sim(NULL, test_grid(8, 8, 0.01f, 0.01f), NULL);
+    OwnSim *sim = test_sim(NULL, test_grid(8, 8, 0.01f, 0.01f), NULL);
     SingePoseKey low = test_key(0, 0, 0, -0.01f);
     SingeColliderDef def = singe_default_collider();
     def.path_count = 1, def.path = &low;
@@ -313,12 +304,11 @@ TEST(colliders_catch_move_and_go) {
     test_steps(sim, 150);
     assert_true(mean_height(sim) < 0.02f);
     assert_int_equal(singe_sim_timers(sim).contacts, contacts);
-    singe_sim_destroy(sim);
 }
 
 TEST(hot_colliders_heat) {
     SingeSimDef def = weightless();
-    SingeSim *sim = test_sim(&def, test_grid(4, 4, 0.01f, 0.01f), NULL);
+    OwnSim *sim = test_sim(&def, test_grid(4, 4, 0.01f, 0.01f), NULL);
     SingePoseKey key = test_key(0, 0, 0, -0.001f);
     SingeColliderDef plane = singe_default_collider();
     plane.path_count = 1, plane.path = &key, plane.conductance = 100, plane.temperature = 350;
@@ -327,13 +317,12 @@ TEST(hot_colliders_heat) {
     test_steps(sim, 60);
     assert_true(heat_in(sim) > 0);
     assert_true(singe_sim_stats(sim).temperature_max > 294 && singe_sim_stats(sim).temperature_max < 350);
-    singe_sim_destroy(sim);
 }
 
 TEST(wind_blows) {
     SingeSimDef def = weightless();
     TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
-    SingeSim *sim = test_sim(&def, mesh, NULL);
+    OwnSim *sim = test_sim(&def, mesh, NULL);
 
     test_steps(sim, 20);
     assert_true(fabsf(mean_height(sim)) < 1e-4f);
@@ -343,7 +332,6 @@ TEST(wind_blows) {
     test_ok(sim, singe_sim_set_wind(sim, &wind));
     test_steps(sim, 60);
     assert_true(mean_height(sim) > 0.01f);
-    singe_sim_destroy(sim);
 }
 
 static float callback_seen_time;
@@ -356,7 +344,7 @@ static void flux_into_first(void *context, const struct SingeView *view, float *
 
 TEST(callbacks_can_be_exchanged) {
     SingeSimDef def = weightless();
-    SingeSim *sim = test_sim(&def, test_grid(4, 4, 0.01f, 0.01f), NULL);
+    OwnSim *sim = test_sim(&def, test_grid(4, 4, 0.01f, 0.01f), NULL);
     SingeSourceDef source = singe_default_source();
     source.kind = SINGE_SOURCE_CALLBACK; // none yet
     SingeSourceId id = test_add_source(sim, &source);
@@ -377,5 +365,4 @@ TEST(callbacks_can_be_exchanged) {
     double before = heat_in(sim);
     test_ok(sim, singe_sim_step(sim));
     assert_true(heat_in(sim) == before);
-    singe_sim_destroy(sim);
 }

@@ -118,7 +118,7 @@ static int try_table(SingeSim *sim, const DefTable *table, const void *standard,
 
 TEST(ranges_match_the_tables) {
     SingeSimDef def = singe_default_sim();
-    SingeSim *sim = test_create(&def);
+    OwnSim *sim = test_create(&def);
     int tried = try_table(sim, &sim_table, &def, sizeof def, try_sim);
     tried += try_table(sim, &solver_table, &def.solver, sizeof def.solver, try_solver);
     tried += try_table(sim, &gas_table, &def.gas, sizeof def.gas, try_gas);
@@ -155,7 +155,7 @@ TEST(ranges_match_the_tables) {
     pin.vertices = &vertex;
     tried += try_table(sim, &pin_table, &pin, sizeof pin, try_pin);
 
-    SingeSim *drawn = test_sim(NULL, test_grid(4, 4, 0.05f, 0.05f), NULL);
+    OwnSim *drawn = test_sim(NULL, test_grid(4, 4, 0.05f, 0.05f), NULL);
     const float triangle[9] = {0.05f, 0.05f, 0, 0.1f, 0.05f, 0, 0.05f, 0.1f, 0};
     SingeRenderMeshDef render = singe_default_render_mesh();
     render.vertex_count = 3, render.triangle_count = 1;
@@ -164,8 +164,6 @@ TEST(ranges_match_the_tables) {
 
     print_message("%d ranges\n", tried);
     assert_true(tried >= 100);
-    singe_sim_destroy(drawn);
-    singe_sim_destroy(sim);
 }
 
 /// An enum's values are 0, 1, 2, ... : tables are indexed by them.

@@ -10,10 +10,9 @@ static TestScene quiet_scene(uint32_t cells) {
 
 /// A snapshot has the values that were set: a loaded simulation makes the same steps.
 static void assert_loads_the_same(SingeSim *sim) {
-    SingeSim *loaded = test_reload(NULL, sim);
+    OwnSim *loaded = test_reload(NULL, sim);
     test_assert_same(sim, loaded);
     test_steps_alike(sim, loaded, 15);
-    singe_sim_destroy(loaded);
 }
 
 // ---- gravity, pace, ambient temperature
@@ -42,7 +41,7 @@ TEST(set_at_once_is_set_in_the_def) {
 TEST(set_later_is_saved) {
     const float gravity[3] = {0.5f, 0, -20};
     for (int k = 0; k < 3; k++) {
-        TestScene scene = quiet_scene(8), twin = quiet_scene(8);
+        OwnTestScene scene = quiet_scene(8), twin = quiet_scene(8);
         test_steps(scene.sim, 30);
         test_steps(twin.sim, 30);
         if (k == 0) test_ok(scene.sim, singe_sim_set_gravity(scene.sim, gravity));
@@ -54,8 +53,6 @@ TEST(set_later_is_saved) {
         SingeStats a = singe_sim_stats(scene.sim), b = singe_sim_stats(twin.sim);
         assert_true(a.heat_lost != b.heat_lost || a.speed_rms_unburnt != b.speed_rms_unburnt); // it matters
         assert_true(a.ledger_error < 1e-4);
-        singe_sim_destroy(scene.sim);
-        singe_sim_destroy(twin.sim);
     }
 }
 
@@ -67,16 +64,15 @@ TEST(substeps_are_those_of_the_commit) {
     material.compliance[SINGE_RED] = singe_param(1e3f);
 
     const float gravity[3] = {0, 0, -200};
-    SingeSim *sim = test_sim(&def, test_grid(20, 20, 0.00125f, 0.00125f), &material);
+    OwnSim *sim = test_sim(&def, test_grid(20, 20, 0.00125f, 0.00125f), &material);
     test_steps(sim, 3);
     test_ok(sim, singe_sim_set_gravity(sim, gravity));
     assert_loads_the_same(sim);
-    singe_sim_destroy(sim);
 }
 
 /// A sheet that lies still in warmer air takes heat from it, and its ledger goes on without a jump.
 TEST(warmer_air_warms) {
-    SingeSim *sim = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL);
+    OwnSim *sim = test_sim(NULL, test_grid(6, 6, 0.01f, 0.01f), NULL);
     test_steps(sim, 10);
     assert_true(singe_sim_stats(sim).heat_lost == 0);
     test_ok(sim, singe_sim_set_pace(sim, 10));
@@ -90,7 +86,6 @@ TEST(warmer_air_warms) {
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.temperature_max > 300 && stats.temperature_max < 400);
     assert_true(stats.heat_lost < 0 && stats.ledgers_close);
-    singe_sim_destroy(sim);
 }
 
 TEST(refused_numbers_change_nothing) {
@@ -127,7 +122,7 @@ TEST(refused_numbers_change_nothing) {
 
 /// m/s, the largest difference between the velocities of the surface's vertices and their displacement from `from` on.
 static float surface_differs(SingeSim *sim, float (*from)[3], double seconds) {
-    SingeSurface surface = {0};
+    OwnSurface surface = {0};
     test_ok(sim, singe_sim_surface(sim, &surface));
 
     float worst = 0;
@@ -137,7 +132,6 @@ static float surface_differs(SingeSim *sim, float (*from)[3], double seconds) {
             worst = fmaxf(worst, fabsf(surface.velocity[v][k] - (seconds > 0 ? moved / (float)seconds : 0)));
         }
 
-    singe_surface_free(&surface);
     return worst;
 }
 
@@ -151,7 +145,7 @@ TEST(surfaces_have_the_displacement_since_the_last_frame_as_velocity) {
     def.velocity_steps = 4;
     def.air_density = 0;
     def.surface_detail = 1e-3f;
-    SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), NULL);
+    OwnSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), NULL);
     const double h = (double)def.time_step;
     float from[81][3];
     take_vertices(sim, from);
@@ -164,7 +158,7 @@ TEST(surfaces_have_the_displacement_since_the_last_frame_as_velocity) {
     test_steps(sim, 2);
     assert_true(surface_differs(sim, from, 2 * h) < 1e-6f);
 
-    SingeSim *loaded = test_reload(NULL, sim);
+    OwnSim *loaded = test_reload(NULL, sim);
     assert_true(surface_differs(loaded, from, 2 * h) < 1e-6f);
     test_steps(sim, 2);
     assert_true(surface_differs(sim, from, 4 * h) < 1e-6f);
@@ -172,8 +166,6 @@ TEST(surfaces_have_the_displacement_since_the_last_frame_as_velocity) {
     // the last substep is faster by the half of the frame that it is ahead of the mean
     const SingeView view = singe_sim_view(sim);
     assert_true(fabs(-(double)view.velocity[0][2] - 9.81 * 8 * h) < 0.1 * 9.81 * h);
-    singe_sim_destroy(loaded);
-    singe_sim_destroy(sim);
 }
 
 TEST(velocities_throw) {
@@ -181,7 +173,7 @@ TEST(velocities_throw) {
     memset(def.gravity, 0, sizeof def.gravity);
     def.air_density = 0;
     def.contact.enabled = true;
-    SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), NULL);
+    OwnSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), NULL);
     SingeSheetId sheet;
     assert_int_equal(singe_sim_sheets(sim, &sheet, 1), 1);
 
@@ -192,21 +184,19 @@ TEST(velocities_throw) {
     SingeView view = singe_sim_view(sim);
     for (uint32_t i = 0; i < view.particle_count; i++) assert_true(fabsf(view.velocity[i][2] - 2) < 1e-5f);
 
-    SingeSim *loaded = test_reload(NULL, sim);
+    OwnSim *loaded = test_reload(NULL, sim);
     test_steps_alike(sim, loaded, 48);
     for (uint32_t i = 0; i < view.vertex_count; i++) assert_true(fabsf(view.position[i][2] - 0.2f) < 0.01f);
 
     // a corner alone, and nothing else at first
     test_ok(sim, singe_sim_set_velocity(sim, sheet, 80, 1, up[0]));
     test_ok(sim, singe_sim_set_velocity(sim, sheet, 81, 0, NULL));
-    singe_sim_destroy(sim);
-    singe_sim_destroy(loaded);
 }
 
 // ---- materials
 
 TEST(the_same_material_changes_nothing) {
-    TestScene scene = quiet_scene(8), twin = quiet_scene(8);
+    OwnTestScene scene = quiet_scene(8), twin = quiet_scene(8);
     SingeMaterialDef material = scene_quick_material();
     material.mass_rate = singe_param_field(material.mass_rate.value, 0.12f,
                                            &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.03f, 3, 5}});
@@ -216,8 +206,6 @@ TEST(the_same_material_changes_nothing) {
     test_ok(scene.sim, singe_sim_set_material(scene.sim, scene.sheets[0], &material, NULL));
     test_assert_same(scene.sim, twin.sim);
     test_steps_alike(scene.sim, twin.sim, 25);
-    singe_sim_destroy(scene.sim);
-    singe_sim_destroy(twin.sim);
 }
 
 /// A strip that cannot burn stops the fire there, and only there.
@@ -230,7 +218,7 @@ TEST(a_wet_strip_stops_the_fire) {
         SingeSimDef def = singe_default_sim();
         def.pace = 20;
 
-        SingeSim *sim = test_sim(&def, test_grid(N, N, 0.005f, 0.005f), &dry);
+        OwnSim *sim = test_sim(&def, test_grid(N, N, 0.005f, 0.005f), &dry);
         SingeSheetId sheet;
         singe_sim_sheets(sim, &sheet, 1);
         soaked.ignition_temperature = singe_param(1e5f);
@@ -245,7 +233,6 @@ TEST(a_wet_strip_stops_the_fire) {
             if (share[v] > 0) assert_true(view.mass[v] == 1);
         assert_true(singe_sim_stats(sim).ledgers_close);
         burnt[wet] = singe_sim_stats(sim).burnt_fraction;
-        singe_sim_destroy(sim);
     }
 
     print_message("burnt: %.2f dry, %.2f with a wet half\n", burnt[0], burnt[1]);
@@ -321,7 +308,7 @@ TEST(without_memory_nothing_changes) {
 
 /// A frame of any length has the steps that fit into it; its remainder is neither lost nor simulated twice.
 TEST(frames_may_have_any_length) {
-    TestScene advanced = quiet_scene(8), stepped = quiet_scene(8);
+    OwnTestScene advanced = quiet_scene(8), stepped = quiet_scene(8);
     const double h = (double)scene_def().time_step, frames[] = {0.4, 1.7, 0, 3.1, 0.8, 12.5, 0.05};
     double sum = 0;
     uint32_t done = 0, events = 0;
@@ -352,7 +339,7 @@ TEST(frames_may_have_any_length) {
     print_message("%u steps, %u events\n", done, events);
     assert_true(events > 20);
 
-    SingeSim *loaded = test_reload(NULL, advanced.sim); // with what is left
+    OwnSim *loaded = test_reload(NULL, advanced.sim); // with what is left
     test_ok(loaded, singe_sim_advance(loaded, 0.7 * h, 0, &done));
     test_ok(advanced.sim, singe_sim_advance(advanced.sim, 0.7 * h, 0, NULL));
     assert_true(singe_sim_remainder(loaded) == singe_sim_remainder(advanced.sim) && done == 0);
@@ -360,27 +347,22 @@ TEST(frames_may_have_any_length) {
     test_ok(loaded, singe_sim_advance(loaded, 0.31 * h, 0, &done));
     test_ok(advanced.sim, singe_sim_advance(advanced.sim, 0.31 * h, 0, NULL));
     test_assert_same(loaded, advanced.sim);
-    singe_sim_destroy(loaded);
-    singe_sim_destroy(advanced.sim);
-    singe_sim_destroy(stepped.sim);
 }
 
 /// A sum of float steps that is a whole frame in exact numbers is whole here.
 TEST(frames_of_whole_steps_stay_whole) {
     SingeSimDef def = singe_default_sim();
     def.time_step = 1.0f / 480;
-    SingeSim *sim = test_sim(&def, test_grid(2, 2, 0.01f, 0.01f), NULL);
+    OwnSim *sim = test_sim(&def, test_grid(2, 2, 0.01f, 0.01f), NULL);
     for (int frame = 0; frame < 200; frame++) {
         uint32_t steps;
         test_ok(sim, singe_sim_advance(sim, 1.0 / 24, 0, &steps));
         assert_int_equal(steps, 20);
     }
-
-    singe_sim_destroy(sim);
 }
 
 TEST(advance_takes_at_most_max_steps) {
-    SingeSim *sim = test_sim(NULL, test_grid(2, 2, 0.01f, 0.01f), NULL);
+    OwnSim *sim = test_sim(NULL, test_grid(2, 2, 0.01f, 0.01f), NULL);
     const double h = (double)singe_default_sim().time_step;
     uint32_t steps;
 
@@ -392,7 +374,6 @@ TEST(advance_takes_at_most_max_steps) {
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_advance(sim, INFINITY, 0, NULL));
     assert_int_equal(steps, 0);
     assert_int_equal(singe_sim_view(sim).step, 4);
-    singe_sim_destroy(sim);
 }
 
 // ---- ranges
@@ -403,7 +384,7 @@ TEST(ranges_stay_through_tears) {
 
     def.solver.tearing = true;
     weak.strength = singe_param(0.05f), weak.char_strength = singe_param(0.05f);
-    SingeSim *sim = test_sim(&def, test_grid(10, 10, 0.01f, 0.01f), &weak);
+    OwnSim *sim = test_sim(&def, test_grid(10, 10, 0.01f, 0.01f), &weak);
     SingeSheetId sheet;
     singe_sim_sheets(sim, &sheet, 1);
 
@@ -436,5 +417,4 @@ TEST(ranges_stay_through_tears) {
     range = singe_sim_sheet_range(sim, (SingeSheetId){3, 1});
     assert_int_equal(range.vertex_count, 0);
     assert_int_equal(range.struct_size, sizeof range);
-    singe_sim_destroy(sim);
 }

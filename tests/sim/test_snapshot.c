@@ -11,10 +11,10 @@ static float flux_strength = 2000;
 TEST(resumed_runs_are_the_same) {
     static const int saves[] = {0, 1, 17, 45, 80};
     for (size_t k = 0; k < sizeof saves / sizeof *saves; k++) {
-        TestScene scene = scene_make(NULL, 14);
+        OwnTestScene scene = scene_make(NULL, 14);
         test_steps(scene.sim, saves[k]);
 
-        SingeSim *resumed = test_reload(NULL, scene.sim);
+        OwnSim *resumed = test_reload(NULL, scene.sim);
         test_assert_same(scene.sim, resumed);
         test_ok(resumed, singe_sim_set_source_callback(resumed, scene.callback, scene_flux, &flux_strength));
 
@@ -29,8 +29,6 @@ TEST(resumed_runs_are_the_same) {
 
         test_assert_same(scene.sim, resumed);
         if (saves[k] == 80) assert_true(singe_sim_stats(resumed).burnt_fraction > 0.2);
-        singe_sim_destroy(resumed);
-        singe_sim_destroy(scene.sim);
     }
 }
 
@@ -60,7 +58,7 @@ TEST(bytes_are_the_same) {
 }
 
 TEST(handles_keep_their_values) {
-    TestScene scene = scene_make(NULL, 8);
+    OwnTestScene scene = scene_make(NULL, 8);
     test_ok(scene.sim, singe_sim_remove_source(scene.sim, scene.ball));
     test_ok(scene.sim, singe_sim_remove_collider(scene.sim, scene.sphere));
     test_ok(scene.sim, singe_sim_remove_pin(scene.sim, scene.points));
@@ -95,7 +93,6 @@ TEST(handles_keep_their_values) {
     free(bytes.data);
     singe_sim_destroy(sim);
     assert_int_equal(hook.blocks, 0);
-    singe_sim_destroy(scene.sim);
 }
 
 TEST(clones_are_independent) {
@@ -105,7 +102,7 @@ TEST(clones_are_independent) {
     test_ok(scene.sim, singe_sim_clone(scene.sim, &copy));
     test_assert_same(scene.sim, copy);
 
-    TestBytes before = test_save(scene.sim);
+    OwnTestBytes before = test_save(scene.sim);
     test_steps(copy, 30); // with its callback source: no need to set it again
     test_assert_saved(scene.sim, &before);
     test_steps(scene.sim, 30);
@@ -117,7 +114,6 @@ TEST(clones_are_independent) {
     singe_sim_destroy(scene.sim);
     test_steps(copy, 2);
     singe_sim_destroy(copy);
-    free(before.data);
 }
 
 /// Damaged bytes are refused, and nothing leaks.
@@ -140,10 +136,9 @@ static void refuse(uint8_t *bytes, size_t size, const char *what) {
 }
 
 static TestBytes small_snapshot(void) {
-    TestScene scene = scene_make(NULL, 4);
+    OwnTestScene scene = scene_make(NULL, 4);
     test_steps(scene.sim, 6);
     TestBytes bytes = test_save(scene.sim);
-    singe_sim_destroy(scene.sim);
     return bytes;
 }
 
@@ -154,9 +149,9 @@ TEST(the_state_after_any_step_loads) {
     uint32_t refused = 0, loaded = 0;
     for (int k = 0; k < 4 * 3 * 3 * 3 * 3; k++) {
         SingeSimDef def = singe_default_sim();
-        SingeSim *sim = test_create(&def);
+        OwnSim *sim = test_create(&def);
 
-        TestMesh mesh = test_grid(3, 3, 0.01f, 0.01f);
+        OwnTestMesh mesh = test_grid(3, 3, 0.01f, 0.01f);
         SingeSheetDef sheet = test_sheet(&mesh);
         sheet.material.temperature = singe_param(temperatures[k % 4]);
         sheet.material.grammage = singe_param(masses[k / 4 % 3]);
@@ -183,15 +178,12 @@ TEST(the_state_after_any_step_loads) {
             singe_sim_destroy(copy);
             loaded++;
         }
-
-        test_mesh_free(&mesh);
-        singe_sim_destroy(sim);
     }
     assert_true(refused >= 81 && loaded > 100); // 1e15 K is no start
 }
 
 TEST(truncated_snapshots_are_refused) {
-    TestBytes bytes = small_snapshot();
+    OwnTestBytes bytes = small_snapshot();
     for (size_t k = 0; k < 300; k++) {
         size_t size = k < 100 ? k : (k - 100) * bytes.size / 200;
         uint8_t *cut = malloc(size ? size : 1);
@@ -206,11 +198,10 @@ TEST(truncated_snapshots_are_refused) {
     memcpy(longer, bytes.data, bytes.size);
     refuse(longer, bytes.size + 1, "a byte too many");
     free(longer);
-    free(bytes.data);
 }
 
 TEST(flipped_bits_are_noticed) {
-    TestBytes bytes = small_snapshot();
+    OwnTestBytes bytes = small_snapshot();
     for (size_t k = 0; k < 1200; k++) {
         size_t bit = k < 512 ? k : (k - 512) * (bytes.size * 8 / 688) + k % 8; // every bit of the header's 64 bytes
         if (bit / 8 >= bytes.size) continue;
@@ -219,9 +210,7 @@ TEST(flipped_bits_are_noticed) {
         bytes.data[bit / 8] ^= (uint8_t)(1 << bit % 8);
     }
 
-    SingeSim *sim = test_load(NULL, &bytes);
-    singe_sim_destroy(sim);
-    free(bytes.data);
+    OwnSim *sim = test_load(NULL, &bytes);
 }
 
 /// Puts a number at an offset of the body, and the checksum right.
@@ -236,7 +225,7 @@ static void forge(TestBytes *bytes, size_t at, uint32_t word) {
 TEST(forged_snapshots_are_refused) {
     enum { HEADER = 56 };
     static const uint32_t words[] = {0x7FC00000, 0x7F800000, 0xFF800000, 0xBF800000, 0x7F7FFFFF, 0xFFFFFFFF, 0, 1};
-    TestBytes good = small_snapshot();
+    OwnTestBytes good = small_snapshot();
     uint32_t random = 1;
     int refused = 0;
     uint32_t same;
@@ -250,7 +239,7 @@ TEST(forged_snapshots_are_refused) {
     free(untouched.data);
 
     for (int k = 0; k < 600; k++) {
-        TestBytes bytes = {malloc(good.size), good.size};
+        OwnTestBytes bytes = {malloc(good.size), good.size};
         assert_non_null(bytes.data);
         memcpy(bytes.data, good.data, good.size);
 
@@ -275,11 +264,9 @@ TEST(forged_snapshots_are_refused) {
         if (!result) singe_sim_destroy(sim);
         else assert_true(error.code == result && error.message[0]);
         assert_int_equal(hook.blocks, 0);
-        free(bytes.data);
     }
 
     assert_in_range(refused, 150, 599);
-    free(good.data);
 }
 
 /// Lets the first cell intersect a cell that does not exist.
@@ -401,25 +388,21 @@ TEST(impossible_numbers_are_refused) {
 #undef ROW
     SingeSimDef def = scene_def();
     def.contact.enabled = def.solver.tearing = def.solver.creases = true;
-    TestScene scene = scene_make(&def, 5);
+    OwnTestScene scene = scene_make(&def, 5);
     test_steps(scene.sim, 6);
     assert_true(scene.sim->state.ablate.spring_flags[SINGE_GREEN][GREEN] && !scene.sim->state.dynamics.pinned[VERTEX]);
-    TestBytes good = test_save(scene.sim);
+    OwnTestBytes good = test_save(scene.sim);
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        SingeSim *sim = test_load(NULL, &good);
+        OwnSim *sim = test_load(NULL, &good);
         test_assert_saved(sim, &good);
         rows[k].poke(sim);
-        TestBytes bytes = test_save(sim);
+        OwnTestBytes bytes = test_save(sim);
         refuse(bytes.data, bytes.size, rows[k].what);
-        free(bytes.data);
-        singe_sim_destroy(sim);
     }
-    free(good.data);
-    singe_sim_destroy(scene.sim);
 }
 
 TEST(other_versions_are_refused) {
-    TestBytes bytes = small_snapshot();
+    OwnTestBytes bytes = small_snapshot();
     SingeSimDef hooks = singe_default_sim();
     SingeSim *sim;
     SingeError error;
@@ -434,19 +417,16 @@ TEST(other_versions_are_refused) {
 
     bytes.data[0] = 'S';
     assert_int_equal(singe_sim_load(&hooks, bytes.data, bytes.size, &sim, &error), SINGE_ERROR_ARGUMENT);
-    free(bytes.data);
 }
 
 /// Time step, gravity and the rest come from the bytes, not from the hooks.
 TEST(hooks_are_only_hooks) {
-    TestScene scene = scene_make(NULL, 8);
+    OwnTestScene scene = scene_make(NULL, 8);
     test_steps(scene.sim, 5);
 
     SingeSimDef hooks = singe_default_sim();
     hooks.time_step = 0.001f, hooks.gravity[2] = 5, hooks.pace = 3, hooks.solver.substeps = 1, hooks.thread_count = 2;
-    SingeSim *sim = test_reload(&hooks, scene.sim);
+    OwnSim *sim = test_reload(&hooks, scene.sim);
     test_ok(sim, singe_sim_set_source_callback(sim, scene.callback, scene_flux, &flux_strength));
     test_steps_alike(sim, scene.sim, 5);
-    singe_sim_destroy(sim);
-    singe_sim_destroy(scene.sim);
 }

@@ -4,7 +4,7 @@
 #include "scenes.h"
 
 TEST(ledgers_close) {
-    TestScene scene = scene_make(NULL, 20);
+    OwnTestScene scene = scene_make(NULL, 20);
     double worst_heat = 0, worst_mass = 0;
     for (int i = 0; i < 250; i++) {
         test_ok(scene.sim, singe_sim_step(scene.sim));
@@ -23,7 +23,6 @@ TEST(ledgers_close) {
     SingeStats stats = singe_sim_stats(scene.sim);
     assert_true(stats.heat_of_combustion > 0 && stats.heat_lost > 0 && stats.mass_removed > 0 &&
                 stats.burnt_fraction > 0.3);
-    singe_sim_destroy(scene.sim);
 }
 
 /// What damping takes from a sheet that falls is what the energies lack, and free fall lacks nothing; a strip that swings
@@ -35,7 +34,7 @@ TEST(energies_are_accounted_for) {
     for (int damped = 0; damped < 2; damped++) {
         const double rate = damped ? 5 : 0, g = 9.81, time = 0.5, mass = 0.08 * 0.01;
         material.damping = singe_param((float)rate);
-        SingeSim *sim = test_sim(&def, test_grid(10, 10, 0.01f, 0.01f), &material);
+        OwnSim *sim = test_sim(&def, test_grid(10, 10, 0.01f, 0.01f), &material);
         test_steps(sim, 240);
         const SingeStats stats = singe_sim_stats(sim);
 
@@ -50,7 +49,6 @@ TEST(energies_are_accounted_for) {
                       stats.energy_kinetic, stats.energy_gravity, stats.energy_lost, taken);
         assert_true(fabs(stats.energy_lost - taken) < 4e-3 * fabs(stats.energy_gravity));
         assert_true(stats.energy_elastic < 1e-4 * stats.energy_kinetic);
-        singe_sim_destroy(sim);
     }
 
     // a strip held along one side falls and swings
@@ -58,7 +56,7 @@ TEST(energies_are_accounted_for) {
     def.gravity[2] = -1;
     def.solver.substeps = 24;
     def.solver.smoothing = 0;
-    SingeSim *sim = test_sim(&def, test_grid(16, 4, 0.0025f, 0.0025f), &material);
+    OwnSim *sim = test_sim(&def, test_grid(16, 4, 0.0025f, 0.0025f), &material);
     float points[3 * 10] = {0};
     for (int k = 0; k < 10; k++) points[3 * k] = k < 5 ? 0 : 0.0025f, points[3 * k + 1] = 0.0025f * (float)(k % 5);
 
@@ -77,7 +75,6 @@ TEST(energies_are_accounted_for) {
 
     print_message("a strip: weight gave %.3g J, springs held %.3g J, lost %.3g J\n", passed, elastic, lost);
     assert_true(elastic > 0.98 * passed && lost < 0.01 * passed);
-    singe_sim_destroy(sim);
 }
 
 /// A light sheet's heat spreads beside a heavy one of 10,000 K as it does alone.
@@ -97,14 +94,13 @@ TEST(a_hot_sheet_does_not_blur_another) {
         heavy.temperature =
             singe_param_field(5000, 10000, &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.02f, 2, 4}});
 
-        SingeSim *sim = test_create(&def);
+        OwnSim *sim = test_create(&def);
         for (int sheet = 0; sheet < (run < PACES ? 1 : 2); sheet++) {
-            TestMesh mesh = test_grid(CELLS, CELLS, 0.0025f, 0.0025f);
+            OwnTestMesh mesh = test_grid(CELLS, CELLS, 0.0025f, 0.0025f);
             test_mesh_move(&mesh, 0, 0, (float)sheet);
             SingeSheetDef added = test_sheet(&mesh);
             added.material = sheet ? heavy : light;
             test_add_sheet(sim, &added);
-            test_mesh_free(&mesh);
         }
 
         test_ok(sim, singe_sim_commit(sim));
@@ -123,7 +119,6 @@ TEST(a_hot_sheet_does_not_blur_another) {
             assert_true(worst < 5e-3);
             free(alone[run % PACES]);
         }
-        singe_sim_destroy(sim);
     }
 }
 
@@ -139,7 +134,7 @@ TEST(bad_cells_burn_and_stay_above_the_air) {
             for (uint32_t k = 0; k < 2; k++)
                 mesh.positions[3 * v + k] += 0.0084f * (random_unit(random_hash(v, k, seed, 9)) - 0.5f);
 
-        SingeSim *sim = test_sim(&def, mesh, &material);
+        OwnSim *sim = test_sim(&def, mesh, &material);
         test_spot(sim, 0.1f, 0.1f, 0, 0.05f, 1500, 1000);
 
         for (int step = 0; step < 160; step++) {
@@ -152,7 +147,6 @@ TEST(bad_cells_burn_and_stay_above_the_air) {
 
         SingeStats stats = singe_sim_stats(sim);
         assert_true(stats.particles < 800 && stats.ledgers_close); // of 841
-        singe_sim_destroy(sim);
     }
 }
 
@@ -162,14 +156,13 @@ TEST(ledgers_that_do_not_close_are_reported) {
     def.pace = 1e-6f;
     SingeMaterialDef material = scene_quick_material();
     material.temperature = singe_param(400);
-    SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), &material);
+    OwnSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), &material);
     test_steps(sim, 40);
 
     SingeStats stats = singe_sim_stats(sim);
     print_message("pace 1e-6: ledger error %.2g\n", stats.ledger_error);
     assert_true(stats.ledger_error > SINGE_LEDGER_BOUND && !stats.ledgers_close);
     assert_true(fabs(stats.heat_stored) < 1e-3); // next to nothing has happened
-    singe_sim_destroy(sim);
 }
 
 /// Heat of combustion: eta C dm of every particle, summed by hand over a run.
@@ -177,7 +170,7 @@ TEST(combustion_is_eta_times_mass) {
     SingeSimDef def = scene_def();
     SingeMaterialDef material = scene_quick_material();
     material.ablate = false;
-    SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), &material);
+    OwnSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), &material);
     test_spot(sim, 0.04f, 0.04f, 0, 0.02f, 1500, 1000);
     test_steps(sim, 100);
 
@@ -186,11 +179,10 @@ TEST(combustion_is_eta_times_mass) {
 
     // the mass of a step becomes heat in the next one
     assert_true(stats.heat_of_combustion > 0.9 * expected && stats.heat_of_combustion < 1.0001 * expected);
-    singe_sim_destroy(sim);
 }
 
 TEST(statistics_match_the_view) {
-    TestScene scene = scene_make(NULL, 12);
+    OwnTestScene scene = scene_make(NULL, 12);
     const float mass_loss = scene_quick_material().mass_loss.value;
     for (int round = 0; round < 6; round++) {
         test_steps(scene.sim, 20);
@@ -228,12 +220,10 @@ TEST(statistics_match_the_view) {
         assert_int_equal(stats.particles, particles);
         assert_true(stats.temperature_max == hottest);
     }
-
-    singe_sim_destroy(scene.sim);
 }
 
 TEST(a_sheet_at_rest_has_no_strain) {
-    SingeSim *sim = test_sim(NULL, test_grid(7, 5, 0.02f, 0.01f), NULL);
+    OwnSim *sim = test_sim(NULL, test_grid(7, 5, 0.02f, 0.01f), NULL);
     SingeStats stats = singe_sim_stats(sim);
     double kilograms = 0.08 * 7 * 5 * 0.02 * 0.01;
 
@@ -251,7 +241,6 @@ TEST(a_sheet_at_rest_has_no_strain) {
 
     double speed = singe_sim_stats(sim).speed_rms_unburnt; // falls freely, less a little air
     assert_true(speed > 0.1 && speed < 9.81 * 12 / 480 + 1e-6);
-    singe_sim_destroy(sim);
 }
 
 /// Heating without fire: what went in is stored or lost, and all of it is gone after long cooling.
@@ -259,7 +248,7 @@ TEST(heat_without_fire_is_stored_or_lost) {
     SingeSimDef def = scene_def();
     SingeMaterialDef material = singe_default_material();
     material.thickening = 1;
-    SingeSim *sim = test_sim(&def, test_grid(6, 6, 0.01f, 0.01f), &material);
+    OwnSim *sim = test_sim(&def, test_grid(6, 6, 0.01f, 0.01f), &material);
     SingeSourceId spot = test_spot(sim, 0.03f, 0.03f, 0, 0.05f, 450, 200);
     test_steps(sim, 30);
 
@@ -272,7 +261,6 @@ TEST(heat_without_fire_is_stored_or_lost) {
     assert_true(cold.heat_in == hot.heat_in);
     assert_true(fabs(cold.heat_stored) < 2e-3 * cold.heat_in);
     assert_true(cold.ledger_error < 1e-5);
-    singe_sim_destroy(sim);
 }
 
 /// Office paper through all four stages: the front's speed, from the pattern of times and from two gates.
@@ -282,7 +270,7 @@ TEST(a_front_runs_along_a_strip) {
     def.gravity[2] = 0;
     def.pace = 4;
 
-    SingeSim *sim = test_sim(&def, test_grid(50, 4, size, size), NULL);
+    OwnSim *sim = test_sim(&def, test_grid(50, 4, size, size), NULL);
     SingeSourceId spot = test_spot(sim, 0, 0.004f, 0, 0.006f, 1100, 200);
     double gate[2] = {0, 0}; // s, when the middle line had ignited up to 40 % and 90 %
     uint32_t hit[2] = {0, 0};
@@ -307,5 +295,4 @@ TEST(a_front_runs_along_a_strip) {
     print_message("front: %.2f mm/s between gates, %.2f mm/s by its times\n", 1e3 * speed, 1e3 * measured);
     assert_true(fabs(measured / speed - 1) < 0.05);
     assert_true(speed > 4.4e-3 && speed < 7.0e-3);
-    singe_sim_destroy(sim);
 }

@@ -8,12 +8,11 @@ enum { CELLS = 44, STEPS = 40, THREADS_MAX = 8 };
 #endif
 
 static TestBytes run(SingeSimDef def) {
-    TestScene scene = scene_make(&def, CELLS);
+    OwnTestScene scene = scene_make(&def, CELLS);
     test_steps(scene.sim, STEPS);
     SingeStats stats = singe_sim_stats(scene.sim);
     assert_true(stats.mass_burnt > 0 && stats.mass_removed > 0);
     TestBytes bytes = test_save(scene.sim);
-    singe_sim_destroy(scene.sim);
     return bytes;
 }
 
@@ -58,7 +57,7 @@ static void host_finish(void *context, void *token) {
 
 TEST(any_number_of_threads_gives_the_same_bytes) {
     SingeSimDef def = scene_def();
-    TestBytes expected = run(def);
+    OwnTestBytes expected = run(def);
     for (int threads = 2; threads <= THREADS_MAX; threads += threads < 4 ? 1 : 4) {
         def.thread_count = threads;
         char what[16] = "n threads";
@@ -71,5 +70,4 @@ TEST(any_number_of_threads_gives_the_same_bytes) {
     def.tasks = (SingeTasks){host_enqueue, host_finish, &host};
     equal(&expected, run(def), "the host's scheduler");
     assert_true(host.jobs > STEPS);
-    free(expected.data);
 }

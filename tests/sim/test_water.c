@@ -31,11 +31,10 @@ static SingeSim *lit(float moisture, bool burns) {
 
 /// Heat per kilogram of dry sheet until it ignites, J/kg.
 static double heat_of_ignition(float moisture) {
-    SingeSim *sim = lit(moisture, true);
+    OwnSim *sim = lit(moisture, true);
     while (singe_sim_view(sim).time_ignited[12] < 0 && singe_sim_view(sim).step < 4000) test_steps(sim, 1);
     double time = (double)singe_sim_view(sim).time_ignited[12];
     assert_true(time > 0 && singe_sim_stats(sim).ledgers_close);
-    singe_sim_destroy(sim);
     return FLUX * time / GRAMMAGE;
 }
 
@@ -52,7 +51,7 @@ TEST(ignition_waits_for_the_water) {
 }
 
 TEST(nothing_wet_is_hotter_than_boiling) {
-    SingeSim *sim = lit(0.5f, false);
+    OwnSim *sim = lit(0.5f, false);
     double mass = 4e-4 * 2 * GRAMMAGE, before = singe_sim_stats(sim).water;
     assert_true(fabs(before / (0.5 * mass) - 1) < 1e-5);
 
@@ -68,7 +67,6 @@ TEST(nothing_wet_is_hotter_than_boiling) {
     }
 
     assert_true(singe_sim_stats(sim).water == 0 && singe_sim_stats(sim).temperature_max > 500);
-    singe_sim_destroy(sim);
 }
 
 /// A burning sheet on which it rains from the 300th step on.
@@ -257,12 +255,11 @@ TEST(a_burning_sheet_smothers_until_it_has_gone) {
     static const float rates[] = {0, 1e-3f, 0.2f}; // stays, goes in the middle, goes before
     double left[3];
     for (int k = 0; k < 3; k++) {
-        SingeSim *sim = covered_by(rates[k], 3e-3f, 8e-3f, true, 1);
+        OwnSim *sim = covered_by(rates[k], 3e-3f, 8e-3f, true, 1);
         left[k] = 0;
         for (uint32_t v = 0; v < 81; v++) left[k] += (double)singe_sim_view(sim).mass[v] / 81;
         print_message("hottest %g K, %.3f of the sheet is left\n", (double)hottest(sim), left[k]);
         assert_true(k == 0 ? hottest(sim) < 513 : hottest(sim) > 600);
-        singe_sim_destroy(sim);
     }
     assert_true(left[0] > left[1] + 0.1 && left[1] > left[2] + 0.1);
 }
@@ -275,7 +272,7 @@ static double flames_above(float distance) {
     def.gas.enabled = true;
     def.gas.cell_size = 8e-3f;
     def.gas.height = 0.05f;
-    SingeSim *sim = test_create(&def);
+    OwnSim *sim = test_create(&def);
     TestMesh low = test_grid(8, 8, 5e-3f, 5e-3f), high = test_grid(10, 10, 8e-3f, 8e-3f);
     test_mesh_move(&high, -20e-3f, -20e-3f, 3e-3f);
 
@@ -309,7 +306,6 @@ static double flames_above(float distance) {
     print_message("mass %g of %g kg\n", stats.mass, before);
     assert_true(stats.ledgers_close && stats.mass < 0.98 * before);
     test_mesh_free(&low), test_mesh_free(&high);
-    singe_sim_destroy(sim);
     return most;
 }
 

@@ -1,5 +1,9 @@
 #include "support.h"
 
+void test_sim_end(SingeSim **sim) { singe_sim_destroy(*sim); }
+
+void test_bytes_free(TestBytes *bytes) { free(bytes->data); }
+
 void test_ok_at(const SingeSim *sim, SingeResult result, const char *call, const char *file, int line) {
     if (result == SINGE_OK) return;
     const SingeError *error = sim ? singe_sim_error(sim) : NULL;
@@ -63,7 +67,7 @@ void test_steps(SingeSim *sim, int count) {
 }
 
 SingeResult test_life(SingeSimDef def, SingeAllocator allocator) {
-    TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
+    OwnTestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     const SingeSheetDef sheet = test_sheet(&mesh);
     const TestAllocator *counter = allocator.context;
     SingeSheetId id;
@@ -78,7 +82,6 @@ SingeResult test_life(SingeSimDef def, SingeAllocator allocator) {
     if (!result) result = singe_sim_step(sim);
     assert_int_equal(counter->calls, calls);
     singe_sim_destroy(sim);
-    test_mesh_free(&mesh);
     return result;
 }
 
@@ -127,9 +130,8 @@ void test_assert_same(SingeSim *a, SingeSim *b) {
 #undef SAME
     SingeStats s = singe_sim_stats(a), t = singe_sim_stats(b);
     assert_same_stats(&s, &t);
-    TestBytes bytes = test_save(a);
+    OwnTestBytes bytes = test_save(a);
     test_assert_saved(b, &bytes);
-    free(bytes.data);
 }
 
 void test_steps_alike(SingeSim *a, SingeSim *b, int count) {
@@ -159,15 +161,12 @@ SingeSim *test_load(const SingeSimDef *hooks, const TestBytes *bytes) {
 }
 
 SingeSim *test_reload(const SingeSimDef *hooks, SingeSim *sim) {
-    TestBytes bytes = test_save(sim);
-    SingeSim *loaded = test_load(hooks, &bytes);
-    free(bytes.data);
-    return loaded;
+    OwnTestBytes bytes = test_save(sim);
+    return test_load(hooks, &bytes);
 }
 
 void test_assert_saved(SingeSim *sim, const TestBytes *bytes) {
-    TestBytes now = test_save(sim);
+    OwnTestBytes now = test_save(sim);
     assert_int_equal(now.size, bytes->size);
     assert_memory_equal(now.data, bytes->data, now.size);
-    free(now.data);
 }

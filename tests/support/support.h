@@ -30,8 +30,12 @@ void test_mesh_move(TestMesh *mesh, float x, float y, float z);
 /// Turns a flat grid upright: y becomes z, and the front looks to -y.
 void test_mesh_raise(TestMesh *mesh);
 void test_mesh_free(TestMesh *mesh);
+#define OwnTestMesh OWNED(test_mesh_free) TestMesh
 
 // ---- simulations (make_sim.c)
+
+void test_sim_end(SingeSim **sim);
+#define OwnSim OWNED(test_sim_end) SingeSim
 
 /// Fails the test with the simulation's error unless the call succeeded.
 #define test_ok(sim, call) test_ok_at((sim), (call), #call, __FILE__, __LINE__)
@@ -75,6 +79,8 @@ typedef struct TestBytes {
     uint8_t *data;
     size_t size;
 } TestBytes;
+void test_bytes_free(TestBytes *bytes);
+#define OwnTestBytes OWNED(test_bytes_free) TestBytes
 TestBytes test_save(SingeSim *sim);
 /// A simulation loaded from saved bytes; NULL stands for the default hooks.
 SingeSim *test_load(const SingeSimDef *hooks, const TestBytes *bytes);

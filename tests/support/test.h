@@ -25,6 +25,12 @@
 #define TEST_AROUND(before, after) \
     __attribute__((constructor)) static void add_around(void) { test_around(before, after); }
 
+/// What is declared with it is released at the end of its block by a function that takes its address: OWNED(rig_close)
+/// Rig rig. Types that tests often own have a name for that, as OwnRig.
+#define OWNED(release) __attribute__((cleanup(release)))
+#define OwnSurface OWNED(singe_surface_free) SingeSurface
+#define OwnBytes OWNED(bytes_free) Bytes
+
 /// s of processors' time of all threads of the program.
 double test_seconds(void);
 

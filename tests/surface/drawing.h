@@ -38,6 +38,9 @@ static inline void drawing_free(Drawing *d) {
     free(d);
 }
 
+static inline void drawing_end(Drawing **d) { drawing_free(*d); }
+#define OwnDrawing OWNED(drawing_end) Drawing
+
 static inline void draw_coarse(Drawing *d) {
     const BurningSheet *b = d->sheet;
     assert_int_equal(surface_draw(d->plan, &b->shell, &b->state, &d->surface, &d->sheet->error), SINGE_OK);

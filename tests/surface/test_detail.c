@@ -54,7 +54,7 @@ static void expect_no_cracks(const SingeSurface *s) {
 TEST(random_levels_leave_no_cracks) {
     const float details[] = {0.05f, 0.12f, 0.2f, 0.36f, 0.9f};
     for (uint32_t seed = 0; seed < 20; seed++) {
-        Drawing *d = fine_drawing(12, 9, 1, details[seed % 5], seed % 3 ? 0.4f : 0);
+        OwnDrawing *d = fine_drawing(12, 9, 1, details[seed % 5], seed % 3 ? 0.4f : 0);
         State *state = &d->sheet->state;
 
         set_random_levels(d, seed);
@@ -74,15 +74,13 @@ TEST(random_levels_leave_no_cracks) {
             }
             assert_true(state->ablate.cell_flags[(int)y * 12 + (int)x] & SINGE_ALIVE);
         }
-
-        drawing_free(d);
     }
 }
 
 TEST(linear_fields_are_exact) {
     const Linear levels[] = {{0.1, 0.05, -0.333}, {-0.07, 0.11, 0.031}, {0.02, -0.13, 0.217}, {0.09, 0, -0.3141}};
     for (size_t k = 0; k < sizeof levels / sizeof *levels; k++) {
-        Drawing *d = fine_drawing(7, 5, 1, 0.15f, 0);
+        OwnDrawing *d = fine_drawing(7, 5, 1, 0.15f, 0);
         const SingeSurface *s = &d->surface;
         set_linear_fields(d, levels[k]);
         draw_fine(d);
@@ -91,13 +89,12 @@ TEST(linear_fields_are_exact) {
         double min = 1;
         for (uint32_t v = 0; v < s->vertex_count; v++) min = fmin(min, value_at(levels[k], s->position[v]));
         assert_float_equal(min, 0, 2e-6); // cut at the level, wherever that is
-        drawing_free(d);
     }
 }
 
 /// A sheet bent to a cylinder is drawn as one, by the limit surface's own radius: less by side^2/(6 R).
 TEST(bent_sheets_are_drawn_round) {
-    Drawing *d = fine_drawing(12, 9, 1, 0.1f, 0);
+    OwnDrawing *d = fine_drawing(12, 9, 1, 0.1f, 0);
     const float radius = 3, sagitta = 1 / (8 * radius), drawn = (4 + 2 * cosf(1 / radius)) / 6 * radius;
     set_linear_fields(d, (Linear){0.03, 0.07, -0.4});
 
@@ -117,8 +114,6 @@ TEST(bent_sheets_are_drawn_round) {
         float outwards = (s->normal[v][0] * s->position[v][0] + s->normal[v][2] * s->position[v][2]) / distance;
         assert_true(outwards > 0.9999f);
     }
-
-    drawing_free(d);
 }
 
 static Float3 doubled_normal(const SingeSurface *s, uint32_t t) {
@@ -130,7 +125,7 @@ static Float3 doubled_normal(const SingeSurface *s, uint32_t t) {
 TEST(no_triangle_is_lost_to_rounding) {
     const Float3 normal = {-0.36f, 0.48f, 0.8f}, along = {0.8f, 0.6f, 0}, up = {-0.48f, 0.64f, -0.6f};
     for (uint32_t seed = 0; seed < 12; seed++) {
-        Drawing *d = fine_drawing(12, 9, 2.5e-3f, 4e-4f, seed % 3 ? 1e-3f : 0);
+        OwnDrawing *d = fine_drawing(12, 9, 2.5e-3f, 4e-4f, seed % 3 ? 1e-3f : 0);
         set_random_levels(d, seed);
 
         for (uint32_t v = 0; v < d->sheet->shell.vertex_count; v++) {
@@ -155,7 +150,6 @@ TEST(no_triangle_is_lost_to_rounding) {
 
         assert_true(s->fine_triangle_count > 500);
         assert_true(thinnest > 5e-6f);
-        drawing_free(d);
     }
 }
 
@@ -204,7 +198,7 @@ TEST(crumpled_sheets_are_not_turned_over) {
 TEST(tear_edges_at_one_point_are_drawn_apart) {
     SingeMaterialDef material = plain_material();
     for (uint32_t seed = 0; seed < 6; seed++) {
-        Drawing *d = drawing_of(burning_spare_sheets(1, 12, 9, 1, &material, 0, 8));
+        OwnDrawing *d = drawing_of(burning_spare_sheets(1, 12, 9, 1, &material, 0, 8));
         d->detail = (SurfaceDetail){.size = 0.1f, .raggedness = 0.4f, .seed = seed};
         set_random_levels(d, seed);
         tear_along(d, 4, 7);
@@ -224,13 +218,12 @@ TEST(tear_edges_at_one_point_are_drawn_apart) {
         }
 
         assert_true(ends[0] > 5 && ends[1] > 5);
-        drawing_free(d);
     }
 }
 
 /// A cell's triangles that have been pulled apart are left out once its centre has burnt, and not before.
 TEST(triangles_pulled_apart_by_a_lost_corner_are_left_out) {
-    Drawing *d = fine_drawing(6, 6, 1, 0.2f, 0);
+    OwnDrawing *d = fine_drawing(6, 6, 1, 0.2f, 0);
     const uint32_t cell = cell_at(d->sheet, 2, 2), corner = d->sheet->shell.cells[cell][0];
     const float room[49] = {0};
     d->detail.room = room; // flat cells, which are not split for their bends
@@ -259,11 +252,10 @@ TEST(triangles_pulled_apart_by_a_lost_corner_are_left_out) {
                 float3_sub(float3_load(d->surface.rest_position[b]), float3_load(d->surface.rest_position[a]));
             assert_true(float3_length(now) < 2 * float3_length(rest));
         }
-    drawing_free(d);
 }
 
 TEST(whole_sheets_are_drawn_coarsely) {
-    Drawing *d = fine_drawing(4, 3, 0.01f, 1e-4f, 1e-3f);
+    OwnDrawing *d = fine_drawing(4, 3, 0.01f, 1e-4f, 1e-3f);
     draw_fine(d);
     assert_int_equal(d->surface.triangle_count, 48);
     assert_int_equal(d->surface.vertex_count, 20 + 12);
@@ -273,7 +265,6 @@ TEST(whole_sheets_are_drawn_coarsely) {
     draw_fine(d);
     for (uint32_t v = 0; v < 32; v++)
         assert_float_equal(d->surface.time_ignited[v], d->surface.source_vertex[v] == 0 ? 3 : -1, 0);
-    drawing_free(d);
 }
 
 TEST(threads_draw_the_same) {
@@ -302,7 +293,7 @@ static FineLocation location_at(uint32_t n, uint32_t cells) {
 
 /// A walk ends where it would in the plane, across cells that are turned against each other.
 TEST(walks_cross_cells) {
-    Drawing *d = fine_drawing(5, 4, 1, 0.3f, 0);
+    OwnDrawing *d = fine_drawing(5, 4, 1, 0.3f, 0);
     const Shell *shell = &d->sheet->shell;
     for (uint32_t n = 0; n < 2000; n++) {
         FineLocation from = location_at(n, shell->cell_count);
@@ -323,13 +314,11 @@ TEST(walks_cross_cells) {
         assert_float_equal(at[1][1], fminf(fmaxf(at[0][1] + y, 0), 4), 1e-5);
         for (int i = 0; i < 3; i++) assert_true(to.weight[i] >= -1e-6f);
     }
-
-    drawing_free(d);
 }
 
 /// A spline is nowhere less in a quarter of a cell than the bound there, but often less than those of other quarters.
 TEST(quarters_bound_their_splines) {
-    Drawing *d = fine_drawing(5, 4, 1, 0.3f, 0);
+    OwnDrawing *d = fine_drawing(5, 4, 1, 0.3f, 0);
     const Shell *shell = &d->sheet->shell;
     float edge[64], corner[64];
     uint32_t less = 0;
@@ -350,11 +339,10 @@ TEST(quarters_bound_their_splines) {
     }
 
     assert_true(less > 100);
-    drawing_free(d);
 }
 
 TEST(survives_lack_of_memory) {
-    Drawing *d = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
+    OwnDrawing *d = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
     const BurningSheet *b = d->sheet;
     SingeSurface surface;
     Memory memory;
@@ -364,5 +352,4 @@ TEST(survives_lack_of_memory) {
                           (memory = memory_make(allocator), surface = (SingeSurface){.allocator = allocator},
                            surface_draw_fine(d->plan, &b->shell, &b->state, &d->detail, &memory, NULL, &surface, NULL)),
                           singe_surface_free(&surface));
-    drawing_free(d);
 }

@@ -105,6 +105,9 @@ static void garment_free(Garment *g) {
     free(g);
 }
 
+static void garment_end(Garment **g) { garment_free(*g); }
+#define OwnGarment OWNED(garment_end) Garment
+
 /// The vertex of the surface that was vertex v of the mesh.
 static uint32_t found(const SingeSurface *s, uint32_t v) {
     uint32_t i = 0;
@@ -119,7 +122,7 @@ static float distance(const float *a, const float *b) {
 
 /// A thick mesh is drawn where it was given, with its own uv, beside the edges that were halved; in place of the sheet.
 TEST(flat_meshes_stay_as_they_are) {
-    Garment *g = garment(9, 1e-3f, 1e-3f);
+    OwnGarment *g = garment(9, 1e-3f, 1e-3f);
     add_layer(g->draft, 31, side, 4e-4f);
     add_layer(g->draft, 4, side, -4e-4f);
     add_box(g->draft, 0.1f, 0.05f, 0.001f, 0.004f); // over the border
@@ -140,18 +143,16 @@ TEST(flat_meshes_stay_as_they_are) {
     double area = 0;
     for (uint32_t t = 0; t < s->triangle_count; t++) area += fabs(doubled_area(s, t)) / 2;
     assert_float_equal(area, 2 * 0.01 + 2 * 0.004 * 0.004, 1e-7);
-    garment_free(g);
 }
 
 /// Beside the sheet both are drawn.
 TEST(meshes_beside_their_sheet) {
     uint32_t triangles[2];
     for (int beside = 0; beside < 2; beside++) {
-        Garment *g = garment(6, 1e-3f, 0);
+        OwnGarment *g = garment(6, 1e-3f, 0);
         g->def.beside = beside;
         add_layer(g->draft, 12, side, 1e-3f);
         triangles[beside] = draw(g)->triangle_count;
-        garment_free(g);
     }
     assert_true(triangles[0] >= 2 * 144);
     assert_int_equal(triangles[1], triangles[0] + 4 * 36);
@@ -159,7 +160,7 @@ TEST(meshes_beside_their_sheet) {
 
 /// A motion of the sheet as a whole is one of the mesh.
 TEST(meshes_move_with_their_sheet) {
-    Garment *g = garment(9, 1e-3f, 1e-3f);
+    OwnGarment *g = garment(9, 1e-3f, 1e-3f);
     add_layer(g->draft, 20, side, 6e-4f);
     add_box(g->draft, 0.1f, 0.05f, 0.001f, 0.004f);
     const float turn[4] = {0.5f, -0.1f, 0.7f, sqrtf(1 - 0.75f)};
@@ -177,13 +178,12 @@ TEST(meshes_move_with_their_sheet) {
         assert_true(distance(s->position[i], wanted) < 3e-7f);
         if (v < 441) assert_true(float3_dot(float3_load(s->normal[i]), up) > 0.99999f);
     }
-    garment_free(g);
 }
 
 /// Rolled up to a cylinder, both sides of a thick mesh keep their distance from the sheet along its normal.
 TEST(thickness_is_kept_in_a_curl) {
     const float radius = 0.03f, half = 1e-3f;
-    Garment *g = garment(20, 1e-3f, 0);
+    OwnGarment *g = garment(20, 1e-3f, 0);
     add_layer(g->draft, 40, side, half);
     const uint32_t below = g->draft->vertex_count;
     add_layer(g->draft, 40, side, -half);
@@ -204,7 +204,6 @@ TEST(thickness_is_kept_in_a_curl) {
     }
     print_message("off the cylinder by %.3g mm, of a thickness of %g mm\n", (double)(1e3f * worst), 2e3 * (double)half);
     assert_true(worst < 0.05f * half);
-    garment_free(g);
 }
 
 /// In folds sharper than a mesh is thick its inner side is pressed together, and does not cross itself. Gentler ones leave
@@ -212,7 +211,7 @@ TEST(thickness_is_kept_in_a_curl) {
 TEST(thick_meshes_do_not_cross_in_folds) {
     static const struct { float amplitude, half; } cases[] = {{1.5e-3f, 4e-3f}, {8e-3f, 8e-3f}, {12e-3f, 8e-3f}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        Garment *g = garment(20, 1e-3f, 0);
+        OwnGarment *g = garment(20, 1e-3f, 0);
         g->def.reach = 0.02f;
         add_layer(g->draft, 50, side, cases[k].half);
         add_layer(g->draft, 50, side, -cases[k].half);
@@ -232,14 +231,13 @@ TEST(thick_meshes_do_not_cross_in_folds) {
                       2e3 * (double)cases[k].half);
         assert_int_equal(crossings, 0);
         assert_true(k > 0 ? thinnest < 1.5f * cases[k].half : thinnest > 1.999f * cases[k].half);
-        garment_free(g);
     }
 }
 
 /// A sheet that is folded over itself leaves its mesh half of the gap.
 TEST(thick_meshes_do_not_cross_where_sheets_are_folded) {
     for (int gap = 5; gap <= 9; gap += 4) {
-        Garment *g = garment(20, 1e-3f, 0);
+        OwnGarment *g = garment(20, 1e-3f, 0);
         add_layer(g->draft, 50, side, 4e-3f);
         add_layer(g->draft, 50, side, -4e-3f);
         const float radius = 0.5e-3f * (float)gap, begin = 0.5f * side - 1.5707963f * radius;
@@ -252,19 +250,18 @@ TEST(thick_meshes_do_not_cross_where_sheets_are_folded) {
         const long crossings = surface_crossings(draw(g));
         print_message("%d mm between the two halves: %ld crossings\n", gap, crossings);
         assert_int_equal(crossings, 0);
-        garment_free(g);
     }
 }
 
 /// What the fire cuts from the mesh is what it cuts from the sheet, at the border within a fifth of a cell; edges that
 /// it cuts have no cracks.
 TEST(meshes_burn_with_their_sheet) {
-    Garment *g = garment(25, 4e-4f, 0);
+    OwnGarment *g = garment(25, 4e-4f, 0);
     const float cell = side / 25;
     burn_rings(g->d, 0.015f);
     ablate(g->d);
     draw_fine(g->d);
-    SingeSurface sheet = g->d->surface;
+    OwnSurface sheet = g->d->surface;
     g->d->surface = (SingeSurface){0};
     add_layer(g->draft, 53, side, 0);
     const SingeSurface *s = draw(g);
@@ -294,14 +291,12 @@ TEST(meshes_burn_with_their_sheet) {
     print_message("%u edges at the fire, at most %.2f of a cell from the sheet's\n", rims, (double)(worst / cell));
     assert_true(rims > 100 && worst < 0.2f * cell);
     free(edges);
-    singe_surface_free(&sheet);
-    garment_free(g);
 }
 
 /// A tear parts the mesh: no triangle spans it, and little is lost. Coarse cells tear along their sides, fine ones fray.
 TEST(meshes_tear_with_their_sheet) {
     for (int fine = 0; fine < 2; fine++) {
-        Garment *g = garment(10, fine ? 1e-3f : 1, 0);
+        OwnGarment *g = garment(10, fine ? 1e-3f : 1, 0);
         add_layer(g->draft, 27, side, 2e-4f);
         tear_along(g->d, 4, 11);
         float(*position)[4] = g->d->sheet->state.dynamics.position;
@@ -321,13 +316,12 @@ TEST(meshes_tear_with_their_sheet) {
         }
         print_message("%.4f of the area is left\n", area / 0.01);
         assert_true(area < 0.01001 && area > (fine ? 0.95 : 0.985) * 0.01);
-        garment_free(g);
     }
 }
 
 /// Small parts keep their shape wherever the sheet goes, and go when it burns beneath them.
 TEST(buttons_are_rigid) {
-    Garment *g = garment(12, 1e-3f, 1e-3f);
+    OwnGarment *g = garment(12, 1e-3f, 1e-3f);
     g->def.rigid = 0.01f;
     add_box(g->draft, 0.03f, 0.05f, 0.002f, 0.004f);
     add_box(g->draft, 0.08f, 0.05f, 0.002f, 0.004f);
@@ -345,12 +339,11 @@ TEST(buttons_are_rigid) {
         for (uint32_t w = v / 8 * 8; w < v && v / 8 != 1; w++)
             assert_float_equal(distance(s->position[found(s, v)], s->position[found(s, w)]),
                                distance(&g->draft->positions[3 * v], &g->draft->positions[3 * w]), 2e-7);
-    garment_free(g);
 }
 
 /// A mesh that stands elsewhere, turned, curled and three times as large, lies on the sheet by its uv, and burns with it.
 TEST(meshes_are_bound_by_uv) {
-    Garment *g = garment(9, 1e-3f, 1e-3f);
+    OwnGarment *g = garment(9, 1e-3f, 1e-3f);
     SingeError error = {0};
     add_layer(g->draft, 31, side, 0);
     for (uint32_t v = 0; v < g->draft->vertex_count; v++) {
@@ -387,11 +380,10 @@ TEST(meshes_are_bound_by_uv) {
     memset(g->source.uv, 0, g->source.sheet.vertex_count * sizeof *g->source.uv);
     assert_int_equal(render_mesh_create(&g->memory, g->d->pool, &g->sheet, &g->def, &g->mesh, &error),
                      SINGE_ERROR_ARGUMENT);
-    garment_free(g);
 }
 
 TEST(damaged_meshes_are_refused) {
-    Garment *g = garment(4, 1e-3f, 0);
+    OwnGarment *g = garment(4, 1e-3f, 0);
     SingeError error = {0};
     assert_int_equal(bind(g, &error), SINGE_ERROR_MESH); // no triangles
     add_layer(g->draft, 4, side, 0);
@@ -432,11 +424,10 @@ TEST(damaged_meshes_are_refused) {
     memcpy(g->draft->triangles, line, sizeof line);
     assert_int_equal(bind(g, &error), SINGE_OK);
     assert_true(draw(g)->triangle_count >= 31);
-    garment_free(g);
 }
 
 TEST(binding_and_drawing_survive_lack_of_memory) {
-    Garment *g = garment(8, 1e-3f, 1e-3f);
+    OwnGarment *g = garment(8, 1e-3f, 1e-3f);
     add_layer(g->draft, 5, side, 0);
     burn_rings(g->d, 0.015f);
     assert_int_equal(bind(g, NULL), SINGE_OK);
@@ -462,14 +453,13 @@ TEST(binding_and_drawing_survive_lack_of_memory) {
         test_allocator_check(&allocator);
     }
     assert_true(failures > 60);
-    garment_free(g);
 }
 
 /// Any number of threads binds and draws the same.
 TEST(threads_bind_and_draw_the_same) {
-    SingeSurface first = {0};
+    OwnSurface first = {0};
     for (int threads = 1; threads <= 3; threads += 2) {
-        Garment *g = garment(25, 4e-4f, 2e-3f);
+        OwnGarment *g = garment(25, 4e-4f, 2e-3f);
         if (threads > 1)
             assert_int_equal(pool_create(&g->d->sheet->memory, (SingeTasks){0}, threads, &g->d->pool), SINGE_OK);
         burn_rings(g->d, 0.012f);
@@ -484,9 +474,7 @@ TEST(threads_bind_and_draw_the_same) {
             assert_memory_equal(s->position, first.position, s->vertex_count * sizeof *s->position);
             assert_memory_equal(s->mass, first.mass, s->vertex_count * sizeof *s->mass);
         }
-        garment_free(g);
     }
-    singe_surface_free(&first);
 }
 
 /// Triangles without an area, and those that come again with any winding, are left out; edges that are not a surface's are
@@ -523,10 +511,10 @@ TEST(flaws_of_meshes_are_counted) {
 /// The public call works after the commit, and on sheets that exist.
 TEST(simulations_draw_meshes) {
     SingeSimDef def = singe_default_sim();
-    TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
+    OwnTestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
     SingeSheetDef sheet = test_sheet(&mesh);
     def.surface_detail = 0;
-    SingeSim *sim = test_create(&def);
+    OwnSim *sim = test_create(&def);
     SingeSheetId id = test_add_sheet(sim, &sheet);
 
     SingeRenderMeshDef render = singe_default_render_mesh();
@@ -548,7 +536,7 @@ TEST(simulations_draw_meshes) {
     for (int k = 0; k < 9; k++) moved[k] = positions[k] + at[k % 3];
     render.positions = moved;
     test_ok(sim, singe_sim_add_render_mesh(sim, id, &render));
-    SingeSurface surface = {0};
+    OwnSurface surface = {0};
     test_ok(sim, singe_sim_surface(sim, &surface));
     assert_true(surface.triangle_count >= 64 && surface.triangle_count < 300);
     uint32_t given = 0;
@@ -558,7 +546,4 @@ TEST(simulations_draw_meshes) {
         assert_float_equal(surface.position[v][2], (double)at[2] + 1e-3, 1e-7);
     }
     assert_int_equal(given, 3);
-    singe_surface_free(&surface);
-    singe_sim_destroy(sim);
-    test_mesh_free(&mesh);
 }

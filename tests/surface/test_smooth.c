@@ -161,9 +161,9 @@ TEST(cells_agree_on_their_sides) {
 
 /// Bent cells that have not burnt are drawn in parts, the same for any number of threads and without cracks.
 TEST(bent_cells_are_split_alike) {
-    SingeSurface first = {0};
+    OwnSurface first = {0};
     for (int threads = 1; threads <= 4; threads++) {
-        Drawing *d = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
+        OwnDrawing *d = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
         if (threads > 1) assert_int_equal(pool_create(&d->sheet->memory, (SingeTasks){0}, threads, &d->pool), SINGE_OK);
         burn_rings(d, 0.01f);
 
@@ -184,9 +184,5 @@ TEST(bent_cells_are_split_alike) {
             assert_memory_equal(s->position, first.position, s->vertex_count * sizeof *s->position);
             assert_memory_equal(s->normal, first.normal, s->vertex_count * sizeof *s->normal);
         }
-
-        drawing_free(d);
     }
-
-    singe_surface_free(&first);
 }

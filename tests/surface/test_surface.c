@@ -36,14 +36,13 @@ TEST(one_cell_is_cut_by_its_levels) {
     };
 
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        Drawing *d = plain_drawing(1, 1, 1);
+        OwnDrawing *d = plain_drawing(1, 1, 1);
         for (int i = 0; i < 5; i++)
             set_level(d, i < 4 ? d->sheet->shell.cells[0][i] : 4, 0.25f * (float)cases[k].level[i]);
         draw_coarse(d);
         assert_float_equal(area_of(&d->surface), cases[k].area, 1e-6);
         assert_int_equal(d->surface.triangle_count, cases[k].triangles);
         assert_int_equal(d->surface.vertex_count, cases[k].vertices);
-        drawing_free(d);
     }
 }
 
@@ -70,48 +69,44 @@ static double clipped_area(Linear f, double w, double h) {
 TEST(linear_fields_are_exact) {
     const Linear levels[] = {{0.1, 0.05, -0.333}, {-0.07, 0.11, 0.031}, {0.02, -0.13, 0.217}, {0.09, 0, -0.3141}};
     for (size_t k = 0; k < sizeof levels / sizeof *levels; k++) {
-        Drawing *d = plain_drawing(7, 5, 1);
+        OwnDrawing *d = plain_drawing(7, 5, 1);
         const SingeSurface *s = &d->surface;
         set_linear_fields(d, levels[k]);
         draw_coarse(d);
         assert_float_equal(area_of(s), clipped_area(levels[k], 7, 5), 2e-5);
         expect_linear_fields(d, levels[k], 1e-5);
-        drawing_free(d);
     }
 }
 
 TEST(whole_sheet_keeps_the_input_order) {
-    Drawing *d = plain_drawing(4, 3, 0.01f);
+    OwnDrawing *d = plain_drawing(4, 3, 0.01f);
     draw_coarse(d);
     assert_int_equal(d->surface.triangle_count, 48);
     assert_int_equal(d->surface.vertex_count, 20 + 12);
     for (int v = 0; v < 32; v++) assert_int_equal(d->surface.source_vertex[v], v < 20 ? v : -1);
-    drawing_free(d);
 }
 
 TEST(without_ablation_all_is_drawn) {
     SingeMaterialDef material = plain_material();
     material.ablate = false;
 
-    Drawing *d = drawing_of(burning_sheet(3, 3, 1, &material));
+    OwnDrawing *d = drawing_of(burning_sheet(3, 3, 1, &material));
     for (uint32_t i = 0; i < d->sheet->shell.particle_count; i++) d->sheet->state.burn.mass[i] = i & 1 ? 0.15f : 0.5f;
     draw_coarse(d);
     assert_float_equal(area_of(&d->surface), 9, 1e-5);
     assert_int_equal(d->surface.triangle_count, 36);
     assert_float_equal(d->surface.burn[1], 1, 0);
     assert_float_equal(d->surface.burn[2], 0.5 / 0.85, 1e-6);
-    drawing_free(d);
 }
 
 TEST(never_ignited_ends_do_not_count) {
-    Drawing *d = plain_drawing(1, 1, 1);
+    OwnDrawing *d = plain_drawing(1, 1, 1);
     for (uint32_t i = 0; i < 5; i++) set_level(d, i, -0.25f);
     set_level(d, 0, 0.25f);
     for (uint32_t i = 1; i < 5; i++) d->sheet->state.burn.time_ignited[i] = 4;
     draw_coarse(d);
     assert_float_equal(d->surface.time_ignited[0], -1, 0);
     for (uint32_t v = 1; v < 4; v++) assert_float_equal(d->surface.time_ignited[v], 4, 0);
-    drawing_free(d);
 }
 
 /// The part of a triangle with area `whole` that is inside, by eq 7.
@@ -154,7 +149,7 @@ static void expect_no_cracks(const SingeSurface *s, float width, float height) {
 
 TEST(random_levels_leave_no_cracks) {
     for (uint32_t seed = 0; seed < 20; seed++) {
-        Drawing *d = plain_drawing(12, 9, 1);
+        OwnDrawing *d = plain_drawing(12, 9, 1);
         const Shell *shell = &d->sheet->shell;
         const SingeSurface *s = &d->surface;
         for (uint32_t i = 0; i < shell->particle_count; i++)
@@ -176,14 +171,13 @@ TEST(random_levels_leave_no_cracks) {
         expect_no_cracks(s, 12, 9);
         for (uint32_t v = 0; v < s->vertex_count; v++) // a shared vertex exists once
             for (uint32_t w = 0; w < v; w++) assert_true(memcmp(s->position[v], s->position[w], 12) != 0);
-        drawing_free(d);
     }
 }
 
 TEST(levels_near_zero_leave_no_cracks) {
     const float levels[] = {0, 1e-7f, -1e-7f, 3e-5f, -3e-5f, 0.25f, -0.2f};
     for (uint32_t seed = 0; seed < 20; seed++) {
-        Drawing *d = plain_drawing(12, 9, 1);
+        OwnDrawing *d = plain_drawing(12, 9, 1);
         float *mass_loss = burning_sheet_vary(d->sheet, &d->sheet->shell.matter.mass_loss);
         for (uint32_t i = 0; i < d->sheet->shell.particle_count; i++) {
             mass_loss[i] = 0; // tiny levels need a float's full range
@@ -201,12 +195,11 @@ TEST(levels_near_zero_leave_no_cracks) {
 
         assert_true(area_of(s) > 0); // no triangle is without area
         free(edges);
-        drawing_free(d);
     }
 }
 
 TEST(crumpled_normals_are_unit) {
-    Drawing *d = plain_drawing(6, 6, 0.01f);
+    OwnDrawing *d = plain_drawing(6, 6, 0.01f);
     float(*position)[4] = d->sheet->state.dynamics.position;
     const uint32_t *corners = d->sheet->shell.cells[0];
 
@@ -216,12 +209,11 @@ TEST(crumpled_normals_are_unit) {
     draw_coarse(d);
     for (uint32_t v = 0; v < d->surface.vertex_count; v++)
         assert_float_equal(float3_length(float3_load(d->surface.normal[v])), 1, 1e-5);
-    drawing_free(d);
 }
 
 TEST(sheets_and_pieces_are_kept_apart) {
     SingeMaterialDef material = plain_material();
-    Drawing *d = calloc(1, sizeof *d);
+    OwnDrawing *d = calloc(1, sizeof *d);
     d->sheet = burning_sheets(2, 2, 2, 0.01f, &material, 0);
     assert_int_equal(ablate_plan_create(&d->sheet->memory, &d->sheet->shell, &d->plan), SINGE_OK);
     ablate_label(d->plan, &d->sheet->shell, &d->sheet->state.ablate);
@@ -235,8 +227,6 @@ TEST(sheets_and_pieces_are_kept_apart) {
             assert_int_equal(d->surface.piece[d->surface.triangles[t][i]], sheet);
         }
     }
-
-    drawing_free(d);
 }
 
 /// Every allocation of a first drawing and of one that must grow fails once.

@@ -46,7 +46,7 @@ static void pull_evenly(const BurningSheet *b, float xx, float yy, float xy, flo
 
 /// Degrees that the mean of the torn edges is off from across the pull, which is at this angle to the cells.
 static double off_across(float angle) {
-    BurningSheet *b = blocks_of_a_sheet();
+    OwnBurningSheet *b = blocks_of_a_sheet();
     float c = cosf(angle), s = sinf(angle), *pull[SINGE_COLOUR_COUNT];
     TearPlan *plan;
     bool short_of_spares;
@@ -70,7 +70,6 @@ static double off_across(float angle) {
 
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) free(pull[colour]);
     tear_plan_free(&b->memory, plan);
-    burning_sheet_free(b);
     return atan2(sum[1], sum[0]) / (double)degree - (double)(angle / degree) - 90;
 }
 
@@ -87,7 +86,7 @@ TEST(tears_run_across_the_pull) {
 /// vertex from each other, or one of them only.
 static uint32_t splits_beside(bool both) {
     SingeMaterialDef material = plain_material();
-    BurningSheet *b = calloc(1, sizeof *b);
+    OwnBurningSheet *b = calloc(1, sizeof *b);
     b->memory = memory_make((SingeAllocator){0});
     SheetSource source = grid_source(&b->memory, 6, 6, side, 0, &material, 0);
     source.sheet.spare_count = 20;
@@ -110,7 +109,6 @@ static uint32_t splits_beside(bool both) {
     if (splits) assert_int_equal(b->state.tear.splits[0].vertex, corner_at(b, 3, 3));
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) free(pull[colour]);
     tear_plan_free(&b->memory, plan);
-    burning_sheet_free(b);
     return splits;
 }
 

@@ -18,6 +18,7 @@ Triangles triangles_box(uint32_t n, float x, float y, float z);
 /// Turned about an odd axis and moved.
 void triangles_turn(Triangles *mesh, float angle, float x, float y, float z);
 void triangles_free(Triangles *mesh);
+#define OwnTriangles OWNED(triangles_free) Triangles
 /// A Def of it, to be given a path.
 SingeColliderDef triangles_def(const Triangles *mesh);
 

@@ -95,7 +95,7 @@ TEST(four_triangles_are_enough) {
 
 /// Every box of its tree would be near such a position.
 TEST(impossible_positions_are_far) {
-    Triangles mesh = triangles_torus(24, 12, 0.1f, 0.04f);
+    OwnTriangles mesh = triangles_torus(24, 12, 0.1f, 0.04f);
     Memory memory = memory_make((SingeAllocator){0});
     Collider collider = make_mesh(&memory, &mesh);
     const float none[] = {NAN, INFINITY, -INFINITY};
@@ -111,12 +111,11 @@ TEST(impossible_positions_are_far) {
     }
 
     collider_free(&memory, &collider);
-    triangles_free(&mesh);
 }
 
 TEST(inside_out_is_turned) {
     Memory memory = memory_make((SingeAllocator){0});
-    Triangles mesh = triangles_sphere(16, 0.05f, 0);
+    OwnTriangles mesh = triangles_sphere(16, 0.05f, 0);
     Collider collider = make_mesh(&memory, &mesh);
 
     assert_false(collider.mesh.turned);
@@ -133,7 +132,6 @@ TEST(inside_out_is_turned) {
     assert_true(collider_distance(&collider, float3(0, 0, 0.02f), INFINITY, &normal) < 0);
     assert_true(collider_distance(&collider, float3(0, 0, 0.08f), INFINITY, &normal) > 0 && normal.z > 0.9f);
     collider_free(&memory, &collider);
-    triangles_free(&mesh);
 }
 
 typedef void Spoil(Triangles *mesh);
@@ -168,7 +166,7 @@ TEST(bad_meshes_are_refused_by_number) {
 
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Memory memory = memory_make((SingeAllocator){0});
-        Triangles mesh = triangles_sphere(8, 0.0625f, 0);
+        OwnTriangles mesh = triangles_sphere(8, 0.0625f, 0);
         uint32_t count = mesh.triangle_count;
 
         if (cases[i].spoil == spoil_flat) mesh.vertices[3 * mesh.triangles[12] + 1] += 0; // exact positions there
@@ -186,7 +184,6 @@ TEST(bad_meshes_are_refused_by_number) {
         if (cases[i].element > -2) assert_int_equal(error.element, cases[i].element);
         else assert_true(error.element >= 0 && error.element < count);
         assert_int_equal(memory.held, 0);
-        triangles_free(&mesh);
     }
 }
 
@@ -240,7 +237,7 @@ TEST(heights_match_their_triangles) {
                           size[1] * ((float)(k / COLUMNS) / (ROWS - 1) - 0.5f)) +
                      any(0, 0.002f);
 
-    Triangles mesh = column(COLUMNS, ROWS, heights, size, -1);
+    OwnTriangles mesh = column(COLUMNS, ROWS, heights, size, -1);
     SingeColliderDef def = singe_default_collider();
     def.kind = SINGE_COLLIDER_HEIGHTFIELD;
     def.columns = COLUMNS, def.rows = ROWS, def.heights = heights;
@@ -282,7 +279,6 @@ TEST(heights_match_their_triangles) {
     assert_true(inside > 500);
     collider_free(&memory, &collider);
     assert_int_equal(memory.held, 0);
-    triangles_free(&mesh);
 }
 
 TEST(bad_heights_are_refused) {
@@ -338,7 +334,7 @@ static double cost(const Collider *collider, const Triangles *mesh, float off) {
 
 TEST(ten_thousand_triangles_are_quick) {
     Memory memory = memory_make((SingeAllocator){0});
-    Triangles mesh = triangles_torus(125, 40, 0.06f, 0.025f);
+    OwnTriangles mesh = triangles_torus(125, 40, 0.06f, 0.025f);
     double start = test_seconds();
     Collider collider = make_mesh(&memory, &mesh);
     start = test_seconds() - start;
@@ -350,5 +346,4 @@ TEST(ten_thousand_triangles_are_quick) {
            mesh.triangle_count, 1e3 * start, 1e-6 * (double)memory.held, touching, near, far);
     assert_true(memory.held < 10e6 && touching < 20000);
     collider_free(&memory, &collider);
-    triangles_free(&mesh);
 }
