@@ -13,6 +13,7 @@ With --bars, exits with 1 if more static functions are named once, or more assig
 """
 
 import argparse
+import collections
 import pathlib
 import re
 import sys
@@ -35,9 +36,10 @@ def without_comments(text):
 
 def statics(text):
     """(name, whether it is named once) of each static function that a text defines."""
+    words = collections.Counter(re.findall(r"\w+", text))
+    heads = collections.Counter(re.findall(r"^static [^;{}=]*?\b(\w+)\(", text, re.MULTILINE))
     for name in sorted(set(DEFINITION.findall(text))):
-        heads = len(re.findall(r"^static [^;{}=]*?\b%s\(" % name, text, re.MULTILINE))
-        yield name, len(re.findall(r"\b%s\b" % name, text)) - heads == 1
+        yield name, words[name] - heads[name] == 1
 
 
 def pieces(statement):

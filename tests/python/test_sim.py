@@ -661,33 +661,33 @@ import os, signal, threading, time
 from support import burning, singe
 from singe._library import library
 
-def late(call):
-    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+def late(call):  # how late Ctrl-C comes through, as a share of what the call takes
+    wait = 0.3 * whole
+    threading.Timer(wait, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
     begun = time.monotonic()
     try:
         call()
     except KeyboardInterrupt:
         pass
-    return time.monotonic() - begun - 0.3
+    return (time.monotonic() - begun - wait) / whole
 
-sim = burning(240, solver={"substeps": 1000})
+sim = burning(200, solver={"substeps": 1000})
 begun = time.monotonic()
 sim.step()
 whole = time.monotonic() - begun
-print(whole > 0.8)
+print(whole > 0.4)
 for call in (sim.step, lambda: sim.advance(2 / 480)):
     steps = sim.steps
-    print(late(call) < 0.25 * whole)
+    print(late(call) < 0.25)
     print(0 < sim.steps - steps <= 2)  # waits for the step to end
-sim.step()
-print(late(lambda: library.singe_sim_step(sim._handle.pointer)) > 0.3 * whole)
+print(late(lambda: library.singe_sim_step(sim._handle.pointer)) > 0.3)
 
-bigs = [burning(500, commit=False) for _ in range(2)]
+bigs = [burning(400, commit=False) for _ in range(2)]
 begun = time.monotonic()
 bigs[0].commit()
 whole = time.monotonic() - begun
 big = bigs[1]
-print(whole > 0.6, late(big.commit) < 0.25 * whole)
+print(whole > 0.3, late(big.commit) < 0.25)
 try:
     big.commit()  # waits, and is the second one
 except singe.StateError:
