@@ -65,46 +65,21 @@ static bool strip_mesh(Strip *strip, const StripSetup *setup) {
 /// A strip has no uv, no attributes and one speed: varying parameters take their mean.
 static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
     SingeMaterialDef material = *from;
-    SingeParam *params[] = {&material.grammage,
-                            &material.specific_heat,
-                            &material.thickness,
-                            &material.diffusivity,
-                            &material.layer_exchange,
-                            &material.convection,
-                            &material.emissivity,
-                            &material.loss_mass_floor,
-                            &material.ignition_temperature,
-                            &material.heat_of_combustion,
-                            &material.heat_share,
-                            &material.mass_rate,
-                            &material.rate_ceiling,
-                            &material.air_supply,
-                            &material.ash_exponent,
-                            &material.mass_min,
-                            &material.mass_loss,
-                            &material.ash_density,
-                            &material.shrink_front,
-                            &material.shrink_back,
-                            &material.char_weight,
-                            &material.drag,
-                            &material.damping,
-                            &material.crease_radius,
-                            &material.crease_share,
-                            &material.strength,
-                            &material.char_strength,
-                            &material.pre_exponential,
-                            &material.activation_energy,
-                            &material.curvature_max};
-
+    SingeParam *params[] = {
+#define SINGE_PARAM(number, NAME, name, ...) &material.name,
+#define SINGE_PARAM_BACK SINGE_PARAM
+#include "singe/material.def"
+    };
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         if (params[i]->field) *params[i] = singe_param(0.5f * (params[i]->value + params[i]->to));
 
     // char glows in patches; the hottest counts
+    const SingeParam *patchy[] = {&from->char_yield, &from->char_density, &from->char_heat, &from->char_rate,
+                                  &from->char_air};
     SingeParam *chars[] = {&material.char_yield, &material.char_density, &material.char_heat, &material.char_rate,
                            &material.char_air};
     for (size_t i = 0; i < sizeof chars / sizeof *chars; i++)
-        if (chars[i]->field && chars[i]->field->kind != SINGE_FIELD_NOISE)
-            *chars[i] = singe_param(0.5f * (chars[i]->value + chars[i]->to));
+        if (patchy[i]->field && patchy[i]->field->kind == SINGE_FIELD_NOISE) *chars[i] = *patchy[i];
 
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
         material.weight[c] = singe_param(1);
@@ -113,11 +88,8 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
 
     // where it is lit it is hot and dry
     static const SingeField lit = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "lit"};
-    const SingeParam cold = material.temperature, damp = material.moisture;
-    material.temperature = singe_param_field(cold.field ? 0.5f * (cold.value + cold.to) : cold.value, 1100, &lit);
-
-    const float water = damp.field ? 0.5f * (damp.value + damp.to) : damp.value;
-    if (water > 0) material.moisture = singe_param_field(water, 0, &lit);
+    material.temperature = singe_param_field(material.temperature.value, 1100, &lit);
+    if (material.moisture.value > 0) material.moisture = singe_param_field(material.moisture.value, 0, &lit);
     return material;
 }
 
