@@ -8,7 +8,8 @@ static StripResult burn_strip(float size, float h, const SingeMaterialDef *mater
     StripSetup setup = strip_setup(material);
     StripResult result = {0};
     SingeError error = {0};
-    setup.cell = size, setup.time_step = h, setup.length = 0.08f; // the front is measured from 3 to 7 cm
+    setup.cell = size, setup.time_step = h;
+    setup.length = size < 0.003f ? 0.06f : 0.08f; // the front is measured from 0.4 to 0.9 of it
     if (strip_burn(&setup, &result, &error)) fail_msg("%s", error.message);
     return result;
 }
@@ -62,7 +63,7 @@ TEST(a_wide_front_is_not_short_of_air) {
         StripSetup setup = strip_setup(&material);
         StripResult result = {0};
         SingeError error = {0};
-        setup.cell = 2e-3f, setup.time_step = 8e-3f, setup.length = 0.08f, setup.width = widths[k];
+        setup.cell = 2e-3f, setup.time_step = 8e-3f, setup.length = 0.06f, setup.width = widths[k];
         if (strip_burn(&setup, &result, &error)) fail_msg("%s", error.message);
         print_message("%.0f mm wide: %.3f mm/s\n", 1e3 * (double)widths[k], 1e3 * result.speed);
         speed[k] = result.speed;

@@ -68,18 +68,7 @@ static inline void burning_make(Burning *b) {
             for (int c = 0; c < 3; c++) b->triangles[2 * k + t][c] = q.triangles[t][c] + 4 * (uint32_t)k;
     }
 
-    b->surface = (SingeSurface){.vertex_count = 4 * WIDE,
-                                .triangle_count = 2 * WIDE,
-                                .position = b->position,
-                                .normal = b->normal,
-                                .uv = b->uv,
-                                .rest_position = b->rest,
-                                .temperature = b->temperature,
-                                .temperature_peak = b->temperature,
-                                .burn = b->burn,
-                                .burn_rate = b->rate,
-                                .sheet = b->sheet,
-                                .triangles = b->triangles};
+    b->surface = SURFACE_OF(b, rest, temperature, 4 * WIDE, 2 * WIDE);
 }
 
 /// The fire's layer of that line from the side; row 0 of `mean` is the paper's height, others are a mm higher each.

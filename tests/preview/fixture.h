@@ -79,6 +79,15 @@ static inline float mean(const uint8_t *rgb, int channel) {
     return sum / (W * H);
 }
 
+/// The surface of what has these arrays; `rested` and `peaked` are those of its positions at rest and hottest so far.
+#define SURFACE_OF(s, rested, peaked, vertices, faces)                                                       \
+    (SingeSurface) {                                                                                         \
+        .vertex_count = (vertices), .triangle_count = (faces), .position = (s)->position,                    \
+        .rest_position = (s)->rested, .normal = (s)->normal, .uv = (s)->uv, .temperature = (s)->temperature, \
+        .temperature_peak = (s)->peaked, .burn = (s)->burn, .burn_rate = (s)->rate, .sheet = (s)->sheet,     \
+        .triangles = (s)->triangles                                                                          \
+    }
+
 /// One quad of a fresh sheet of half width `half` at height z, facing up; triangles as the lists ask.
 typedef struct Float4 {
     float position[4][3], normal[4][3], uv[4][2], rest[4][3], temperature[4], peak[4], burn[4], rate[4];
@@ -96,18 +105,7 @@ static inline void quad_make(Float4 *q, float half, float z) {
     }
     const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
     memcpy(q->triangles, triangles, sizeof triangles);
-    q->surface = (SingeSurface){.vertex_count = 4,
-                                .triangle_count = 2,
-                                .position = q->position,
-                                .normal = q->normal,
-                                .uv = q->uv,
-                                .rest_position = q->rest,
-                                .temperature = q->temperature,
-                                .temperature_peak = q->peak,
-                                .burn = q->burn,
-                                .burn_rate = q->rate,
-                                .sheet = q->sheet,
-                                .triangles = q->triangles};
+    q->surface = SURFACE_OF(q, rest, peak, 4, 2);
 }
 
 enum { GAS_SIDE = 12, GAS_CELLS = GAS_SIDE * GAS_SIDE * GAS_SIDE };

@@ -30,19 +30,8 @@ static inline void plate_make(Plate *plate, float width) {
         memcpy(plate->triangles[count], pair, sizeof pair);
         count += 2;
     }
-    plate->surface = (SingeSurface){.vertex_count = NODES,
-                                    .triangle_count = count,
-                                    .position = plate->position,
-                                    .normal = plate->normal,
-                                    .uv = plate->uv,
-                                    .rest_position = plate->position,
-                                    .temperature = plate->temperature,
-                                    .temperature_peak = plate->peak,
-                                    .burn = plate->burn,
-                                    .burn_rate = plate->rate,
-                                    .time_ignited = plate->ignited,
-                                    .sheet = plate->sheet,
-                                    .triangles = plate->triangles};
+    plate->surface = SURFACE_OF(plate, position, peak, NODES, count);
+    plate->surface.time_ignited = plate->ignited;
 }
 
 /// What a plate of char burns at: alone, without fuel, or with some in a flame.

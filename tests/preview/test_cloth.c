@@ -219,17 +219,7 @@ static struct Char {
 
 /// A flat sheet of char of A4's size, whose vertices triangles share.
 static void char_make(float burn) {
-    burnt.surface = (SingeSurface){.vertex_count = GRID,
-                                   .position = burnt.position,
-                                   .normal = burnt.normal,
-                                   .uv = burnt.uv,
-                                   .rest_position = burnt.position,
-                                   .temperature = burnt.temperature,
-                                   .temperature_peak = burnt.peak,
-                                   .burn = burnt.burn,
-                                   .burn_rate = burnt.rate,
-                                   .sheet = burnt.sheet,
-                                   .triangles = burnt.triangles};
+    burnt.surface = SURFACE_OF(&burnt, position, peak, GRID, 0);
     for (uint32_t i = 0; i < GRID; i++) {
         const float u = (float)(i % SIDE) / (SIDE - 1), v = (float)(i / SIDE) / (SIDE - 1);
         burnt.position[i][0] = 0.21f * (u - 0.5f), burnt.position[i][1] = 0.297f * (v - 0.5f);

@@ -548,18 +548,7 @@ TEST(the_edge_of_lit_paper_has_no_teeth) {
         quad_make(&q, kind == BEFORE ? 0.15f : 0.03f, kind == BEFORE ? 0.01f : 0.2f);
         for (int i = 0; i < 4; i++) q.position[i][0] += (float[]){[ALONE] = 5, [SHADOWED] = 0.2f, [BEFORE] = 0}[kind];
         pair_set(&pair, 1, &q);
-        const SingeSurface surface = {.vertex_count = 8,
-                                      .triangle_count = 4,
-                                      .position = pair.position,
-                                      .normal = pair.normal,
-                                      .uv = pair.uv,
-                                      .rest_position = pair.rest,
-                                      .temperature = pair.temperature,
-                                      .temperature_peak = pair.peak,
-                                      .burn = pair.burn,
-                                      .burn_rate = pair.rate,
-                                      .sheet = pair.sheet,
-                                      .triangles = pair.triangles};
+        const SingeSurface surface = SURFACE_OF(&pair, rest, peak, 8, 4);
         see(&def, &surface, NULL, beauty);
 
         enum { FIRST = H / 2 - 8, ROWS = 17 };
