@@ -7,6 +7,7 @@
 #include "bench/table.h"
 #include "cli/args.h"
 #include "cli/cli.h"
+#include "common/store.h"
 #include "scene/scene.h"
 #include "scene/words.h"
 #include "singe/singe.h"

@@ -89,9 +89,8 @@ static SingeResult isotropy_build(const Burn *burn, double angle, SingeSim **sim
     def.solver.isotropic = options->isotropic;
     def.solver.tearing = true;
     def.contact.enabled = true;
-    SingeResult result = singe_sim_create(&def, sim, error);
-    if (result) return result;
-    result = isotropy_sheet(*sim, burn, angle, error);
+    TRY(singe_sim_create(&def, sim, error));
+    SingeResult result = isotropy_sheet(*sim, burn, angle, error);
     if (!result) {
         const SingePoseKey centre = {0, {0, 0, 0}, {0, 0, 0, 1}};
         SingeColliderDef ground = singe_default_collider();

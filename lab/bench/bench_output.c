@@ -12,7 +12,6 @@
 
 #include "bench/machine.h"
 #include "cli/text.h"
-#include "common/store.h"
 #include "formats/output.h"
 
 enum { SIDE = 158, COUNT = SIDE * SIDE, FACES = 2 * (SIDE - 1) * (SIDE - 1), FRAMES = 20, REPEATS = 5 };

@@ -122,8 +122,7 @@ static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
     pin.radius = upright ? 0.05f * size : 0;
     for (int p = 0; p < setup->pins; p++) {
         pin.points = corners[p];
-        result = singe_sim_add_pin(sim, &pin, &pin_id);
-        if (result) return result;
+        TRY(singe_sim_add_pin(sim, &pin, &pin_id));
     }
 
     return SINGE_OK;
@@ -143,10 +142,9 @@ SingeResult sheet_build(const BenchSetup *setup, SingeSim **sim, SingeError *err
     def.instructions = setup->instructions;
     def.time_step = setup->time_step;
     def.solver = setup->solver;
-    SingeResult result = singe_sim_create(&def, sim, error);
-    if (result) return result;
+    TRY(singe_sim_create(&def, sim, error));
 
-    result = hung_sheet_fill(*sim, setup);
+    SingeResult result = hung_sheet_fill(*sim, setup);
     return result ? bench_give_up(sim, result, error) : SINGE_OK;
 }
 
@@ -211,8 +209,7 @@ SingeResult burning_build(const BenchOptions *options, const SingeAllocator *all
     def.contact.enabled = options->contact;
     if (allocator) def.allocator = *allocator;
 
-    SingeResult result = singe_sim_create(&def, sim, error);
-    if (result) return result;
-    result = burning_fill(*sim, options, springs);
+    TRY(singe_sim_create(&def, sim, error));
+    SingeResult result = burning_fill(*sim, options, springs);
     return result ? bench_give_up(sim, result, error) : SINGE_OK;
 }

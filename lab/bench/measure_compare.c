@@ -124,12 +124,11 @@ static SingeResult full(const Comparison *c, double springs, SingeSolverMethod m
     setup.solver.substeps = 1;
     setup.solver.projections = 7;
     setup.solver.early_exit = false;
-    SingeResult result = sheet_build(&setup, &sim, c->error);
-    if (result) return result;
+    TRY(sheet_build(&setup, &sim, c->error));
 
     // the same few steps for both solvers: a step of the paper's takes seconds at 100,000 springs
     int warm_up = springs > 5e4 ? 5 : 40, steps = springs > 5e4 ? 5 : 11;
-    result = timing_measure(&timing, sim, NULL, warm_up, steps);
+    SingeResult result = timing_measure(&timing, sim, NULL, warm_up, steps);
     if (result) *c->error = *singe_sim_error(sim);
 
     double ms = result ? 0 : timing_median(&timing, TIMED_PROJECTION);

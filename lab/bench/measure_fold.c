@@ -125,10 +125,9 @@ static SingeResult fold_run(const BenchOptions *options, Fold *fold, bool crease
     for (int axis = 0; axis < 3; axis++) def.gravity[axis] = 0;
     fold->inverted = 0;
 
-    SingeResult result = singe_sim_create(&def, &sim, error);
-    if (result) return result;
+    TRY(singe_sim_create(&def, &sim, error));
 
-    result = fold_fill(sim, fold);
+    SingeResult result = fold_fill(sim, fold);
     if (result) {
         *error = *singe_sim_error(sim);
         error->code = result;

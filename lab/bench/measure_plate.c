@@ -44,8 +44,7 @@ static SingeResult plate_open(const Plate *plate, bool disc, SingeSim **sim, Mes
     def.solver.substeps = plate->substeps;
     def.solver.isotropic = plate->isotropic;
     def.gravity[2] = disc ? 0 : (float)-gravity;
-    SingeResult result = singe_sim_create(&def, sim, error);
-    if (result) return result;
+    TRY(singe_sim_create(&def, sim, error));
 
     SingeSheetDef sheet = singe_default_sheet();
     SingeMaterialDef *material = &sheet.material;
@@ -56,8 +55,7 @@ static SingeResult plate_open(const Plate *plate, bool disc, SingeSim **sim, Mes
                             .cells = plate->cells,
                             .disc = disc,
                             .angle = plate->angle};
-    result = turned_grid(&cut, mesh, error);
-    if (result) return result;
+    TRY(turned_grid(&cut, mesh, error));
 
     sheet.vertex_count = mesh->vertex_count;
     sheet.positions = mesh->positions;
@@ -84,7 +82,7 @@ static SingeResult plate_open(const Plate *plate, bool disc, SingeSim **sim, Mes
         material->shrink_back = singe_param_field(0.7f, 1.3f, &noise);
     }
 
-    result = singe_sim_add_sheet(*sim, &sheet, &id);
+    SingeResult result = singe_sim_add_sheet(*sim, &sheet, &id);
     if (!result) result = singe_sim_commit(*sim);
     return result;
 }
@@ -190,8 +188,7 @@ static SingeResult disc_roll(const Plate *plate, double curvature[2], double *ro
 
 static SingeResult plate_row(const Plate *plate, bool disc, BenchTable *table, SingeError *error) {
     double ratio = NAN, curvature[2] = {NAN, NAN}, rolls = NAN;
-    SingeResult result = disc ? disc_roll(plate, curvature, &rolls, error) : strip_bend(plate, &ratio, error);
-    if (result) return result;
+    TRY(disc ? disc_roll(plate, curvature, &rolls, error) : strip_bend(plate, &ratio, error));
 
     table_text(table, "part", 6, disc ? "disc" : "strip");
     table_text(table, "isotropic", 10, plate->isotropic ? "yes" : "no");

@@ -88,14 +88,13 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
     sheet.material.damping = singe_param(3);
     if (thickness > 0) sheet.material.thickness = singe_param((float)thickness);
 
-    SingeResult result = singe_sim_create(&def, sim, error);
-    if (result) return result;
+    TRY(singe_sim_create(&def, sim, error));
 
     const uint32_t row = (uint32_t)strip->across + 1, rows = (uint32_t)strip->up + 1;
     float *positions = malloc((size_t)3 * row * rows * sizeof *positions), *hot = malloc(row * rows * sizeof *hot);
     uint32_t *cells = malloc((size_t)4 * row * rows * sizeof *cells);
 
-    result = SINGE_ERROR_MEMORY;
+    SingeResult result = SINGE_ERROR_MEMORY;
     if (positions && hot && cells) {
         for (uint32_t v = 0; v < row * rows; v++) {
             double z = v / row * strip->cell;

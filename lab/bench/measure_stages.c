@@ -2,7 +2,6 @@
 #include "bench/bench.h"
 #include "bench/hung_sheet.h"
 #include "bench/timing.h"
-#include "common/store.h"
 
 #include <math.h>
 

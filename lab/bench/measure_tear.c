@@ -92,10 +92,9 @@ static SingeResult pull(const BenchOptions *options, uint32_t nx, uint32_t ny, i
     def.gravity[2] = 0;
     def.solver.tearing = true;
     def.solver.substeps = options->substeps ? options->substeps : SUBSTEPS;
-    SingeResult result = singe_sim_create(&def, &sim, error);
-    if (result) return result;
+    TRY(singe_sim_create(&def, &sim, error));
 
-    result = add_strip(sim, nx, ny, &id);
+    SingeResult result = add_strip(sim, nx, ny, &id);
     if (!result) result = singe_sim_commit(sim);
     if (!result) result = add_grip(sim, nx, ny, false, 0, id);
     if (!result) result = add_grip(sim, nx, ny, true, speed * seconds, id);
@@ -141,8 +140,7 @@ SingeResult bench_tear(const BenchOptions *options, BenchTable *table, SingeErro
         for (int rate = STEP_RATE; rate <= 2 * STEP_RATE; rate *= 2) {
             Pulled pulled;
             uint32_t nx = 24 * (uint32_t)finer, ny = 12 * (uint32_t)finer;
-            SingeResult result = pull(options, nx, ny, rate, &pulled, error);
-            if (result) return result;
+            TRY(pull(options, nx, ny, rate, &pulled, error));
             if (first == 0) first = pulled.load;
             table_number(table, "cell_mm", "%.3g", 7, 1e3 * (double)length / nx);
             table_number(table, "step_ms", "%.3f", 7, 1e3 / rate);

@@ -7,8 +7,7 @@
 enum { RIM_NEAR = 3 }; ///< bands: 4 mm
 
 SingeResult look_take(Play *play, double cut, Look *look, SingeError *error) {
-    SingeResult result = play_surface(play, error);
-    if (result) return result;
+    TRY(play_surface(play, error));
 
     const SingeView view = singe_sim_view(play->sim);
     const SingeStats stats = singe_sim_stats(play->sim);

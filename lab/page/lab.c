@@ -181,10 +181,9 @@ SingeResult lab_build(const Lab *lab, const LabGrid *grid, SingeSim **sim, Singe
     def.gravity[2] = -grid->gravity;
     def.air_density = 0;
     def.pace = grid->pace;
-    SingeResult result = singe_sim_create(&def, sim, error);
-    if (result) return result;
+    TRY(singe_sim_create(&def, sim, error));
 
-    result = add_grid(grid, *sim, error);
+    SingeResult result = add_grid(grid, *sim, error);
     if (result) singe_sim_destroy(*sim), *sim = NULL;
     return result;
 }
@@ -393,13 +392,12 @@ SingeResult spot_spread(Lab *lab, const SpotMesh *mesh, SingeHeatOperator operat
     grid.material.thickness = singe_param(1e-4f);
 
     SingeSim *sim;
-    SingeResult result = lab_build(lab, &grid, &sim, error);
-    if (result) return result;
+    TRY(lab_build(lab, &grid, &sim, error));
 
     SingeView view = singe_sim_view(sim);
     double before[2], after[2];
     variances(&view, before);
-    result = lab_steps(sim, (int)lround(seconds / 0.004), error);
+    SingeResult result = lab_steps(sim, (int)lround(seconds / 0.004), error);
     variances(&view, after);
     for (int k = 0; k < 2; k++) ratio[k] = (after[k] - before[k]) / (2 * WARM_DIFFUSIVITY * seconds);
     singe_sim_destroy(sim);

@@ -4,6 +4,7 @@
 #include "cli/console.h"
 #include "cli/job.h"
 #include "cli/pictures.h"
+#include "common/store.h"
 #include "page/report.h"
 #include "singe/singe.h"
 

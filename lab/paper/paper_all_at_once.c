@@ -94,10 +94,9 @@ SingeResult paper_all_at_once(Lab *lab, SingeError *error) {
     SingeSolverDef solver = singe_default_solver();
     singe_init_solver_method(&solver, sizeof solver, SINGE_SOLVER_PAPER);
     SingeSim *sim;
-    SingeResult result = paper_sim(PAPER_SWING, CELLS, &solver, 1, &sim, error);
-    if (result) return result;
+    TRY(paper_sim(PAPER_SWING, CELLS, &solver, 1, &sim, error));
 
-    result = lab_steps(sim, WARM_STEPS, error);
+    SingeResult result = lab_steps(sim, WARM_STEPS, error);
     if (!result) {
         const double floor = singe_default_network().regularisation;
         Contender contenders[CONTENDERS] = {

@@ -39,10 +39,9 @@ static SingeResult centre_moves(bool with_mass, double *moved, SingeError *error
     def.positions = (const double[]){0, 0, 0, 1.2, 0, 0};
     def.inverse_masses = with_mass ? (const double[]){1, 1 / 9.0} : NULL;
     def.spring_count = 1, def.ends = (const uint32_t[]){0, 1}, def.lengths = (const double[]){1};
-    SingeResult result = singe_network_create(&def, &network, error);
-    if (result) return result;
+    TRY(singe_network_create(&def, &network, error));
 
-    result = singe_network_project(network, 0, NULL);
+    SingeResult result = singe_network_project(network, 0, NULL);
     const double *x = singe_network_positions(network);
     *moved = fabs((x[0] + 9 * x[3]) / 10 - 0.9 * 1.2) / 0.2;
     singe_network_destroy(network);
@@ -54,8 +53,7 @@ static SingeResult steps_taken(SingeSolverMethod method, int max, int *steps, Si
     SingeSolverDef solver = singe_default_solver();
     singe_init_solver_method(&solver, sizeof solver, method);
     SingeSim *sim;
-    SingeResult result = paper_sim(PAPER_SWING, 8, &solver, 1, &sim, error);
-    if (result) return result;
+    TRY(paper_sim(PAPER_SWING, 8, &solver, 1, &sim, error));
 
     for (*steps = 0; *steps < max && !singe_sim_step(sim); ++*steps)
         if (fabs((double)singe_sim_view(sim).position[40][2]) > 1e3) break; // thrown away

@@ -78,11 +78,10 @@ SingeResult paper_longest_side(Lab *lab, bool by_triangles, double *longest, Sin
     LabGrid grid = lab_grid(STRIP_CELLS, 1, (float)strip_cell);
     SingeSim *sim;
     SingeNetwork *network;
-    SingeResult result = lab_build(lab, &grid, &sim, error);
-    if (result) return result;
+    TRY(lab_build(lab, &grid, &sim, error));
 
     const SingeView view = singe_sim_view(sim);
-    result = strip_network(&view, by_triangles, &network, error);
+    SingeResult result = strip_network(&view, by_triangles, &network, error);
 
     // eq 8 to 13
     const double h = (double)PAPER_TIME_STEP, gravity = 9.81;

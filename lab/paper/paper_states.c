@@ -61,9 +61,8 @@ SingeResult paper_sim(PaperState state, int cells, const SingeSolverDef *solver,
     def.air_density = 0;
     if (state == PAPER_SHRINK) def.gravity[2] = 0;
 
-    SingeResult result = singe_sim_create(&def, sim, error);
-    if (result) return result;
-    result = state_build(*sim, state, cells);
+    TRY(singe_sim_create(&def, sim, error));
+    SingeResult result = state_build(*sim, state, cells);
     return result ? bench_give_up(sim, result, error) : SINGE_OK;
 }
 

@@ -74,10 +74,9 @@ static SingeResult capped_step(PaperState state, int cells, int steps, CappedSte
     SingeSolverDef solver = table2_solver(SINGE_SOLVER_PAPER, true);
     SingeSim *sim;
     SingeNetwork *network;
-    SingeResult result = paper_sim(state, cells, &solver, 1, &sim, error);
-    if (result) return result;
+    TRY(paper_sim(state, cells, &solver, 1, &sim, error));
 
-    result = lab_steps(sim, steps, error);
+    SingeResult result = lab_steps(sim, steps, error);
     if (!result)
         result = paper_network(sim, state, false, singe_default_network().regularisation, CAP, &network, error);
 

@@ -109,10 +109,9 @@ static double slope(const double *x, const double *y, int n) {
 
 SingeResult validate_pmma(Lab *lab, SingeError *error) {
     double ours[SHEETS], formula[SHEETS], ratio = 0, spread = 0;
-    SingeResult result = SINGE_OK;
     report_heads(lab->report, "um|g/m2|BASS-II mm/s|de Ris|here|here over BASS-II");
 
-    for (int i = 0; i < SHEETS && !result; i++) {
+    for (int i = 0; i < SHEETS; i++) {
         SingeMaterialDef material = singe_default_material();
         StripResult strip;
 
@@ -128,8 +127,7 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
 
         StripSetup setup = narrow_strip(lab, &material, 0.12f);
         setup.time_step *= (float)(bass_um[i] / 100); // in proportion to the grammage, as the fire is
-        result = strip_burn(&setup, &strip, error);
-        if (result) return result;
+        TRY(strip_burn(&setup, &strip, error));
 
         // de Ris (1969), thermally thin: V = sqrt(2) k_g F/(rho c tau), tau half of the thickness, F = (Tf - Tv)/(Tv -
         // Ta)

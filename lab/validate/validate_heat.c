@@ -21,9 +21,8 @@ static SingeResult slab_error(Lab *lab, int cells, int steps, double *off, Singe
     grid.time_step = (float)(seconds / steps);
 
     SingeSim *sim;
-    SingeResult result = lab_build(lab, &grid, &sim, error);
-    if (result) return result;
-    result = lab_steps(sim, steps, error);
+    TRY(lab_build(lab, &grid, &sim, error));
+    SingeResult result = lab_steps(sim, steps, error);
     SingeView view = singe_sim_view(sim);
 
     // K, the mode's amplitude in the layer of corners

@@ -162,18 +162,16 @@ SingeResult validate_kinetics(Lab *lab, SingeError *error) {
     static const char *const inks[RATES] = {"#2166ac", "#e08214", "#b2182b"};
     static double loss[RATES][LOOKS], temperature[LOOKS];
     double off = 0, residue = 0, apart = 0, first = 0, rising = INFINITY;
-    SingeResult result = SINGE_OK;
 
     for (int i = 0; i < LOOKS; i++) temperature[i] = 300 + 5 * i - 273.15;
     report_heads(lab->report,
                  "heated by|three reactions: peak C|residue %|one reaction, fine: peak C|residue %|simulated: peak "
                  "C|residue %");
 
-    for (int i = 0; i < RATES && !result; i++) {
+    for (int i = 0; i < RATES; i++) {
         KineticsRun three = kinetics_run(rates[i], 0.05, NULL, 0), one = one_reaction(rates[i], 0.05), sim;
         kinetics_run(rates[i], 0.5, loss[i], LOOKS);
-        result = one_simulated(lab, rates[i], &sim, error);
-        if (result) return result;
+        TRY(one_simulated(lab, rates[i], &sim, error));
 
         report_row(lab->report, "%s|%.1f|%.2f|%.1f|%.2f|%.1f|%.2f", names[i], three.peak - 273.15, 100 * three.residue,
                    one.peak - 273.15, 100 * one.residue, sim.peak - 273.15, 100 * sim.residue);

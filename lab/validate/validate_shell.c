@@ -64,10 +64,9 @@ static SingeResult beam_sag(Lab *lab, const Beam *beam, double *sag, SingeError 
     grid.material.compliance[SINGE_RED] = singe_param((float)beam->shear);
 
     SingeSim *sim;
-    SingeResult result = lab_build(lab, &grid, &sim, error);
-    if (result) return result;
+    TRY(lab_build(lab, &grid, &sim, error));
 
-    result = hold(sim, from, to, (double)beam->cell, 0, NULL, error);
+    SingeResult result = hold(sim, from, to, (double)beam->cell, 0, NULL, error);
     if (!result) result = lab_steps(sim, 960, error);
     *sag = -(double)singe_sim_view(sim).position[ny / 2 * (nx + 1) + nx][2];
     singe_sim_destroy(sim);
@@ -79,15 +78,13 @@ SingeResult validate_beam(Lab *lab, SingeError *error) {
                                  {4e-3, 8e-3, 0, 5e-3f}, {3e-3, 9e-3, 0.4, 5e-3f}, {3e-3, 9e-3, 0, 2.5e-3f}};
     enum { CASES = sizeof beams / sizeof *beams };
     double worst = 0;
-    SingeResult result = SINGE_OK;
     report_heads(lab->report, "t mm|green mm/N|red m/N|cells mm|D N m|sag mm|plate mm|over plate");
 
-    for (int i = 0; i < CASES - (lab->quick ? 1 : 0) && !result; i++) {
+    for (int i = 0; i < CASES - (lab->quick ? 1 : 0); i++) {
         const Beam *b = &beams[i];
         double l = (double)(beam_length - beam_clamped), d = b->thickness * b->thickness / b->compliance, sag;
         double plate = rho * gravity * (pow(l, 4) / (8 * d) + l * l / 2 * b->shear);
-        result = beam_sag(lab, b, &sag, error);
-        if (result) return result;
+        TRY(beam_sag(lab, b, &sag, error));
         report_row(lab->report, "%.0f|%.0f|%g|%.1f|%.2g|%.2f|%.2f|%.3f", 1e3 * b->thickness, 1e3 * b->compliance,
                    b->shear, 1e3 * (double)b->cell, d, 1e3 * sag, 1e3 * plate, sag / plate);
         worst = fmax(worst, fabs(sag / plate - 1));
@@ -120,10 +117,9 @@ static SingeResult disc_bend(Lab *lab, double shrink, int cells, bool isotropic,
     grid.solver.isotropic = isotropic;
 
     SingeSim *sim;
-    SingeResult result = lab_build(lab, &grid, &sim, error);
-    if (result) return result;
+    TRY(lab_build(lab, &grid, &sim, error));
 
-    result = lab_steps(sim, lab->quick ? 960 : 1920, error);
+    SingeResult result = lab_steps(sim, lab->quick ? 960 : 1920, error);
     if (!result) {
         SingeView view = singe_sim_view(sim);
         const double rolls = geometry_curvatures(&view, disc_radius, disc_radius, 0.6 * disc_radius, principal);
@@ -157,14 +153,13 @@ static SingeResult pull_test(Lab *lab, bool shear, Stiffness *out, SingeError *e
     grid.material.compliance[SINGE_BLUE] = grid.material.compliance[SINGE_YELLOW] = singe_param(1e3f);
 
     SingeSim *sim;
-    SingeResult result = lab_build(lab, &grid, &sim, error);
-    if (result) return result;
+    TRY(lab_build(lab, &grid, &sim, error));
 
     const float displacement = (float)(0.02 * length);
     const SingePoseKey path[2] = {{0, {0, 0, 0}, {0, 0, 0, 1}},
                                   {0.5f, {shear ? 0 : displacement, shear ? displacement : 0, 0}, {0, 0, 0, 1}}};
     const double left[2][2] = {{0, 0}, {cell, width}}, right[2][2] = {{length - cell, 0}, {length, width}};
-    result = hold(sim, left[0], left[1], cell, 0, NULL, error);
+    SingeResult result = hold(sim, left[0], left[1], cell, 0, NULL, error);
     if (!result) result = hold(sim, right[0], right[1], cell, 2, path, error);
     if (!result) result = lab_steps(sim, 960, error);
 

@@ -231,11 +231,10 @@ bool checkpoint_peek(const char *path, Progress *progress) {
 SingeResult checkpoint_read_file(const char *path, const SingeSimDef *hooks, SceneHash hash, const SceneAssets *assets,
                                  Checkpoint *checkpoint, SingeError *error) {
     Bytes bytes = {0};
-    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
-    if (result) return result;
+    TRY(file_read(path, (SingeAllocator){0}, &bytes, error));
 
     Trailer trailer;
-    result = read_trailer(path, &bytes, hash, assets, &trailer, error);
+    SingeResult result = read_trailer(path, &bytes, hash, assets, &trailer, error);
     if (!result) {
         SingeError inner = {0};
         uint32_t sheet;
