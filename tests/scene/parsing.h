@@ -37,3 +37,30 @@ static inline char *dump_text(const Scene *scene, SceneSyntax syntax) {
     assert_non_null(text);
     return text;
 }
+
+/// A folder with files, in which scenes are read.
+typedef struct Folder {
+    char path[40];
+} Folder;
+
+static inline Folder folder_make(void) {
+    Folder folder = {"/tmp/singe-test-XXXXXX"};
+    assert_non_null(mkdtemp(folder.path));
+    return folder;
+}
+
+static inline void folder_file(const Folder *folder, const char *name, const char *text) {
+    char path[200];
+    snprintf(path, sizeof path, "%s/%s", folder->path, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+static inline void folder_remove(Folder *folder) {
+    char command[120];
+    snprintf(command, sizeof command, "rm -r %s", folder->path);
+    assert_int_equal(system(command), 0);
+}
+#define OwnFolder OWNED(folder_remove) Folder

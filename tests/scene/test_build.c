@@ -44,6 +44,7 @@ static void unload(Loaded *loaded) {
     scene_assets_free(&loaded->assets);
     scene_free(loaded->scene);
 }
+#define OwnLoaded OWNED(unload) Loaded
 
 /// Loads and builds; the messages of whichever refuses.
 static SceneMessages refused(const char *text, const char *folder) {
@@ -63,32 +64,6 @@ static SceneMessages refused(const char *text, const char *folder) {
     assert_null(sim);
     scene_free(scene);
     return messages;
-}
-
-// ---- a folder of files
-
-#define FOLDER "/tmp/singe-scene-XXXXXX"
-
-static void write_text(const char *folder, const char *name, const char *text) {
-    char path[100];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
-}
-
-/// Removes a folder with its files.
-static void remove_folder(const char *folder) {
-    DIR *list = opendir(folder);
-    char path[400];
-    assert_non_null(list);
-    for (struct dirent *entry; (entry = readdir(list));) {
-        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-        if (entry->d_name[0] != '.') assert_int_equal(unlink(path), 0);
-    }
-    closedir(list);
-    assert_int_equal(rmdir(folder), 0);
 }
 
 // ---- tests
@@ -121,14 +96,14 @@ TEST(rotations_turn_about_x_then_y_then_z) {
 }
 
 TEST(a_simulation_has_what_the_scene_says) {
-    Loaded at = build("sheets:\n  - grid: {size: [0.2, 0.1], cells: [4, 2]}\n    rotate: [90, 0, 0]\n"
-                      "    translate: [0, 0, 1]\n    scale: 2\n"
-                      "    material: {mass_rate: {from: 1e-3, to: 2e-3, noise: {seed: 1}}}\n"
-                      "  - grid: {size: [1, 1], cells: [3, 3]}\n"
-                      "sources: [{kind: spot, position: [0, 0, 1]}, {kind: ball, position: [0, 0, 0]}]\n"
-                      "colliders: [{kind: plane, position: [0, 0, -1]}]\n"
-                      "pins: [{points: [[-0.2, 0, 1.1]], radius: 0}, {sheet: 1, vertices: [0, 1]}]\n",
-                      NULL, (SingeLog){0});
+    OwnLoaded at = build("sheets:\n  - grid: {size: [0.2, 0.1], cells: [4, 2]}\n    rotate: [90, 0, 0]\n"
+                         "    translate: [0, 0, 1]\n    scale: 2\n"
+                         "    material: {mass_rate: {from: 1e-3, to: 2e-3, noise: {seed: 1}}}\n"
+                         "  - grid: {size: [1, 1], cells: [3, 3]}\n"
+                         "sources: [{kind: spot, position: [0, 0, 1]}, {kind: ball, position: [0, 0, 0]}]\n"
+                         "colliders: [{kind: plane, position: [0, 0, -1]}]\n"
+                         "pins: [{points: [[-0.2, 0, 1.1]], radius: 0}, {sheet: 1, vertices: [0, 1]}]\n",
+                         NULL, (SingeLog){0});
     SingeSim *sim = at.sim;
     SingeCounts counts = singe_sim_counts(sim);
     assert_int_equal(counts.particles, 15 + 8 + 16 + 9);
@@ -141,7 +116,6 @@ TEST(a_simulation_has_what_the_scene_says) {
     for (uint32_t i = 0; i < view.particle_count; i++) pinned += (view.particle_flags[i] & SINGE_PINNED) != 0;
     assert_int_equal(pinned, 3);
     assert_int_equal(singe_sim_step(sim), SINGE_OK);
-    unload(&at);
 }
 
 // A refusal of the library is reported at the object it concerns.
@@ -153,21 +127,18 @@ TEST(refused_objects_are_named) {
 
 // Files of the wrong kind are all reported, each at the line of its name.
 TEST(bad_files_are_reported) {
-    char folder[] = FOLDER;
-    assert_non_null(mkdtemp(folder));
-    write_text(folder, "bad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 4\n");
-    SceneMessages messages = refused("sheets:\n  - mesh: bad.obj\n    picture: bad.obj\n"
-                                     "  - grid: {size: [1, 1], cells: [2, 2]}\n"
-                                     "    material: {mass_rate: {from: 1, to: 2, attribute: density}}\n",
-                                     folder);
+    OwnFolder folder = folder_make();
+    folder_file(&folder, "bad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 4\n");
+    OwnMessages messages = refused("sheets:\n  - mesh: bad.obj\n    picture: bad.obj\n"
+                                   "  - grid: {size: [1, 1], cells: [2, 2]}\n"
+                                   "    material: {mass_rate: {from: 1, to: 2, attribute: density}}\n",
+                                   folder.path);
     assert_int_equal(messages.count, 3);
     assert_string_equal(messages.items[0].origin, "t.yaml:2:11");
     assert_non_null(strstr(messages.items[0].text, "bad.obj:4"));
     assert_string_equal(messages.items[1].origin, "t.yaml:3:14");
     assert_string_equal(messages.items[2].origin, "t.yaml:5:55");
     assert_non_null(strstr(messages.items[2].text, "no attribute 'density'"));
-    scene_messages_free(&messages);
-    remove_folder(folder);
 }
 
 // Meshes that can be read but not burnt are all reported, each with its file and line or face.
@@ -184,17 +155,16 @@ TEST(bad_meshes_are_reported) {
         {"far.obj", "v 20000 0 0\nv 20001 0 0\nv 20001 1 0\nv 20000 1 0\nf 1 2 3 4\n", "t.yaml:4:11",
          "the sheet reaches beyond 10 km from the origin"},
     };
-    char folder[] = FOLDER;
-    assert_non_null(mkdtemp(folder));
-    for (int i = 0; i < 3; i++) write_text(folder, meshes[i].name, meshes[i].text);
-    write_text(folder, "words.obj", "v 0 0 x\n");
+    OwnFolder folder = folder_make();
+    for (int i = 0; i < 3; i++) folder_file(&folder, meshes[i].name, meshes[i].text);
+    folder_file(&folder, "words.obj", "v 0 0 x\n");
     for (int reader = 0; reader < 2; reader++) { // without, and with, a mesh that cannot even be read
         char text[400];
         snprintf(text, sizeof text,
                  "sheets:\n  - mesh: line.obj\n  - mesh: flat.ply\n  - mesh: far.obj\n"
                  "  - grid: {size: [1, 1], cells: [2, 2]}\n%s",
                  reader ? "  - mesh: words.obj\n" : "");
-        OwnMessages messages = refused(text, folder);
+        OwnMessages messages = refused(text, folder.path);
         assert_int_equal(messages.count, 3 + reader);
         for (int i = 0; i < 3; i++) {
             assert_string_equal(messages.items[i].origin, meshes[i].origin);
@@ -205,17 +175,16 @@ TEST(bad_meshes_are_reported) {
     }
 
     SceneMessages messages =
-        refused("sheets:\n  - grid: {size: [1e-6, 1e4], cells: [2, 2]}\n  - mesh: line.obj\n", folder);
+        refused("sheets:\n  - grid: {size: [1e-6, 1e4], cells: [2, 2]}\n  - mesh: line.obj\n", folder.path);
     assert_int_equal(messages.count, 2);
     assert_string_equal(messages.items[0].origin, "t.yaml:2:5");
     assert_non_null(strstr(messages.items[0].text, "the grid cannot be used: cell 0 has"));
     scene_messages_free(&messages);
-    messages =
-        refused("sheets:\n  - {grid: {size: [1, 1], cells: [2, 2]}, scale: 1e4, translate: [6000, 0, 0]}\n", folder);
+    messages = refused("sheets:\n  - {grid: {size: [1, 1], cells: [2, 2]}, scale: 1e4, translate: [6000, 0, 0]}\n",
+                       folder.path);
     assert_int_equal(messages.count, 1);
     assert_non_null(strstr(messages.items[0].text, "beyond 10 km"));
     scene_messages_free(&messages);
-    remove_folder(folder);
 }
 
 static void keep_line(void *context, SingeLogLevel level, const char *line) {
@@ -226,8 +195,7 @@ static void keep_line(void *context, SingeLogLevel level, const char *line) {
 /// Loads and builds a scene, and keeps its warnings.
 static void warnings_of(const char *text, char *lines) {
     lines[0] = 0;
-    Loaded at = build(text, NULL, (SingeLog){keep_line, lines});
-    unload(&at);
+    OwnLoaded at = build(text, NULL, (SingeLog){keep_line, lines});
 }
 
 /// Values without effect cause warnings with their location.
@@ -379,20 +347,19 @@ static const char nut[] = "v -2 -2 0\nv 2 -2 0\nv 2 0 0\nv 1 0 0\nv 1 -1 0\nv -1
 /// A mesh in place of a sheet is placed as the sheet is, triangulated, and one vertex for each uv; one that does not fit
 /// is refused at its file.
 TEST(render_meshes_are_bound) {
-    char folder[] = FOLDER;
     static const char mesh[] = "v -50 0 0\nv 50 0 0\nv 50 50 0\nv 0 90 0\nv -50 50 0\nv -50 -50 0\nv 50 -50 0\n"
                                "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
                                "f 1/1 2/2 3/3 4/4 5/4\nf 6/1 7/2 2/3 1/4\n";
-    assert_non_null(mkdtemp(folder));
-    write_text(folder, "a.obj", mesh);
+    OwnFolder folder = folder_make();
+    folder_file(&folder, "a.obj", mesh);
     for (int far = 0; far < 2; far++) {
         char text[400];
         snprintf(text, sizeof text,
                  "sheets:\n  - grid: {size: [100 mm, 100 mm], cells: [10, 10], jitter: 0}\n    units: mm\n"
                  "    render_mesh: {mesh: a.obj, reach: %s}\n",
                  far ? "1 mm" : "50 mm");
-        Loaded at = load(text, folder);
-        SceneMessages messages = {0};
+        OwnLoaded at = load(text, folder.path);
+        OwnMessages messages = {0};
         SingeSimDef hooks = singe_default_sim();
         const RenderFile *file = &at.assets.renders[0];
         assert_int_equal(file->def.vertex_count, 9);
@@ -403,22 +370,19 @@ TEST(render_meshes_are_bound) {
         assert_int_equal(messages.count, far);
         if (far) assert_string_equal(messages.items[0].origin, "t.yaml:4:25");
         if (far) assert_non_null(strstr(messages.items[0].text, "vertices are farther from the sheet than its reach"));
-        scene_messages_free(&messages);
-        unload(&at);
     }
-    remove_folder(folder);
 }
 
 /// Meshes and height fields become colliders and shapes; an open mesh is reported at its collider.
 TEST(solids_become_colliders_and_shapes) {
-    char folder[] = FOLDER, text[600], path[100];
-    assert_non_null(mkdtemp(folder));
-    write_text(folder, "nut.obj", nut);
+    OwnFolder folder = folder_make();
+    char text[600], path[100];
+    folder_file(&folder, "nut.obj", nut);
     snprintf(text, sizeof text, cube, "f 4 1 5 8\n");
-    write_text(folder, "cube.obj", text);
+    folder_file(&folder, "cube.obj", text);
     snprintf(text, sizeof text, cube, "");
-    write_text(folder, "open.obj", text);
-    snprintf(path, sizeof path, "%s/heights.png", folder);
+    folder_file(&folder, "open.obj", text);
+    snprintf(path, sizeof path, "%s/heights.png", folder.path);
 
     // three columns and two rows: above, black, white, black; below, white, black, black
     const uint8_t pixels[18] = {0, 0, 0, 255, 255, 255, 0, 0, 0, 255, 255, 255};
@@ -428,7 +392,7 @@ TEST(solids_become_colliders_and_shapes) {
                                    "     heights: [1 cm, 3 cm]}\n"
                                    "  - {kind: mesh, mesh: nut.obj, units: cm, scale: 0.5}\n";
     const char *const bad = SHEET "colliders:\n  - {kind: plane}\n  - {kind: mesh, mesh: open.obj}\n";
-    Loaded at = build(good, folder, (SingeLog){0});
+    Loaded at = build(good, folder.path, (SingeLog){0});
     const SceneSolid *mesh = &at.assets.solids[0], *field = &at.assets.solids[1];
     assert_true(mesh->surface.vertex_count == 8 && mesh->surface.triangle_count == 12);
     assert_true(fabsf(mesh->surface.vertices[3] - 0.02f) < 1e-7f);
@@ -443,17 +407,15 @@ TEST(solids_become_colliders_and_shapes) {
     assert_true(shapes[0].solid == &mesh->surface && shapes[1].solid == &field->surface);
     unload(&at);
 
-    SceneMessages messages = refused(bad, folder);
+    OwnMessages messages = refused(bad, folder.path);
     assert_int_equal(messages.count, 1);
     assert_non_null(strstr(messages.items[0].text, "has no neighbour along"));
     assert_string_equal(messages.items[0].origin, "t.yaml:5:5");
-    scene_messages_free(&messages);
-    remove_folder(folder);
 }
 
 /// Steps from frame 1 to `frames`, and notes what has burnt at each, on the left half of the sheet and on the right.
 static void burn_frames(const char *text, const char *folder, int frames, double burnt[][2]) {
-    Loaded at = build(text, folder, (SingeLog){0});
+    OwnLoaded at = build(text, folder, (SingeLog){0});
     SingeSim *sim = at.sim;
     for (int frame = 1; frame <= frames; frame++) {
         assert_int_equal(scene_follow(at.scene, &at.assets, sim, frame, NULL), SINGE_OK);
@@ -463,7 +425,6 @@ static void burn_frames(const char *text, const char *folder, int frames, double
         for (uint32_t i = 0; i < view.vertex_count; i++)
             burnt[frame][view.rest_position[i][0] > 0] += 1 - (double)view.mass[i];
     }
-    unload(&at);
 }
 
 // A sheet that begins hot burns where and while its material does.
@@ -512,27 +473,25 @@ TEST(materials_follow_keys_and_numbered_pictures) {
     // white on the left, and from the third frame on on the right; the last picture stays
     static const char text[] = "frames: 6\n" HOT "mass_rate: {from: 0, to: 9e-3, texture: matte.####.png}}\n";
     const uint8_t sides[2][6] = {{255, 255, 255, 0, 0, 0}, {0, 0, 0, 255, 255, 255}};
-    char folder[] = FOLDER, path[3][100];
-    assert_non_null(mkdtemp(folder));
+    OwnFolder folder = folder_make();
+    char path[3][100];
     for (int n = 0; n < 3; n++) {
-        snprintf(path[n], sizeof path[n], "%s/matte.%04d.png", folder, n + 1);
+        snprintf(path[n], sizeof path[n], "%s/matte.%04d.png", folder.path, n + 1);
         assert_int_equal(png_write(path[n], 2, 1, sides[n > 1], NULL), SINGE_OK);
     }
-    burn_frames(text, folder, 5, burnt);
+    burn_frames(text, folder.path, 5, burnt);
     assert_true(burnt[2][0] > 4 * burnt[2][1]); // 16.5 and 3.5
     assert_true(burnt[3][1] > burnt[2][1] + 8 && burnt[5][1] > burnt[3][1] + 0.5);
 
     // the second is missing
     remove(path[1]);
-    SceneMessages messages = refused(text, folder);
+    OwnMessages messages = refused(text, folder.path);
     assert_non_null(strstr(messages.items[0].text, "matte.0002.png: there is no such file, but the next one exists"));
     assert_int_equal(messages.items[0].location.line, 9);
-    scene_messages_free(&messages);
-    remove_folder(folder);
 }
 
 TEST(the_preview_has_what_the_scene_says) {
-    Loaded at = load(
+    OwnLoaded at = load(
         SHEET "    colour: [0.5, 0.25, 1]\n"
               "sources:\n"
               "  - {kind: ball, radius: 2 cm, temperature: 1300, start: 1, end: 3,\n"
@@ -555,7 +514,6 @@ TEST(the_preview_has_what_the_scene_says) {
     assert_true(shapes[1].position[0] == 1 && shapes[1].position[2] == 2 && shapes[1].temperature == 1300);
     assert_true(shapes[1].radius == 0.02f && shapes[1].rotation[3] == 1);
     assert_int_equal(scene_shapes(scene, assets, 2, shapes, 1), 2);
-    unload(&at);
 }
 
 TEST(the_examples_build) {
@@ -612,31 +570,28 @@ static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
 
 /// The usual forgotten unit: an object file in centimetres is read as metres.
 TEST(large_mesh_files_are_warned_of) {
-    char folder[] = FOLDER;
-    assert_non_null(mkdtemp(folder));
-    write_text(folder, "a.obj", "v 0 0 0\nv 30 0 0\nv 30 20 0\nv 0 20 0\nf 1 2 3 4\n");
+    OwnFolder folder = folder_make();
+    folder_file(&folder, "a.obj", "v 0 0 0\nv 30 0 0\nv 30 20 0\nv 0 20 0\nf 1 2 3 4\n");
     static const char *const texts[] = {"", ", scale: 0.01", ", units: cm"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         char text[100], lines[4000] = "";
         snprintf(text, sizeof text, "sheets: [{mesh: a.obj%s}]\n", texts[i]);
-        Loaded at = build(text, folder, (SingeLog){keep_line, lines});
+        Loaded at = build(text, folder.path, (SingeLog){keep_line, lines});
         unload(&at);
         const char *said = "t.yaml:1:17: the mesh is 30 x 20 x 0 m large: are its numbers cm or mm? (units: cm)\n";
         if (!strstr(lines, said) == (i == 0)) fail_msg("%s%s", text, lines);
     }
-    remove_folder(folder);
 }
 
 // A file of triangles, in millimetres and y up. A pin takes the file's vertex numbers, also that of a welded vertex.
 TEST(mesh_files_are_scaled_and_welded) {
-    char folder[] = FOLDER;
-    assert_non_null(mkdtemp(folder));
-    write_text(folder, "a.obj",
-               "v 5 5 5\nv 0 0 0\nv 100 0 0\nv 100 200 -300\nv 0 0 0\nv 100 200 -300\nv 0 200 -300\n"
-               "f 2 3 4\nf 5 6 7\n");
+    OwnFolder folder = folder_make();
+    folder_file(&folder, "a.obj",
+                "v 5 5 5\nv 0 0 0\nv 100 0 0\nv 100 200 -300\nv 0 0 0\nv 100 200 -300\nv 0 200 -300\n"
+                "f 2 3 4\nf 5 6 7\n");
     static const char text[] = "sheets: [{mesh: a.obj, units: mm, up: y, scale: 2, translate: [0, 0, 1]}]\n"
                                "pins: [{vertices: [4, 6]}]\ntearing: no\n"; // no vertices in reserve
-    Loaded at = build(text, folder, (SingeLog){0});
+    Loaded at = build(text, folder.path, (SingeLog){0});
     assert_int_equal(at.assets.reports[0].count[MESH_WELDED], 2);
     SingeView view = singe_sim_view(at.sim);
     assert_int_equal(view.vertex_count, 4);
@@ -654,11 +609,9 @@ TEST(mesh_files_are_scaled_and_welded) {
 
     assert_int_equal(held, 2);
     unload(&at);
-    SceneMessages messages = refused("sheets: [{mesh: a.obj, units: mm}]\npins: [{vertices: [0]}]\n", folder);
+    OwnMessages messages = refused("sheets: [{mesh: a.obj, units: mm}]\npins: [{vertices: [0]}]\n", folder.path);
     assert_int_equal(messages.count, 1);
     assert_non_null(strstr(messages.items[0].text, "vertex 0 is out of range or belongs to no face"));
-    scene_messages_free(&messages);
-    remove_folder(folder);
 }
 
 /// The camera passes its path's entries at their times, smoothly: its speed at an entry does not jump, as on straight
@@ -694,13 +647,12 @@ TEST(a_camera_follows_its_path) {
 static double half_shown(const char *more) {
     char text[400];
     snprintf(text, sizeof text, "{sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}, rotate: [90, 0, 0]}]%s}", more);
-    Loaded at = load(text, NULL);
+    OwnLoaded at = load(text, NULL);
     scene_frame(at.scene, &at.assets);
     const PreviewCamera *camera = &at.scene->preview.def.camera;
     double square = 0;
     for (int k = 0; k < 3; k++) square += pow((double)camera->eye[k] - (double)camera->target[k], 2);
     const double half = sqrt(square) * tan(0.5 * (double)camera->fov);
-    unload(&at);
     return half;
 }
 
@@ -721,16 +673,15 @@ TEST(the_camera_finds_the_sheets) {
     };
     for (size_t i = 0; i <= sizeof scenes / sizeof *scenes; i++) {
         bool given = i == sizeof scenes / sizeof *scenes;
-        Loaded at = load(given ? "{sheets: [{grid: {size: [1, 1], cells: [2, 2]}}], "
-                                 "preview: {camera: {eye: [5, 5, 5]}}}"
-                               : scenes[i],
-                         NULL);
+        OwnLoaded at = load(given ? "{sheets: [{grid: {size: [1, 1], cells: [2, 2]}}], "
+                                    "preview: {camera: {eye: [5, 5, 5]}}}"
+                                  : scenes[i],
+                            NULL);
         scene_frame(at.scene, &at.assets);
         const PreviewCamera *camera = &at.scene->preview.def.camera;
         const double reach = reach_in_picture(at.scene, &at.assets);
         if (given) assert_true(camera->eye[0] == 5 && camera->target[0] == 0);
         else assert_true(reach > 0.55 && reach < 1);
-        unload(&at);
     }
 
     // sheets that are nearly a point: the camera still has a direction
@@ -739,22 +690,20 @@ TEST(the_camera_finds_the_sheets) {
         "sheets: [{grid: {size: [2 mm, 2 mm], cells: [4, 6]}, translate: [8000, -7000, 900]}]",
     };
     for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
-        Loaded at = load(points[i], NULL);
+        OwnLoaded at = load(points[i], NULL);
         scene_frame(at.scene, &at.assets);
         const PreviewCamera *camera = &at.scene->preview.def.camera;
         double square = 0;
         for (int k = 0; k < 3; k++) square += pow((double)camera->eye[k] - (double)camera->target[k], 2);
         print_message("%g m from the sheet\n", sqrt(square));
         assert_true(sqrt(square) > 9e-6 && sqrt(square) < 0.1);
-        unload(&at);
     }
 
     // too far for a camera: the default one stays
-    Loaded at = load("sheets: [{grid: {size: [9000, 9000], cells: [2, 2]}}]", NULL);
+    OwnLoaded at = load("sheets: [{grid: {size: [9000, 9000], cells: [2, 2]}}]", NULL);
     PreviewCamera before = at.scene->preview.def.camera;
     scene_frame(at.scene, &at.assets);
     assert_memory_equal(&at.scene->preview.def.camera, &before, sizeof before);
-    unload(&at);
 
     // an up along the default line of sight is good where that is not used
     scene_free(good_scene(SHEET "preview: {camera: {up: [0, 0.5, -0.4]}}\n", NULL, 0));

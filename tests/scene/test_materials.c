@@ -5,32 +5,6 @@
 
 #include "scene/schema.h"
 
-/// A folder with files, in which scenes are read.
-typedef struct Folder {
-    char path[64];
-} Folder;
-
-static Folder folder_make(void) {
-    Folder folder = {"/tmp/singe-materials-XXXXXX"};
-    assert_non_null(mkdtemp(folder.path));
-    return folder;
-}
-
-static void folder_file(const Folder *folder, const char *name, const char *text) {
-    char path[200];
-    snprintf(path, sizeof path, "%s/%s", folder->path, name);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-}
-
-static void folder_remove(const Folder *folder) {
-    char command[120];
-    snprintf(command, sizeof command, "rm -r %s", folder->path);
-    assert_int_equal(system(command), 0);
-}
-
 static SingeResult folder_parse(const Folder *folder, const char *text, const char *const *sets, int count,
                                 Scene **scene, SceneMessages *messages) {
     return scene_parse("scene.yaml", text, strlen(text), folder ? folder->path : NULL, sets, count, scene, messages);
@@ -135,7 +109,7 @@ TEST(set_changes_materials) {
 /// Material files in the scene's folder or below it, one based on another. Names in them are relative to them. The
 /// resolved scene does not need them.
 TEST(material_files_are_found) {
-    Folder folder = folder_make();
+    OwnFolder folder = folder_make();
     char below[100];
     snprintf(below, sizeof below, "%s/below", folder.path);
     assert_int_equal(mkdir(below, 0700), 0);
@@ -159,7 +133,6 @@ TEST(material_files_are_found) {
     assert_true(!material->def.thickness.field && !thickness->name); // the number replaced it
 
     char *yaml = dump_text(scene, SCENE_YAML), *json = dump_text(scene, SCENE_JSON);
-    folder_remove(&folder);
     assert_null(strstr(yaml, "base:"));
 
     for (int k = 0; k < 2; k++) {
@@ -204,7 +177,7 @@ TEST(messages_quote_no_other_file) {
         "SECRET: |0\n  SECRET\n",
     };
 
-    Folder folder = folder_make();
+    OwnFolder folder = folder_make();
     for (size_t i = 0; i < sizeof secrets / sizeof *secrets; i++) {
         Scene *scene = NULL;
         OwnMessages messages = {0};
@@ -222,8 +195,6 @@ TEST(messages_quote_no_other_file) {
             assert_non_null(strstr(message->origin, "other.yaml:"));
         }
     }
-
-    folder_remove(&folder);
 }
 
 /// One error, with its location and its line.
@@ -246,7 +217,7 @@ static void expect_mistake(const Folder *folder, const char *line, const char *o
 }
 
 TEST(wrong_materials_are_reported) {
-    Folder folder = folder_make();
+    OwnFolder folder = folder_make();
     const Folder *in = &folder;
     char long_file[100];
 
@@ -310,7 +281,6 @@ TEST(wrong_materials_are_reported) {
     assert_int_equal(mkfifo(fifo, 0600), 0);
     expect_mistake(in, "    material: fifo.yaml\n", "scene.yaml:3:15", "not a regular file", 1);
     expect_mistake(in, "    material: /dev/zero\n", "scene.yaml:3:15", "not a regular file", 1);
-    folder_remove(in);
 
     // without a folder files are not looked for, but what is built in is there
     Scene *scene = folder_scene(NULL, SHEET "    material: gone.yaml\n", NULL, 0);
