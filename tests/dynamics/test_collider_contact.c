@@ -202,10 +202,9 @@ static double rests(SingeColliderDef def, const char *name, float height) {
 }
 
 TEST(sheets_rest_on_meshes_and_heights) {
-    Triangles torus = triangles_torus(64, 32, 0.03f, 0.012f);
+    OwnTriangles torus = triangles_torus(64, 32, 0.03f, 0.012f);
     SingeColliderDef def = triangles_def(&torus);
     assert_true(rests(def, "torus", 0.016f) < 0.05);
-    triangles_free(&torus);
     enum { N = 65 };
     static float heights[N * N];
     for (int k = 0; k < N * N; k++)

@@ -178,12 +178,11 @@ static void check_lanes(const SpringSet *springs, const StrandSet *set, Density 
 }
 
 static Density measure_lanes(const char *name, Quads quads) {
-    Bench bench;
+    OwnBench bench;
     Density density = {0};
     bench_open(&bench, quads, NULL, 1);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         check_lanes(&bench.shell.springs[colour], &bench.plan->strands.sets[colour], &density);
-    bench_close(&bench);
     print_message("%s: %.1f %% of the slots empty, %.0f %% of the rows beside each other\n", name,
                   100 - 100 * (double)density.springs / (double)density.slots,
                   100 * (double)density.beside / (double)density.rows);

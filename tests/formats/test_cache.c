@@ -149,7 +149,7 @@ static SingeResult read_copy(const uint8_t *data, size_t size, SingeError *why) 
 
 TEST(damage_is_noticed) {
     OwnSurface sample = make_sample();
-    Bytes bytes = written(&sample, 3);
+    OwnBytes bytes = written(&sample, 3);
     for (size_t size = 0; size < bytes.size; size++)
         if (read_copy(bytes.data, size, &error) == SINGE_OK) fail_msg("cut to %d bytes", (int)size);
     assert_int_equal(read_copy(bytes.data, bytes.size, &error), SINGE_OK);
@@ -170,7 +170,6 @@ TEST(damage_is_noticed) {
     x[2] = 0xc0, x[3] = 0x7f;
     assert_int_equal(read_copy(bytes.data, bytes.size, &error), SINGE_ERROR_FORMAT);
     assert_message(&error, "x of vertex 0");
-    bytes_free(&bytes);
 
     static const char mesh[] = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n";
     assert_int_equal(read_copy((const uint8_t *)mesh, sizeof mesh - 1, &error), SINGE_ERROR_FORMAT);

@@ -126,7 +126,7 @@ TEST(png_write_reads_back) {
     for (size_t i = 0; i < sizeof rgb; i++) rgb[i] = (uint8_t)(i * i >> 3);
     if (png_write(path, WIDTH, HEIGHT, rgb, &error)) fail_msg("%s", error.message);
 
-    Bytes bytes = take_file(path);
+    OwnBytes bytes = take_file(path);
     assert_int_equal(read_copy(bytes.data, bytes.size, &image, &error), SINGE_OK);
     assert_int_equal(image.width, WIDTH);
     assert_int_equal(image.height, HEIGHT);
@@ -139,7 +139,6 @@ TEST(png_write_reads_back) {
         assert_true(error.message[0] != 0);
     }
 
-    bytes_free(&bytes);
     assert_int_equal(png_write(path, 0, 4, rgb, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(png_write(path, 4, 20000, rgb, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(png_write("/proc/nowhere/a.png", 4, 4, rgb, &error), SINGE_ERROR_FILE);

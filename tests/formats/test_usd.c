@@ -154,12 +154,11 @@ TEST(sheets_are_meshes_of_their_own) {
     make_sheet(&s, 12, 2);
     s.triangle_count = 0, s.wet = true;
 
-    Bytes bytes = written(&s, 2, NULL);
+    OwnBytes bytes = written(&s, 2, NULL);
     crate_open(&file, bytes.data, bytes.size);
     check_mesh(&file, &s, "/_7_up/sheets/a_b", 0);
     check_mesh(&file, &s, "/_7_up/sheets/a_b_2", 1);
     crate_close(&file);
-    bytes_free(&bytes);
 
     s.triangle_count = 1; // of vertices 0, 1 and 13
     assert_int_equal(write_sheet(&s, 2, NULL, &error), SINGE_ERROR_FORMAT);

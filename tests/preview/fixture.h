@@ -48,14 +48,16 @@ static inline Preview *preview_open(const PreviewDef *def) {
     return preview;
 }
 
+static inline void preview_end(Preview **preview) { preview_destroy(*preview); }
+#define OwnPreview OWNED(preview_end) Preview
+
 /// A picture with gas, which may be NULL.
 static inline void draw_gas(const PreviewDef *def, const SingeSurface *surface, const SingeGas *gas, double time,
                             uint8_t *rgb) {
-    Preview *preview = preview_open(def);
+    OwnPreview *preview = preview_open(def);
     SingeError error = {0};
     if (preview_set_gas(preview, gas, &error)) fail_msg("%s", error.message);
     assert_int_equal(preview_draw(preview, surface, time, rgb, NULL), SINGE_OK);
-    preview_destroy(preview);
 }
 
 static inline void draw(const PreviewDef *def, const SingeSurface *surface, double time, uint8_t *rgb) {
@@ -65,10 +67,9 @@ static inline void draw(const PreviewDef *def, const SingeSurface *surface, doub
 /// Layers of a picture with gas, which may be NULL.
 static inline void draw_layers(const PreviewDef *def, const SingeSurface *surface, const SingeGas *gas, double time,
                                const PreviewLayers *layers) {
-    Preview *preview = preview_open(def);
+    OwnPreview *preview = preview_open(def);
     assert_int_equal(preview_set_gas(preview, gas, NULL), SINGE_OK);
     assert_int_equal(preview_draw_layers(preview, surface, time, NULL, layers, NULL), SINGE_OK);
-    preview_destroy(preview);
 }
 
 static inline const uint8_t *pixel(const uint8_t *rgb, int x, int y) { return rgb + 3 * (y * W + x); }

@@ -22,7 +22,7 @@ TEST(embers_throw_sparks_and_smoke) {
         if (kind == TAKEN_AWAY || kind == FLAKES) def.sparks = def.wisps = 0;
         def.flakes = kind == COLD || kind == FLAKES;
         PreviewLayers layers = {.fire = fire};
-        Preview *preview = preview_open(&def);
+        OwnPreview *preview = preview_open(&def);
         int sparks = 0, hidden = 0;
         float smoke = 0;
         for (int k = 0; k < FRAMES; k++) {
@@ -33,7 +33,6 @@ TEST(embers_throw_sparks_and_smoke) {
                 hidden += kind != SMOULDERING && fire[i][3] > 0.1f;
             }
         }
-        preview_destroy(preview);
         print_message("case %d: %d pixels of sparks, %d hidden by flakes, smoke hides %.3f\n", kind, sparks, hidden,
                       (double)smoke);
         assert_true((hidden > 10) == (kind == FLAKES));
@@ -86,13 +85,12 @@ TEST(wisps_are_threads_that_break_and_fade) {
     def.camera = (PreviewCamera){
         .eye = {0, -1, H / 1000.0f}, .target = {0, 0, H / 1000.0f}, .up = {0, 0, 1}, .fov = 2 * atanf(H / 1000.0f)};
     PreviewLayers layers = {.fire = fire};
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     Slice slices[SLICES] = {{0, 0, 0}};
     for (int k = 0; k < FRAMES; k++) {
         assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 2.0, NULL, &layers, NULL), SINGE_OK);
         for (int n = 0; n < SLICES; n++) slice_add(fire, heights[n], &slices[n]);
     }
-    preview_destroy(preview);
     for (int n = 0; n < SLICES; n++) {
         slices[n].wide /= slices[n].all, slices[n].dense /= slices[n].all;
         print_message("%3d mm up a wisp is %5.1f mm wide, hides %.3f there, in all %.2f\n", 2 * heights[n] + 3,
@@ -133,7 +131,7 @@ TEST(sparks_are_thin) {
     PreviewDef def = embers_make(&paper);
     def.camera.eye[1] = -0.18f, def.camera.fov = 0.4f, def.camera.aperture = 0.01f, def.camera.focus = 0.3f;
     PreviewLayers layers = {.fire = fire};
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     float width = 0, light = 0, sparks = 0;
     for (int k = 0; k < FRAMES; k++) {
         assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
@@ -146,7 +144,6 @@ TEST(sparks_are_thin) {
             light += streak.light, sparks++;
         }
     }
-    preview_destroy(preview);
     width /= light;
     print_message("%.0f sparks are %.2f pixels wide\n", (double)sparks, (double)width);
     assert_true(sparks > FRAMES);
@@ -163,7 +160,7 @@ TEST(sparks_taper_and_differ_in_length) {
     def.sparks = 0.1f; // so that they do not touch
     def.camera.eye[1] = -0.2f, def.camera.fov = 0.3f, def.shutter = 1 / 48.0f;
     PreviewLayers layers = {.fire = fire};
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     float even = 0, light = 0, sparks = 0, sum = 0, squares = 0, longest = 0;
     for (int k = 0; k < FRAMES; k++) {
         assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
@@ -186,7 +183,6 @@ TEST(sparks_taper_and_differ_in_length) {
             longest = fmaxf(longest, (float)length);
         }
     }
-    preview_destroy(preview);
     const float mean = sum / sparks, varies = sqrtf(squares / sparks - mean * mean) / mean;
     print_message("%.0f sparks: %.2f even, lengths of %.1f pixels vary by %.2f, %.0f at most\n", (double)sparks,
                   (double)(even / light), (double)mean, (double)varies, (double)longest);
@@ -203,13 +199,12 @@ TEST(flakes_are_dark) {
     PreviewDef def = embers_make(&paper);
     def.sparks = 0, def.flakes = 4, def.shutter = 1 / 48.0f;
     PreviewLayers layers = {.fire = fire};
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     float light = 0, hidden = 0;
     for (int k = 0; k < 24; k++) {
         assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
         for (int i = 0; i < W * (H - 10); i++) light += fire[i][2], hidden += fire[i][3];
     }
-    preview_destroy(preview);
     print_message("flakes hide %.0f pixels, and reflect %.3f of blue light there\n", (double)hidden,
                   (double)(light / hidden));
     assert_true(hidden > 120 && light < 0.035f * hidden); // 0.047
@@ -225,7 +220,7 @@ TEST(flakes_have_a_form) {
     def.sparks = 0, def.flakes = 30, def.shutter = 0, def.camera.fov = 0.02f;
     def.camera.eye[2] = def.camera.target[2] = 0.04f;
     PreviewLayers layers = {.fire = fire};
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     float light = 0, differs = 0;
     int pixels = 0;
     for (int k = 0; k < FRAMES; k++) {
@@ -235,7 +230,6 @@ TEST(flakes_have_a_form) {
             light += fire[i][2], differs += fabsf(fire[i][2] - fire[i + APART][2]), pixels++;
         }
     }
-    preview_destroy(preview);
     print_message("flakes: light differs by %.2f of its mean (%d pixels)\n", (double)(differs / light), pixels);
     assert_true(pixels > 100 && differs > 0.4f * light); // 0.31
 }
@@ -274,7 +268,7 @@ TEST(sparks_differ) {
     static Burning paper;
     PreviewDef def = embers_make(&paper);
     PreviewLayers layers = {.fire = fire};
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     int sparks = 0;
     float sum = 0, squares = 0;
     for (int k = 0; k < FRAMES; k++) {
@@ -286,7 +280,6 @@ TEST(sparks_differ) {
             sparks += light > 0, sum += light, squares += light * light;
         }
     }
-    preview_destroy(preview);
     const float mean = sum / (float)sparks, varies = sqrtf(squares / (float)sparks - mean * mean) / mean;
     print_message("the light of %d sparks varies by %.2f of the mean\n", sparks, (double)varies);
     assert_true(sparks > 3 * FRAMES);
@@ -301,7 +294,7 @@ TEST(sparks_come_in_bursts) {
     static Burning paper;
     PreviewDef def = embers_make(&paper);
     PreviewLayers layers = {.fire = fire};
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     float sum = 0, squares = 0;
     for (int k = 0; k < FRAMES; k++) {
         float count[PARTS] = {0};
@@ -313,7 +306,6 @@ TEST(sparks_come_in_bursts) {
         }
         for (int n = 0; n < PARTS; n++) sum += count[n], squares += count[n] * count[n];
     }
-    preview_destroy(preview);
     const float mean = sum / (FRAMES * PARTS), over = (squares / (FRAMES * PARTS) - mean * mean) / mean;
     print_message("%.1f sparks to a part, their variance over that is %.2f\n", (double)mean, (double)over);
     assert_true(over > 6.4f); // 5.6
@@ -330,7 +322,7 @@ TEST(sparks_rise_and_cool_in_the_plume) {
         if (v / 16 < 1 || v / 16 > 2) paper.rate[v] = 0, paper.temperature[v] = 293;
     def.sparks = 8;
     PreviewLayers layers = {.fire = fire};
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     float light[2] = {0, 0}, green[2] = {0, 0}, aside[2] = {0, 0};
     for (int k = 0; k < FRAMES; k++) {
         assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 3.0, NULL, &layers, NULL), SINGE_OK);
@@ -340,7 +332,6 @@ TEST(sparks_rise_and_cool_in_the_plume) {
             aside[high] += fire[i][0] * 3.1f * fabsf((float)(i % W) - W / 2);
         }
     }
-    preview_destroy(preview);
     for (int high = 0; high < 2; high++)
         print_message("sparks %s: light %.2f, %.0f mm aside, red over green %.2f\n", high ? "high" : "low",
                       (double)light[high], (double)(aside[high] / light[high]), (double)(light[high] / green[high]));
@@ -358,14 +349,13 @@ TEST(wisps_are_blue_grey) {
     for (int c = 0; c < 3; c++) def.sun_colour[c] = 0, def.sky_colour[c] = 0.02f + 0.004f * (float)c;
     for (int v = 0; v < 4 * WIDE; v++) paper.rate[v] = v / 4 % 4 < 2;
     PreviewLayers layers = {.fire = fire};
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     float sum[3] = {0, 0, 0};
     for (int k = 0; k < 6; k++) {
         assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
         for (int i = 0; i < W * (H - 10); i++)
             for (int c = 0; c < 3; c++) sum[c] += fire[i][c];
     }
-    preview_destroy(preview);
     print_message("wisps: red %.2f, green %.2f, blue %.2f\n", (double)sum[0], (double)sum[1], (double)sum[2]);
     assert_true(sum[2] > 1 && sum[0] < sum[1] && sum[1] < sum[2]);
 }

@@ -68,7 +68,7 @@ TEST(instruction_sets_see_the_same_flames) {
     static uint8_t rgb[BYTES];
     line_make(&line, 0.003f), burning_make(&paper);
     PreviewDef def = aside(0.02f);
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     assert_int_equal(preview_set_gas(preview, &line.gas, NULL), SINGE_OK);
     assert_int_equal(preview_draw(preview, &paper.surface, 0.3, rgb, NULL), SINGE_OK);
     const Fire *fire = &preview->fire;
@@ -101,7 +101,6 @@ TEST(instruction_sets_see_the_same_flames) {
             moved += one.depth > 0 && fire_point(&other, 0).depth != one.depth;
         }
     }
-    preview_destroy(preview);
     print_message("%d of %d positions are in flames\n", inside, PACKETS * FIRE_LANES);
     assert_true(inside > 60 && moved > 9 * inside / 10);
 }
@@ -611,7 +610,7 @@ TEST(pictures_do_not_depend_on_threads_or_order) {
     for (int threads = 1; threads <= 3; threads++) {
         PreviewDef def = small();
         def.width = BIG_W, def.height = BIG_H, def.thread_count = threads;
-        Preview *preview = preview_open(&def);
+        OwnPreview *preview = preview_open(&def);
         if (threads == 3) {
             assert_int_equal(preview_set_gas(preview, &other.gas, NULL), SINGE_OK);
             assert_int_equal(preview_draw(preview, &surface, 2, again, NULL), SINGE_OK);
@@ -621,7 +620,6 @@ TEST(pictures_do_not_depend_on_threads_or_order) {
         assert_int_equal(preview_set_gas(preview, &gas.gas, NULL), SINGE_OK);
         assert_int_equal(preview_draw(preview, &surface, 1, threads == 1 ? first : again, NULL), SINGE_OK);
         if (threads > 1) assert_memory_equal(first, again, BIG);
-        preview_destroy(preview);
     }
 
     synthetic_gas_free(&gas), synthetic_gas_free(&other), synthetic_free(&surface);

@@ -153,7 +153,7 @@ TEST(no_step_leaps_over_an_edge) {
     for (int i = 0; i < COLUMN; i++)
         line.flame[i] = i % WIDE > 0 && i % WIDE < WIDE - 1 ? 5e6f * expf(-0.1f * (float)(i / (WIDE * DEEP))) : 0;
     PreviewDef def = aside(0.02f);
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     for (int k = 0; k < MOMENTS; k++) {
         static uint8_t rgb[BYTES];
         assert_int_equal(preview_set_gas(preview, &line.gas, NULL), SINGE_OK);
@@ -169,7 +169,6 @@ TEST(no_step_leaps_over_an_edge) {
             lit += whole > 0.1f, wrong += whole > 0.1f && fabsf(float3_luminance(light) - whole) > 0.3f * whole;
         }
     }
-    preview_destroy(preview);
     print_message("%d of %d rays see nearly a third more or less than in steps of 0.1 mm\n", wrong, lit);
     assert_true(lit > MOMENTS * RAYS / 4);
     assert_true(10000 * wrong < 12 * lit); // 17 with longer steps deep inside, 7 here
@@ -310,7 +309,7 @@ static float firelight_deviation(float day) {
     ball_make(&ball, -0.09f, 0, 0.10f, 0.03f, 4e6f, 0);
 
     PreviewLayers layers = {.beauty = beauty};
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     assert_int_equal(preview_set_gas(preview, &ball.gas, NULL), SINGE_OK);
     float sum = 0, squares = 0;
     for (int k = 0; k < FRAMES; k++) {
@@ -320,8 +319,6 @@ static float firelight_deviation(float day) {
             for (int x = W / 2 - 3; x < W / 2 + 3; x++) light += beauty[y * W + x][0] / 36;
         sum += light / FRAMES, squares += light * light / FRAMES;
     }
-
-    preview_destroy(preview);
 
     return sqrtf(fmaxf(squares - sum * sum, 0)) / sum;
 }
@@ -591,7 +588,7 @@ TEST(the_fire_layer_is_what_fire_adds) {
     PreviewDef def = aside(0.3f);
 
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 5e-4f);
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     PreviewLayers layers = {.beauty = without, .fire = fire};
     assert_int_equal(preview_draw_layers(preview, &nothing, 0.3, NULL, &layers, NULL), SINGE_OK);
     for (int i = 0; i < W * H; i++) assert_true(fire[i][0] == 0 && fire[i][3] == 0);
@@ -608,7 +605,6 @@ TEST(the_fire_layer_is_what_fire_adds) {
     assert_true(brightest[0] > 1 && brightest[0] > 3 * brightest[2]);
     assert_true(brightest[3] > 0.6f); // .29, and the edges of sheets were seen through the brightest flames
     assert_true(fire[0][0] == 0 && fire[0][3] == 0);
-    preview_destroy(preview);
 }
 
 /// From kilometres away, and from inside of the flame: rays come to an end.

@@ -13,9 +13,8 @@ static void draw_kept(const PreviewDef *def, const SingeSurface *surface, uint8_
     const PreviewLayers layers = {kept->beauty, kept->glow,  kept->coverage, kept->normal, kept->temperature,
                                   kept->burn,   kept->depth, kept->sheet,    kept->piece,  NULL,
                                   NULL};
-    Preview *preview = preview_open(def);
+    OwnPreview *preview = preview_open(def);
     assert_int_equal(preview_draw_layers(preview, surface, 1, rgb, &layers, NULL), SINGE_OK);
-    preview_destroy(preview);
 }
 
 enum { ON = H / 2 * W + W / 2 + 5, OFF = 4 * W + 4 };
@@ -93,13 +92,12 @@ TEST(the_ember_line_is_thin_and_broken) {
     def.width = def.height = SIDE;
     def.camera =
         (PreviewCamera){.eye = {0.012f, 0.02f, 0.5f}, .target = {0.012f, 0.02f, 0}, .up = {0, 1, 0}, .fov = 0.24f};
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     for (int k = 0; k < 2; k++) {
         const PreviewLayers layers = {.glow = glow[k]};
         assert_int_equal(preview_draw_layers(preview, &surface, 1 + 0.5 * k, NULL, &layers, NULL), SINGE_OK);
     }
 
-    preview_destroy(preview);
     synthetic_free(&surface);
     const float pixel = 1e3f * 2 * 0.5f * tanf(0.12f) / SIDE; // mm
     int count[SECTORS] = {0}, lit = 0;

@@ -223,7 +223,7 @@ TEST(char_throws_the_light_that_is_seen) {
         size_t size;
         float seen = 0, thrown = 0, strength[3];
         uint32_t lights;
-        Preview *preview = preview_open(&def);
+        OwnPreview *preview = preview_open(&def);
         for (int time = 0; time < TIMES; time++) {
             assert_int_equal(preview_draw_layers(preview, &plate.surface, 12 * time, NULL, &layers, NULL), SINGE_OK);
             assert_int_equal(preview_pack(preview, &plate.surface, 12 * time, &frame, &size, NULL), SINGE_OK);
@@ -237,7 +237,6 @@ TEST(char_throws_the_light_that_is_seen) {
             }
             free(frame);
         }
-        preview_destroy(preview);
         print_message("case %d: seen %.3g, thrown %.3g\n", k, (double)seen, (double)thrown);
         if (k == SLOW) assert_true(seen < 1e-5f && thrown < 1e-5f);
         else assert_true(thrown > 0.6f * seen && seen > 0.6f * thrown);
@@ -258,7 +257,7 @@ TEST(flames_outshine_embers) {
         uint8_t *frame;
         size_t size;
         uint32_t lights;
-        Preview *preview = preview_open(&def);
+        OwnPreview *preview = preview_open(&def);
         assert_int_equal(preview_set_gas(preview, k ? &ball.gas : NULL, NULL), SINGE_OK);
         assert_int_equal(preview_pack(preview, &q.surface, 0, &frame, &size, NULL), SINGE_OK);
         memcpy(&lights, frame + 16, sizeof lights);
@@ -268,7 +267,6 @@ TEST(flames_outshine_embers) {
             if (strength[1] < 0.2f * strength[0]) red[k] += strength[0]; // no flame's
         }
         free(frame);
-        preview_destroy(preview);
     }
     print_message("embers throw %.3g in the dark, %.3g beside flames\n", (double)red[0], (double)red[1]);
     assert_true(red[0] > 0 && red[1] > 0.25f * red[0] && red[1] < 0.5f * red[0]);

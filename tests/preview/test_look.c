@@ -642,10 +642,9 @@ static void draw_leaf(Plate *plate, float glow[FINE_W * FINE_H][3], double time)
     def.width = FINE_W, def.height = FINE_H;
     for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
     def.flakes = 0; // they hide parts of it
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     const PreviewLayers layers = {.glow = glow};
     assert_int_equal(preview_draw_layers(preview, &plate->surface, time, NULL, &layers, NULL), SINGE_OK);
-    preview_destroy(preview);
 }
 
 /// How far into the plate a pixel of the fine picture lies, mm, and at which of its sides.
@@ -671,9 +670,8 @@ TEST(ash_is_a_fringe_along_dead_borders) {
     for (int i = 0; i < NODES; i++) plate.burn[i] = 0.64f, plate.peak[i] = 900;
     PreviewDef def = close_above(FINE_HIGH);
     def.width = FINE_W, def.height = FINE_H;
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     assert_int_equal(preview_draw(preview, &plate.surface, 12, picture, NULL), SINGE_OK);
-    preview_destroy(preview);
 
     float sum[BINS] = {0}, count[BINS] = {0};
     for (int i = 0; i < FINE_W * FINE_H; i++) {
@@ -704,9 +702,8 @@ static float ash_grain(float place) {
     plate.surface.rest_position = rest;
     PreviewDef def = close_above(FINE_HIGH);
     def.width = FINE_W, def.height = FINE_H;
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     assert_int_equal(preview_draw(preview, &plate.surface, 12, picture, NULL), SINGE_OK);
-    preview_destroy(preview);
     float next = 0, tenth = 0;
     for (int i = 10; i < FINE_W * FINE_H; i++) {
         const float here = picture[3 * i + 1];

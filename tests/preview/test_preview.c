@@ -65,7 +65,7 @@ TEST(kept_state_does_not_affect_the_picture) {
     draw(&def, &burning, 2, alone);
     PreviewShape ball = {
         .kind = SINGE_COLLIDER_SPHERE, .position = {0.05f, 0, 0.03f}, .radius = 0.03f, .temperature = 1200};
-    Preview *preview = preview_open(&def);
+    OwnPreview *preview = preview_open(&def);
     assert_int_equal(preview_set_shapes(preview, &ball, 1, NULL), SINGE_OK);
     assert_int_equal(preview_draw(preview, &hanging, 1, after, NULL), SINGE_OK);
     assert_memory_not_equal(alone, after, BYTES);
@@ -73,7 +73,6 @@ TEST(kept_state_does_not_affect_the_picture) {
     assert_int_equal(preview_draw(preview, &nothing, 7, after, NULL), SINGE_OK);
     assert_int_equal(preview_draw(preview, &burning, 2, after, NULL), SINGE_OK);
     assert_memory_equal(alone, after, BYTES);
-    preview_destroy(preview);
     synthetic_free(&burning), synthetic_free(&hanging);
 }
 

@@ -318,7 +318,7 @@ TEST(fires_of_the_examples_miss_nothing) {
         char path[600], lines[4000] = "";
         snprintf(path, sizeof path, "examples/%.200s/%.200s.yaml", entry->d_name, entry->d_name);
         if (access(path, R_OK) != 0) continue;
-        SceneMessages messages = {0};
+        OwnMessages messages = {0};
         SceneAssets assets;
         Scene *scene;
         const SingeLog log = {keep_line, lines};
@@ -328,7 +328,6 @@ TEST(fires_of_the_examples_miss_nothing) {
         if (lines[0]) fail_msg("%s", lines);
         scene_assets_free(&assets);
         scene_free(scene);
-        scene_messages_free(&messages);
         count++;
     }
     closedir(folder);

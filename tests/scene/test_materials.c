@@ -283,8 +283,7 @@ TEST(wrong_materials_are_reported) {
     expect_mistake(in, "    material: /dev/zero\n", "scene.yaml:3:15", "not a regular file", 1);
 
     // without a folder files are not looked for, but what is built in is there
-    Scene *scene = folder_scene(NULL, SHEET "    material: gone.yaml\n", NULL, 0);
-    scene_free(scene);
+    OwnScene *scene = folder_scene(NULL, SHEET "    material: gone.yaml\n", NULL, 0);
     expect_mistake(NULL, "    material: silk\n", "scene.yaml:3:15", "the built-in ones are", 1);
 }
 

@@ -130,7 +130,7 @@ TEST(every_parameter_that_may_vary_does) {
             const char *unit = strcmp(row.key, "fibre_angle") ? "" : " rad";            // a bare angle is degrees
             snprintf(set, sizeof set, "sheets.0.material.%s={from: %g%s, to: %g%s, %s}", row.key, (double)from, unit,
                      (double)to, unit, fields[f]);
-            Scene *scene = good_scene(SHEET, sets, 1);
+            OwnScene *scene = good_scene(SHEET, sets, 1);
             const SceneMaterial *material = &scene->sheets[0].material;
             SingeMaterialDef def = material->def;
             SingeParam *param = scene_param_at(&def, &row);
@@ -147,7 +147,6 @@ TEST(every_parameter_that_may_vary_does) {
             def = again->sheets[0].material.def;
             assert_true(scene_param_at(&def, &row)->to == to);
             free(dump);
-            scene_free(scene);
         }
     }
     int known = 0
@@ -161,7 +160,7 @@ TEST(every_parameter_that_may_vary_does) {
 }
 
 TEST(missing_keys_take_defaults) {
-    Scene *scene = good_scene(SHEET, NULL, 0);
+    OwnScene *scene = good_scene(SHEET, NULL, 0);
     assert_string_equal(scene->name, "test");
     SingeMaterialDef material = singe_default_material();
     assert_memory_equal(&scene->sheets[0].material.def, &material, sizeof material);
@@ -171,13 +170,12 @@ TEST(missing_keys_take_defaults) {
     assert_int_equal(scene->steps, 20);
     assert_true(scene->sim.time_step == 1.0f / 480);
     assert_true(isinf(scene->preview.def.ground_height) && scene->preview.def.ground_height < 0);
-    scene_free(scene);
 }
 
 static void round_trip(SceneSyntax syntax) {
-    Scene *scene = good_scene(full, NULL, 0);
+    OwnScene *scene = good_scene(full, NULL, 0);
     char *dump = dump_text(scene, syntax);
-    Scene *again = good_scene(dump, NULL, 0);
+    OwnScene *again = good_scene(dump, NULL, 0);
 
     check_full(again);
     check_objects(again);
@@ -189,8 +187,6 @@ static void round_trip(SceneSyntax syntax) {
     assert_memory_equal(scene->colliders[2].keys, again->colliders[2].keys, 2 * sizeof *scene->colliders[2].keys);
     free(second);
     free(dump);
-    scene_free(again);
-    scene_free(scene);
 }
 
 TEST(a_yaml_dump_reads_back) { round_trip(SCENE_YAML); }
@@ -326,7 +322,7 @@ TEST(defaults_suit_the_method) {
         char text[200];
         snprintf(text, sizeof text, "%s%s", sheet, cases[i].text);
 
-        Scene *scene = good_scene(text, &cases[i].set, cases[i].set != NULL);
+        OwnScene *scene = good_scene(text, &cases[i].set, cases[i].set != NULL);
         const SingeSolverDef *solver = &scene->sim.solver;
         SingeSolverDef standard;
         singe_init_solver_method(&standard, sizeof standard, cases[i].method);
@@ -334,6 +330,5 @@ TEST(defaults_suit_the_method) {
         assert_int_equal(solver->projections, cases[i].projections);
         assert_int_equal(solver->substeps, standard.substeps);
         assert_memory_equal(solver->order, standard.order, sizeof standard.order);
-        scene_free(scene);
     }
 }

@@ -123,7 +123,7 @@ static int give_up(SingeSim *sim, Asked *asked) {
     singe_sim_destroy(copy);
     assert_true(polls > 5);
 
-    TestBytes before = test_save(sim);
+    OwnTestBytes before = test_save(sim);
     const SingeTimers timers = singe_sim_timers(sim);
     for (int n = 1; n <= polls; n += 1 + polls / 9, given_up++) {
         atomic_store(&asked->count, 0);
@@ -133,7 +133,6 @@ static int give_up(SingeSim *sim, Asked *asked) {
         assert_memory_equal(&now, &timers, sizeof timers);
         test_assert_saved(sim, &before);
     }
-    free(before.data);
     atomic_store(&asked->yes, 0);
 
     return given_up;

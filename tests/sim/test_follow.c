@@ -216,12 +216,11 @@ static SingeSim *cape(const SingeSimDef *def, SingePinId *pin, SingeColliderId *
     block_make(block, half, centre);
 
     SingeSim *sim = test_create(def);
-    TestMesh mesh = test_grid(16, 16, 0.1f / 16, 0.1f / 16);
+    OwnTestMesh mesh = test_grid(16, 16, 0.1f / 16, 0.1f / 16);
     test_mesh_move(&mesh, -0.05f, 0, 0.2f);
     SingeSheetDef sheet_def = test_sheet(&mesh);
     sheet_def.material = scene_quick_material();
     SingeSheetId sheet = test_add_sheet(sim, &sheet_def);
-    test_mesh_free(&mesh);
 
     const uint32_t corners[2] = {0, 16};
     SingePinDef pin_def = singe_default_pin();

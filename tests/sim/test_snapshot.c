@@ -96,7 +96,7 @@ TEST(handles_keep_their_values) {
 }
 
 TEST(clones_are_independent) {
-    TestScene scene = scene_make(NULL, 10);
+    OwnTestScene scene = scene_make(NULL, 10);
     test_steps(scene.sim, 20);
     SingeSim *copy;
     test_ok(scene.sim, singe_sim_clone(scene.sim, &copy));
@@ -111,7 +111,6 @@ TEST(clones_are_independent) {
 
     test_steps(copy, 10);
     test_steps(scene.sim, 10);
-    singe_sim_destroy(scene.sim);
     test_steps(copy, 2);
     singe_sim_destroy(copy);
 }
@@ -173,9 +172,8 @@ TEST(the_state_after_any_step_loads) {
 
         for (int i = 0; !result && i < 3; i++) {
             (void)(singe_sim_step(sim) == SINGE_OK);
-            SingeSim *copy = test_reload(NULL, sim);
+            OwnSim *copy = test_reload(NULL, sim);
             assert_true(isfinite(singe_sim_stats(copy).heat_lost) && isfinite(singe_sim_stats(copy).ledger_error));
-            singe_sim_destroy(copy);
             loaded++;
         }
     }

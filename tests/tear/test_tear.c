@@ -39,7 +39,7 @@ static void grip(SingeSim *sim, bool right, float by) {
 
 /// A strip of this strength that is pulled apart; where `line` is not 1, a row of vertices across has that share of it.
 static SingeSim *pulled(const SingeSimDef *def, float strength, float line, const SingeMaterialDef *from, float by) {
-    TestMesh mesh = test_grid(ALONG, ACROSS, side, side);
+    OwnTestMesh mesh = test_grid(ALONG, ACROSS, side, side);
     float weak[(ALONG + 1) * (ACROSS + 1)];
     for (uint32_t v = 0; v < mesh.vertex_count; v++) weak[v] = v % (ALONG + 1) == WEAK;
     const SingeAttribute attribute = {"weak", weak};
@@ -52,7 +52,6 @@ static SingeSim *pulled(const SingeSimDef *def, float strength, float line, cons
     SingeSim *sim = test_create(def);
     test_add_sheet(sim, &sheet);
     test_ok(sim, singe_sim_commit(sim));
-    test_mesh_free(&mesh);
     grip(sim, false, 0);
     grip(sim, true, by);
     return sim;
