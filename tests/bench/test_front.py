@@ -4,8 +4,10 @@ import json
 import os
 import subprocess
 import unittest
+from pathlib import Path
 
 SINGE = os.environ["SINGE"]
+MATERIALS = {path.stem for path in (Path(__file__).parents[2] / "src/materials").glob("*.yaml")}
 
 
 def front(*options):
@@ -18,7 +20,7 @@ class Front(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         with_gas = front("--material", "tissue")  # the quickest to burn
-        cls.rows = front("--quick") + [row for row in with_gas if row["direction"] != "still"]
+        cls.rows = front("--quick", "--material", ",".join(MATERIALS - {"tissue"})) + with_gas
         for row in cls.rows:
             print(row["material"], row["direction"], row["cell_mm"], row["speed_mm_s_is"], row["finding"])
 
@@ -29,7 +31,7 @@ class Front(unittest.TestCase):
         return {row["material"]: row for row in reversed(self.rows_of(direction))}
 
     def test_as_sources_say(self):
-        self.assertEqual(set(self.usual("still")), {"cotton", "newsprint", "office-paper", "one-reaction", "tissue"})
+        self.assertEqual(set(self.usual("still")), MATERIALS)
         for row in self.rows_of("still", "level"):
             with self.subTest(row["material"], direction=row["direction"]):
                 self.assertEqual(row["finding"], "as sources say")
