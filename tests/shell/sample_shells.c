@@ -222,15 +222,33 @@ SingeSheetDef mesh_sheet(const QuadMesh *mesh) {
     return def;
 }
 
-Shell mesh_shell(Memory *memory, const QuadMesh *mesh) {
-    SingeSheetDef def = mesh_sheet(mesh);
+static Shell def_shell(Memory *memory, const SingeSheetDef *def) {
     SheetSource source;
     SingeError error = {0};
     Shell shell;
-    if (sheet_source_create(memory, &def, &source, &error)) fail_msg("%s", error.message);
+    if (sheet_source_create(memory, def, &source, &error)) fail_msg("%s", error.message);
     if (shell_create(memory, &source, 1, &shell, &error)) fail_msg("%s", error.message);
     sheet_source_free(memory, &source);
     return shell;
+}
+
+Shell mesh_shell(Memory *memory, const QuadMesh *mesh) {
+    const SingeSheetDef def = mesh_sheet(mesh);
+    return def_shell(memory, &def);
+}
+
+Sample sample_open(QuadMesh mesh, float thickness) {
+    Sample sample = {.memory = memory_make((SingeAllocator){0}), .mesh = mesh};
+    SingeSheetDef def = mesh_sheet(&mesh);
+    if (thickness > 0) def.material.thickness = singe_param(thickness);
+    sample.shell = def_shell(&sample.memory, &def);
+    return sample;
+}
+
+void sample_close(Sample *sample) {
+    shell_free(&sample->memory, &sample->shell);
+    assert_int_equal(sample->memory.held, 0);
+    mesh_release(&sample->mesh);
 }
 
 uint32_t count_rings(const SpringSet *set) {

@@ -40,6 +40,19 @@ SingeSheetDef mesh_sheet(const QuadMesh *mesh);
 /// The shell of one default sheet; fails the test when it cannot be made.
 Shell mesh_shell(Memory *memory, const QuadMesh *mesh);
 
+/// A mesh, and the shell of one sheet on it.
+typedef struct Sample {
+    Memory memory;
+    QuadMesh mesh;
+    Shell shell;
+} Sample;
+
+/// Takes the mesh. `thickness` is m, 0 the default.
+Sample sample_open(QuadMesh mesh, float thickness);
+/// Frees everything and fails when something was leaked.
+void sample_close(Sample *sample);
+#define OwnSample OWNED(sample_close) Sample
+
 /// Checks strands, families, cell springs and cell families from their definitions.
 void check_shell(const Shell *shell);
 uint32_t count_rings(const SpringSet *set);

@@ -7,12 +7,13 @@ typedef struct Expected {
     uint32_t springs[4], strands[4], rings[4], families[4], cell_families;
 } Expected;
 
-static void expect(QuadMesh *mesh, const char *name, Expected expected) {
-    Memory memory = memory_make((SingeAllocator){0});
-    Shell shell = mesh_shell(&memory, mesh);
-    check_shell(&shell);
+/// Takes the mesh.
+static void expect(QuadMesh mesh, const char *name, Expected expected) {
+    OwnSample sample = sample_open(mesh, 0);
+    const Shell *shell = &sample.shell;
+    check_shell(shell);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        const SpringSet *set = &shell.springs[colour];
+        const SpringSet *set = &shell->springs[colour];
         print_message("%-16s colour %d: %5u springs %4u strands %3u rings %2u families, longest %u\n", name, colour,
                       set->count, set->strand_count, count_rings(set), set->family_count, set->longest);
         assert_int_equal(set->count, expected.springs[colour]);
@@ -21,11 +22,8 @@ static void expect(QuadMesh *mesh, const char *name, Expected expected) {
         if (expected.families[colour]) assert_int_equal(set->family_count, expected.families[colour]);
     }
 
-    print_message("%-16s %u families of cells\n", name, shell.cell_family_count);
-    if (expected.cell_families) assert_int_equal(shell.cell_family_count, expected.cell_families);
-    shell_free(&memory, &shell);
-    assert_int_equal(memory.held, 0);
-    mesh_release(mesh);
+    print_message("%-16s %u families of cells\n", name, shell->cell_family_count);
+    if (expected.cell_families) assert_int_equal(shell->cell_family_count, expected.cell_families);
 }
 
 /// n x m: n (m + 1) + m (n + 1) edges in n + m + 2 lines, and n + m - 1 diagonals each way.
@@ -43,8 +41,7 @@ TEST(a_grid_has_straight_strands) {
     static const uint32_t sizes[][2] = {{1, 1}, {2, 2}, {3, 2}, {7, 5}, {5, 7}, {20, 20}, {31, 8}, {1, 9}, {9, 1}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         uint32_t n = sizes[i][0], m = sizes[i][1];
-        QuadMesh mesh = mesh_grid(n, m, 0.01f, 0.02f);
-        expect(&mesh, "grid", grid_expected(n, m));
+        expect(mesh_grid(n, m, 0.01f, 0.02f), "grid", grid_expected(n, m));
     }
 }
 
@@ -55,7 +52,7 @@ TEST(families_do_not_depend_on_numbering) {
         mesh_shuffle(&mesh, seed);
         Expected expected = grid_expected(14, 11);
         expected.cell_families = 0;
-        expect(&mesh, "shuffled grid", expected);
+        expect(mesh, "shuffled grid", expected);
     }
 }
 
@@ -66,8 +63,7 @@ TEST(strands_of_a_torus_are_rings) {
     static const uint32_t sizes[][2] = {{12, 8}, {9, 9}, {13, 7}, {3, 3}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         uint32_t n = sizes[i][0], m = sizes[i][1], d = 2 * gcd(n, m), cells = n * m;
-        QuadMesh mesh = mesh_torus(n, m);
-        expect(&mesh, "torus",
+        expect(mesh_torus(n, m), "torus",
                (Expected){.springs = {4 * cells, 2 * cells, 2 * cells, 2 * cells},
                           .strands = {d, n + m, n + m, d},
                           .rings = {d, n + m, n + m, d},
@@ -77,37 +73,32 @@ TEST(strands_of_a_torus_are_rings) {
 
 // Two cells around: green rings of two springs between the same centres are cut open into two strands.
 TEST(rings_of_two_springs_are_cut) {
-    Memory memory = memory_make((SingeAllocator){0});
-    OwnQuadMesh mesh = {0};
+    QuadMesh mesh = {0};
     static const float square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 
     for (int i = 0; i < 4; i++) mesh_add_vertex(&mesh, square[i][0], square[i][1], 0);
     mesh_add_cell(&mesh, 0, 1, 2, 3);
     mesh_add_cell(&mesh, 0, 3, 2, 1);
 
-    Shell shell = mesh_shell(&memory, &mesh);
-    check_shell(&shell);
-    assert_int_equal(shell.springs[SINGE_GREEN].count, 4);
-    assert_int_equal(shell.springs[SINGE_GREEN].strand_count, 4);
-    assert_int_equal(shell.springs[SINGE_GREEN].family_count, 4);
-    assert_int_equal(shell.springs[SINGE_BLUE].strand_count, 1); // the square's outline
-    assert_int_equal(count_rings(&shell.springs[SINGE_BLUE]), 1);
-    assert_int_equal(shell.springs[SINGE_BLUE].family_count, 1);
-
-    shell_free(&memory, &shell);
+    OwnSample sample = sample_open(mesh, 0);
+    const Shell *shell = &sample.shell;
+    check_shell(shell);
+    assert_int_equal(shell->springs[SINGE_GREEN].count, 4);
+    assert_int_equal(shell->springs[SINGE_GREEN].strand_count, 4);
+    assert_int_equal(shell->springs[SINGE_GREEN].family_count, 4);
+    assert_int_equal(shell->springs[SINGE_BLUE].strand_count, 1); // the square's outline
+    assert_int_equal(count_rings(&shell->springs[SINGE_BLUE]), 1);
+    assert_int_equal(shell->springs[SINGE_BLUE].family_count, 1);
 }
 
 TEST(strands_go_around_a_cylinder) {
-    QuadMesh mesh = mesh_cylinder(12, 5, 0.1f, 0.2f);
-
     // a diagonal climbs one row a cell, so each starts at one of 12 places and goes once up
-    expect(&mesh, "cylinder",
+    expect(mesh_cylinder(12, 5, 0.1f, 0.2f), "cylinder",
            (Expected){.springs = {240, 12 * 4 + 12 * 5, 12 * 6 + 12 * 5, 120},
                       .strands = {24, 12 + 5, 12 + 6, 24},
                       .rings = {0, 5, 6, 0},
                       .families = {2, 2, 2, 2}});
-    mesh = mesh_cylinder(9, 1, 0.1f, 0.02f);
-    expect(&mesh, "ring strip",
+    expect(mesh_cylinder(9, 1, 0.1f, 0.02f), "ring strip",
            (Expected){.springs = {36, 9, 27, 18},
                       .strands = {18, 1, 9 + 2, 18},
                       .rings = {0, 1, 2, 0},
@@ -117,14 +108,13 @@ TEST(strands_go_around_a_cylinder) {
 // Eight vertices of valence three: the cube's 12 edges are chains, the other lines go round.
 TEST(strands_of_a_cube_sphere_end_at_its_corners) {
     for (uint32_t n = 1; n <= 8; n++) {
-        OwnQuadMesh mesh = mesh_sphere(n);
-        assert_int_equal(mesh.vertex_count, 6 * n * n + 2);
+        OwnSample sample = sample_open(mesh_sphere(n), 0);
+        const Shell *shell = &sample.shell;
+        assert_int_equal(shell->vertex_count, 6 * n * n + 2);
 
-        Memory memory = memory_make((SingeAllocator){0});
-        Shell shell = mesh_shell(&memory, &mesh);
-        check_shell(&shell);
+        check_shell(shell);
 
-        const SpringSet *green = &shell.springs[SINGE_GREEN], *blue = &shell.springs[SINGE_BLUE];
+        const SpringSet *green = &shell->springs[SINGE_GREEN], *blue = &shell->springs[SINGE_BLUE];
         assert_int_equal(green->count, 12 * n * n);
         assert_int_equal(green->strand_count, 3 * n);
         assert_int_equal(count_rings(green), 3 * n);
@@ -134,60 +124,50 @@ TEST(strands_of_a_cube_sphere_end_at_its_corners) {
         assert_int_equal(blue->strand_count, 3 * (n - 1) + 12);
         assert_int_equal(count_rings(blue), 3 * (n - 1));
 
-        print_message("sphere %u: families R %u G %u B %u Y %u cells %u\n", n, shell.springs[0].family_count,
-                      shell.springs[1].family_count, shell.springs[2].family_count, shell.springs[3].family_count,
-                      shell.cell_family_count);
-        shell_free(&memory, &shell);
-        assert_int_equal(memory.held, 0);
+        print_message("sphere %u: families R %u G %u B %u Y %u cells %u\n", n, shell->springs[0].family_count,
+                      shell->springs[1].family_count, shell->springs[2].family_count, shell->springs[3].family_count,
+                      shell->cell_family_count);
     }
 }
 
 // Around a vertex of odd valence all ends; of even valence lines go through.
 TEST(strands_end_at_vertices_of_odd_valence) {
     const uint32_t n = 6;
-    QuadMesh mesh = mesh_polygon(5, n);
-    Memory memory = memory_make((SingeAllocator){0});
-    Shell shell = mesh_shell(&memory, &mesh);
+    OwnSample pentagon = sample_open(mesh_polygon(5, n), 0), hexagon = sample_open(mesh_polygon(6, n), 0);
+    const Shell *shell = &pentagon.shell;
 
-    check_shell(&shell);
-    const SpringSet *blue = &shell.springs[SINGE_BLUE], *green = &shell.springs[SINGE_GREEN];
+    check_shell(shell);
+    const SpringSet *blue = &shell->springs[SINGE_BLUE], *green = &shell->springs[SINGE_GREEN];
     assert_int_equal(blue->strand_count, 5 + 5 * (n - 1) + 5); // spokes, lines across, sides
     assert_int_equal(green->strand_count, 5 * n);
     assert_int_equal(count_rings(blue) + count_rings(green), 0);
-    print_message("pentagon: families R %u G %u B %u Y %u cells %u\n", shell.springs[0].family_count,
-                  green->family_count, blue->family_count, shell.springs[3].family_count, shell.cell_family_count);
-    shell_free(&memory, &shell);
-    mesh_release(&mesh);
+    print_message("pentagon: families R %u G %u B %u Y %u cells %u\n", shell->springs[0].family_count,
+                  green->family_count, blue->family_count, shell->springs[3].family_count, shell->cell_family_count);
 
-    mesh = mesh_polygon(6, n);
-    shell = mesh_shell(&memory, &mesh);
-    check_shell(&shell);
-    assert_int_equal(shell.springs[SINGE_BLUE].strand_count, 3 + 6 * (n - 1) + 6);
-    assert_int_equal(shell.springs[SINGE_GREEN].strand_count, 6 * n);
-    shell_free(&memory, &shell);
-    mesh_release(&mesh);
+    shell = &hexagon.shell;
+    check_shell(shell);
+    assert_int_equal(shell->springs[SINGE_BLUE].strand_count, 3 + 6 * (n - 1) + 6);
+    assert_int_equal(shell->springs[SINGE_GREEN].strand_count, 6 * n);
 }
 
 // The inner corner has three cells: both boundary lines run on into the mesh.
 TEST(strands_run_on_from_an_inner_corner) {
     const uint32_t n = 4;
-    OwnQuadMesh mesh = mesh_ell(n);
-    uint32_t cells = 3 * n * n;
-    Memory memory = memory_make((SingeAllocator){0});
-    Shell shell = mesh_shell(&memory, &mesh);
+    const uint32_t cells = 3 * n * n;
+    OwnSample sample = sample_open(mesh_ell(n), 0);
+    const Shell *shell = &sample.shell;
 
-    check_shell(&shell);
-    assert_int_equal(shell.springs[SINGE_RED].count, 4 * cells);
-    assert_int_equal(shell.springs[SINGE_BLUE].strand_count, 2 * (2 * n + 1));
-    assert_int_equal(shell.springs[SINGE_BLUE].count, 2 * ((n + 1) * 2 * n + n * n));
-    assert_int_equal(shell.springs[SINGE_BLUE].longest, 2 * n);
-    assert_int_equal(shell.springs[SINGE_GREEN].strand_count, 4 * n);
+    check_shell(shell);
+    assert_int_equal(shell->springs[SINGE_RED].count, 4 * cells);
+    assert_int_equal(shell->springs[SINGE_BLUE].strand_count, 2 * (2 * n + 1));
+    assert_int_equal(shell->springs[SINGE_BLUE].count, 2 * ((n + 1) * 2 * n + n * n));
+    assert_int_equal(shell->springs[SINGE_BLUE].longest, 2 * n);
+    assert_int_equal(shell->springs[SINGE_GREEN].strand_count, 4 * n);
 
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        assert_int_equal(shell.springs[colour].family_count, 2);
-        assert_int_equal(count_rings(&shell.springs[colour]), 0);
+        assert_int_equal(shell->springs[colour].family_count, 2);
+        assert_int_equal(count_rings(&shell->springs[colour]), 0);
     }
-    shell_free(&memory, &shell);
 }
 
 TEST(components_are_separate) {
@@ -198,7 +178,7 @@ TEST(components_are_separate) {
         a.springs[colour] += b.springs[colour];
         a.strands[colour] += b.strands[colour];
     }
-    expect(&mesh, "two components", a);
+    expect(mesh, "two components", a);
 }
 
 // Two sheets are numbered as one shell: all vertices, then all cells.
@@ -237,34 +217,28 @@ TEST(sheets_are_numbered_as_one_shell) {
 // General meshes: valences from 3 to 8 or so, strands that cross themselves.
 TEST(random_meshes_have_valid_strands) {
     for (uint32_t seed = 1; seed <= 12; seed++) {
-        Memory memory = memory_make((SingeAllocator){0});
         QuadMesh mesh = mesh_random(seed, seed);
         if (seed % 2) mesh_shuffle(&mesh, seed);
 
-        Shell shell = mesh_shell(&memory, &mesh);
-        check_shell(&shell);
+        OwnSample sample = sample_open(mesh, 0);
+        const Shell *shell = &sample.shell;
+        check_shell(shell);
         if (seed == 12)
             for (int colour = 0; colour < 4; colour++)
                 print_message("random colour %d: %u springs %u strands %u rings %u families, longest %u\n", colour,
-                              shell.springs[colour].count, shell.springs[colour].strand_count,
-                              count_rings(&shell.springs[colour]), shell.springs[colour].family_count,
-                              shell.springs[colour].longest);
-
-        shell_free(&memory, &shell);
-        mesh_release(&mesh);
-        assert_int_equal(memory.held, 0);
+                              shell->springs[colour].count, shell->springs[colour].strand_count,
+                              count_rings(&shell->springs[colour]), shell->springs[colour].family_count,
+                              shell->springs[colour].longest);
     }
 }
 
 // A hub of 201 cells: more strands meet than one word of families holds.
 TEST(a_hub_has_many_families) {
-    Memory memory = memory_make((SingeAllocator){0});
-    OwnQuadMesh mesh = mesh_polygon(201, 1);
-    Shell shell = mesh_shell(&memory, &mesh);
+    OwnSample sample = sample_open(mesh_polygon(201, 1), 0);
+    const Shell *shell = &sample.shell;
 
-    check_shell(&shell);
-    assert_int_equal(shell.springs[SINGE_BLUE].family_count, 201);
-    assert_int_equal(shell.springs[SINGE_YELLOW].family_count, 201);
-    assert_int_equal(shell.cell_family_count, 201);
-    shell_free(&memory, &shell);
+    check_shell(shell);
+    assert_int_equal(shell->springs[SINGE_BLUE].family_count, 201);
+    assert_int_equal(shell->springs[SINGE_YELLOW].family_count, 201);
+    assert_int_equal(shell->cell_family_count, 201);
 }
