@@ -102,19 +102,6 @@ class Measure(Case):
             row.update((name, "") for name in seen)
             self.assertEqual(row, other)
 
-    def test_refusals(self):
-        for args, message in (
-            ([], "needs"),
-            ([self.path("nowhere")], "run.json"),
-            ([self.path("o"), "--frames", "5-9"], "has 1-6"),
-            ([self.path("o"), "--frames", "4-2"], "expected A-B"),
-            ([self.path("o"), "--frames", "x"], "expected A-B"),
-            ([self.path("o"), "--colour"], "unknown option"),
-        ):
-            with self.subTest(args):
-                self.assertIn(message, self.singe("measure", *args, expect=2)[1])
-        self.singe("measure", self.path("o"), "--csv", self.path("no", "such"), expect=1)
-
     def test_damaged_frame(self):
         path = self.path("o", "ply", "tiny.0003.ply")
         with open(path, "r+b") as file:

@@ -410,16 +410,21 @@ class Verify(Case):
 
     def test_refusals(self):
         for args, message in (
-            ([], "needs"),
-            ([self.path("nowhere")], "run.json"),
-            ([self.path("o"), "--frames", "5-9"], "has 1-6"),
-            ([self.path("o"), "--stretch", "0.5"], "1 or more"),
-            ([self.path("o"), "--stretch", "wide"], "1 or more"),
-            ([self.path("o"), "--colour"], "unknown option"),
+            (["verify", self.path("o"), "--stretch", "0.5"], "1 or more"),
+            (["verify", self.path("o"), "--stretch", "wide"], "1 or more"),
+            *(([command, *args], message) for command in ("verify", "measure") for args, message in (
+                ([], "needs"),
+                ([self.path("nowhere")], "run.json"),
+                ([self.path("o"), "--frames", "5-9"], "has 1-6"),
+                ([self.path("o"), "--frames", "4-2"], "expected A-B"),
+                ([self.path("o"), "--frames", "x"], "expected A-B"),
+                ([self.path("o"), "--colour"], "unknown option"),
+            )),
         ):
             with self.subTest(args):
-                self.assertIn(message, self.singe("verify", *args, expect=2)[1])
-        self.singe("verify", self.path("o"), "--csv", self.path("no", "such"), expect=1)
+                self.assertIn(message, self.singe(*args, expect=2)[1])
+        for command in "verify", "measure":
+            self.singe(command, self.path("o"), "--csv", self.path("no", "such"), expect=1)
 
     def test_what_cannot_be_read(self):
         def no_position(s): s.columns = s.columns[1:]
