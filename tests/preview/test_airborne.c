@@ -2,13 +2,19 @@
 
 #include "burning.h"
 
+// what a case draws, and the fire's layer of its last picture
+static Burning paper;
+static float fire[W * H][4];
+
+static void draw_fire(Preview *preview, double time) {
+    const PreviewLayers layers = {.fire = fire};
+    assert_int_equal(preview_draw_layers(preview, &paper.surface, time, NULL, &layers, NULL), SINGE_OK);
+}
+
 /// An ember line throws sparks and loses flakes; what is hot and has no flame sends up a wisp of smoke. A cold sheet does
 /// none of these, nor does one of which they are taken away, which is how embers were drawn before.
 TEST(embers_throw_sparks_and_smoke) {
     enum { FRAMES = 6, EMBERS, FLAKES, SMOULDERING, COLD, TAKEN_AWAY, CASES };
-    static float fire[W * H][4];
-    static Burning paper;
-
     for (int kind = EMBERS; kind < CASES; kind++) {
         burning_make(&paper);
         for (int v = 0; v < 4 * WIDE; v++) {
@@ -21,12 +27,11 @@ TEST(embers_throw_sparks_and_smoke) {
             .eye = {0, -1, H / 2000.0f}, .target = {0, 0, H / 2000.0f}, .up = {0, 0, 1}, .fov = 2 * atanf(H / 2000.0f)};
         if (kind == TAKEN_AWAY || kind == FLAKES) def.sparks = def.wisps = 0;
         def.flakes = kind == COLD || kind == FLAKES;
-        PreviewLayers layers = {.fire = fire};
         OwnPreview *preview = preview_open(&def);
         int sparks = 0, hidden = 0;
         float smoke = 0;
         for (int k = 0; k < FRAMES; k++) {
-            assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
+            draw_fire(preview, k / 6.0);
             for (int i = 0; i < W * (H - 10); i++) {
                 sparks += fire[i][0] > 0.05f && fire[i][0] > 2 * fire[i][2];
                 smoke = fmaxf(smoke, fire[i][3]);
@@ -43,11 +48,11 @@ TEST(embers_throw_sparks_and_smoke) {
 }
 
 /// Paper that embers cross, before a camera that sees what rises from it.
-static PreviewDef embers_make(Burning *paper) {
-    burning_make(paper);
+static PreviewDef embers_make(void) {
+    burning_make(&paper);
     for (int v = 0; v < 4 * WIDE; v++) {
-        paper->burn[v] = paper->position[v][1] > 0.004f ? 0.9f : 0.3f;
-        paper->temperature[v] = 1050, paper->rate[v] = 1;
+        paper.burn[v] = paper.position[v][1] > 0.004f ? 0.9f : 0.3f;
+        paper.temperature[v] = 1050, paper.rate[v] = 1;
     }
     PreviewDef def = aside(0);
     def.camera = (PreviewCamera){.eye = {0, -1, 0.1f}, .target = {0, 0, 0.1f}, .up = {0, 0, 1}, .fov = 0.2f};
@@ -61,7 +66,7 @@ typedef struct Slice {
 } Slice;
 
 /// Of pictures with 2 mm to a pixel, rows from `low` up.
-static void slice_add(float (*fire)[4], int low, Slice *slice) {
+static void slice_add(int low, Slice *slice) {
     for (int row = low; row < low + 4; row++) {
         float sum = 0, squares = 0;
         for (int x = 0; x < W; x++) {
@@ -77,19 +82,16 @@ static void slice_add(float (*fire)[4], int low, Slice *slice) {
 TEST(wisps_are_threads_that_break_and_fade) {
     enum { FRAMES = 48, SLICES = 3 };
     static const int heights[SLICES] = {4, 14, 54};
-    static float fire[W * H][4];
-    static Burning paper;
-    PreviewDef def = embers_make(&paper);
+    PreviewDef def = embers_make();
     for (int v = 0; v < 4 * WIDE; v++) paper.rate[v] = 0, paper.temperature[v] = v / 4 == WIDE / 2 ? 1050 : 293;
     def.sparks = 0, def.wisps = 1;
     def.camera = (PreviewCamera){
         .eye = {0, -1, H / 1000.0f}, .target = {0, 0, H / 1000.0f}, .up = {0, 0, 1}, .fov = 2 * atanf(H / 1000.0f)};
-    PreviewLayers layers = {.fire = fire};
     OwnPreview *preview = preview_open(&def);
     Slice slices[SLICES] = {{0, 0, 0}};
     for (int k = 0; k < FRAMES; k++) {
-        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 2.0, NULL, &layers, NULL), SINGE_OK);
-        for (int n = 0; n < SLICES; n++) slice_add(fire, heights[n], &slices[n]);
+        draw_fire(preview, k / 2.0);
+        for (int n = 0; n < SLICES; n++) slice_add(heights[n], &slices[n]);
     }
     for (int n = 0; n < SLICES; n++) {
         slices[n].wide /= slices[n].all, slices[n].dense /= slices[n].all;
@@ -110,31 +112,28 @@ typedef struct Streak {
 } Streak;
 
 /// Adds what touches pixel `at` to a spark, and takes it away.
-static void take_spark(float (*fire)[4], int at, Streak *streak) {
-    if (at < 0 || at >= W * (H - 10) || fire[at][0] < 0.02f) return;
+static void take_spark(float (*seen)[4], int at, Streak *streak) {
+    if (at < 0 || at >= W * (H - 10) || seen[at][0] < 0.02f) return;
     const int place[2] = {at % W, at / W};
     for (int c = 0; c < 2; c++) {
         if (!streak->pixels || place[c] < streak->low[c]) streak->low[c] = place[c];
         if (!streak->pixels || place[c] > streak->high[c]) streak->high[c] = place[c];
     }
-    streak->light += fire[at][0], streak->pixels++;
-    fire[at][0] = 0;
-    for (int k = 0; k < 9; k++) take_spark(fire, at + W * (k / 3 - 1) + k % 3 - 1, streak);
+    streak->light += seen[at][0], streak->pixels++;
+    seen[at][0] = 0;
+    for (int k = 0; k < 9; k++) take_spark(seen, at + W * (k / 3 - 1) + k % 3 - 1, streak);
 }
 
 /// Before a wide lens sparks are thin: they looked like capsules. Their width, pixels over the longer side, the mean over
 /// their light.
 TEST(sparks_are_thin) {
     enum { FRAMES = 24 };
-    static float fire[W * H][4];
-    static Burning paper;
-    PreviewDef def = embers_make(&paper);
+    PreviewDef def = embers_make();
     def.camera.eye[1] = -0.18f, def.camera.fov = 0.4f, def.camera.aperture = 0.01f, def.camera.focus = 0.3f;
-    PreviewLayers layers = {.fire = fire};
     OwnPreview *preview = preview_open(&def);
     float width = 0, light = 0, sparks = 0;
     for (int k = 0; k < FRAMES; k++) {
-        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
+        draw_fire(preview, k / 6.0);
         for (int i = 0; i < W * (H - 10); i++) {
             Streak streak = {.pixels = 0};
             take_spark(fire, i, &streak);
@@ -154,16 +153,14 @@ TEST(sparks_are_thin) {
 /// bright as its head, the mean over their light, and how far lengths differ. Nor is any a comet, as long as the picture.
 TEST(sparks_taper_and_differ_in_length) {
     enum { FRAMES = 480, PARTS = 8 };
-    static float fire[W * H][4], left[W * H][4];
-    static Burning paper;
-    PreviewDef def = embers_make(&paper);
+    static float left[W * H][4];
+    PreviewDef def = embers_make();
     def.sparks = 0.1f; // so that they do not touch
     def.camera.eye[1] = -0.2f, def.camera.fov = 0.3f, def.shutter = 1 / 48.0f;
-    PreviewLayers layers = {.fire = fire};
     OwnPreview *preview = preview_open(&def);
     float even = 0, light = 0, sparks = 0, sum = 0, squares = 0, longest = 0;
     for (int k = 0; k < FRAMES; k++) {
-        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
+        draw_fire(preview, k / 6.0);
         memcpy(left, fire, sizeof left);
         for (int i = 0; i < W * (H - 10); i++) {
             Streak streak = {.pixels = 0};
@@ -194,15 +191,12 @@ TEST(sparks_taper_and_differ_in_length) {
 /// Most flakes are char: before a bright wall they are dark, where pale ones were grey bars. What they reflect over what
 /// they hide.
 TEST(flakes_are_dark) {
-    static float fire[W * H][4];
-    static Burning paper;
-    PreviewDef def = embers_make(&paper);
+    PreviewDef def = embers_make();
     def.sparks = 0, def.flakes = 4, def.shutter = 1 / 48.0f;
-    PreviewLayers layers = {.fire = fire};
     OwnPreview *preview = preview_open(&def);
     float light = 0, hidden = 0;
     for (int k = 0; k < 24; k++) {
-        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
+        draw_fire(preview, k / 6.0);
         for (int i = 0; i < W * (H - 10); i++) light += fire[i][2], hidden += fire[i][3];
     }
     print_message("flakes hide %.0f pixels, and reflect %.3f of blue light there\n", (double)hidden,
@@ -214,17 +208,14 @@ TEST(flakes_are_dark) {
 /// what they hide varies between neighbouring pixels, over its mean.
 TEST(flakes_have_a_form) {
     enum { FRAMES = 48, APART = 6 };
-    static float fire[W * H][4];
-    static Burning paper;
-    PreviewDef def = embers_make(&paper);
+    PreviewDef def = embers_make();
     def.sparks = 0, def.flakes = 30, def.shutter = 0, def.camera.fov = 0.02f;
     def.camera.eye[2] = def.camera.target[2] = 0.04f;
-    PreviewLayers layers = {.fire = fire};
     OwnPreview *preview = preview_open(&def);
     float light = 0, differs = 0;
     int pixels = 0;
     for (int k = 0; k < FRAMES; k++) {
-        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
+        draw_fire(preview, k / 6.0);
         for (int i = 0; i < W * (H - 10) - APART; i++) {
             if (fire[i][3] < 0.9f || fire[i + APART][3] < 0.9f) continue;
             light += fire[i][2], differs += fabsf(fire[i][2] - fire[i + APART][2]), pixels++;
@@ -239,12 +230,11 @@ TEST(flakes_have_a_form) {
 TEST(flames_hide_the_flakes_among_them) {
     enum { FRAMES = 24 };
     static float flakes[W * H][4], flames[W * H][4], both[W * H][4];
-    static Burning paper;
     static Line line;
     float lost = 0, hidden = 0;
     line_make(&line, 0);
     for (int k = 0; k < FRAMES; k++) {
-        PreviewDef def = embers_make(&paper);
+        PreviewDef def = embers_make();
         def.sparks = 0, def.flakes = 30, def.shutter = 0;
         draw_layers(&def, &paper.surface, NULL, k / 6.0, &(PreviewLayers){.fire = flakes});
         draw_layers(&def, &paper.surface, &line.gas, k / 6.0, &(PreviewLayers){.fire = both});
@@ -264,15 +254,12 @@ TEST(flames_hide_the_flakes_among_them) {
 /// Of many sparks most are faint, and few give most of the light. Sparks that were alike looked like dashes.
 TEST(sparks_differ) {
     enum { FRAMES = 24 };
-    static float fire[W * H][4];
-    static Burning paper;
-    PreviewDef def = embers_make(&paper);
-    PreviewLayers layers = {.fire = fire};
+    PreviewDef def = embers_make();
     OwnPreview *preview = preview_open(&def);
     int sparks = 0;
     float sum = 0, squares = 0;
     for (int k = 0; k < FRAMES; k++) {
-        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
+        draw_fire(preview, k / 6.0);
         for (int i = 0; i < W * (H - 10); i++) {
             Streak streak = {.pixels = 0};
             take_spark(fire, i, &streak);
@@ -290,15 +277,12 @@ TEST(sparks_differ) {
 /// varies from moment to moment, over what it would if each came by itself.
 TEST(sparks_come_in_bursts) {
     enum { FRAMES = 96, PARTS = 6 };
-    static float fire[W * H][4];
-    static Burning paper;
-    PreviewDef def = embers_make(&paper);
-    PreviewLayers layers = {.fire = fire};
+    PreviewDef def = embers_make();
     OwnPreview *preview = preview_open(&def);
     float sum = 0, squares = 0;
     for (int k = 0; k < FRAMES; k++) {
         float count[PARTS] = {0};
-        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 2.0, NULL, &layers, NULL), SINGE_OK);
+        draw_fire(preview, k / 2.0);
         for (int i = 0; i < W * (H - 10); i++) {
             Streak streak = {.pixels = 0};
             take_spark(fire, i, &streak);
@@ -315,17 +299,14 @@ TEST(sparks_come_in_bursts) {
 /// aside they are, by their light. They are dull when they are far up: red over green light low and high.
 TEST(sparks_rise_and_cool_in_the_plume) {
     enum { FRAMES = 96 };
-    static float fire[W * H][4];
-    static Burning paper;
-    PreviewDef def = embers_make(&paper);
+    PreviewDef def = embers_make();
     for (int v = 0; v < 4 * WIDE; v++)
         if (v / 16 < 1 || v / 16 > 2) paper.rate[v] = 0, paper.temperature[v] = 293;
     def.sparks = 8;
-    PreviewLayers layers = {.fire = fire};
     OwnPreview *preview = preview_open(&def);
     float light[2] = {0, 0}, green[2] = {0, 0}, aside[2] = {0, 0};
     for (int k = 0; k < FRAMES; k++) {
-        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 3.0, NULL, &layers, NULL), SINGE_OK);
+        draw_fire(preview, k / 3.0);
         for (int i = 0; i < W * (H - 10); i++) {
             const int high = i / W < H / 2;
             light[high] += fire[i][0], green[high] += fire[i][1];
@@ -342,17 +323,14 @@ TEST(sparks_rise_and_cool_in_the_plume) {
 
 /// Wisps over embers by night are a bluish grey: the red of embers and the blue of the sky made them purple.
 TEST(wisps_are_blue_grey) {
-    static float fire[W * H][4];
-    static Burning paper;
-    PreviewDef def = embers_make(&paper);
+    PreviewDef def = embers_make();
     def.sparks = 0, def.wisps = 1;
     for (int c = 0; c < 3; c++) def.sun_colour[c] = 0, def.sky_colour[c] = 0.02f + 0.004f * (float)c;
     for (int v = 0; v < 4 * WIDE; v++) paper.rate[v] = v / 4 % 4 < 2;
-    PreviewLayers layers = {.fire = fire};
     OwnPreview *preview = preview_open(&def);
     float sum[3] = {0, 0, 0};
     for (int k = 0; k < 6; k++) {
-        assert_int_equal(preview_draw_layers(preview, &paper.surface, k / 6.0, NULL, &layers, NULL), SINGE_OK);
+        draw_fire(preview, k / 6.0);
         for (int i = 0; i < W * (H - 10); i++)
             for (int c = 0; c < 3; c++) sum[c] += fire[i][c];
     }
