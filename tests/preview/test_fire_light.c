@@ -4,6 +4,8 @@
 #include "preview/internal.h"
 
 // what a case works on
+static Line line;
+static Burning paper;
 static Ball ball;
 
 static float area(const uint8_t *rgb, int x0, int y0, int x1, int y1, int channel) {
@@ -101,8 +103,6 @@ TEST(a_body_of_flame_has_folds) {
 /// A deep bed of flames is not one white, at the exposure of a dim room: its folds are seen before what is behind them.
 TEST(a_deep_fire_is_not_all_pale) {
     enum { MOMENTS = 6 };
-    static Line line;
-    static Burning paper;
     static uint8_t rgb[BYTES];
     int flame = 0, pale = 0;
     line_make(&line, 0.003f), burning_make(&paper);
@@ -146,8 +146,6 @@ static float light_in_short_steps(const Fire *fire, Float3 from, Float3 directio
 /// flames had short dark bars, one a step: rays side by side took it on either side of an edge.
 TEST(no_step_leaps_over_an_edge) {
     enum { MOMENTS = 12, RAYS = 1800 };
-    static Line line;
-    static Burning paper;
     int wrong = 0, lit = 0;
     line_make(&line, 0.003f), burning_make(&paper);
     for (int i = 0; i < COLUMN; i++)
@@ -267,8 +265,6 @@ TEST(firelight_has_no_hot_spot) {
 /// beside the paper over that of the drawn flames, for gas that cools at two rates.
 TEST(flames_cast_light_from_where_they_are_drawn) {
     enum { FRAMES = 4 };
-    static Line line;
-    static Burning paper;
     static float fire[W * H][4], dark[W * H][3], lit[W * H][3];
     float share[2];
     burning_make(&paper);
@@ -541,8 +537,6 @@ TEST(smoke_fades_where_the_gas_ends) {
 /// grey and a little warm. It begins at the tips of the flames: what is within them is as without smoke.
 TEST(flames_light_smoke_from_below_and_burn_it) {
     enum { FRAMES = 6, FLAMES = 30, TIPS = 50 }; // mm
-    static Line line;
-    static Burning paper;
     static float fire[2][W * H][4];
     float side[2] = {0, 0}, weight[2] = {1e-6f, 1e-6f}, red = 0, blue = 0, veil = 0, flame = 0;
 

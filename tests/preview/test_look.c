@@ -3,6 +3,7 @@
 #include "plate.h"
 
 // what a case works on
+static Plate plate;
 static uint8_t rgb[BYTES];
 static Float4 q;
 
@@ -367,7 +368,6 @@ TEST(char_is_black_and_greys) {
 /// Char that still feeds a flame, which takes the air, has fewer; it was black.
 TEST(a_leaf_glows_in_threads) {
     static float glow[W * H][3];
-    static Plate plate;
     plate_make(&plate, 0.03f);
     PreviewDef def = above();
     def.camera.eye[2] = 0.06f, def.ground_height = -INFINITY;
@@ -530,7 +530,6 @@ static void border_and_middle(const uint8_t *picture, int channel, float mean[2]
 
 /// A loose plate of char is pale at its borders, which glow on while it is warm, for some seconds.
 TEST(plates_have_pale_borders_that_glow_for_a_while) {
-    static Plate plate;
     float pale[2], young[2], old[2];
     plate_make(&plate, 0.012f);
     for (int i = 0; i < NODES; i++) plate.burn[i] = 0.6f, plate.peak[i] = 900;
@@ -553,7 +552,6 @@ TEST(plates_have_pale_borders_that_glow_for_a_while) {
 
 /// Between cream and brown, scorched paper has a band of tan, whose border is uneven.
 TEST(scorch_has_a_tan_band_with_an_uneven_border) {
-    static Plate plate;
     const float pixel_size = 24.0f / W; // mm
     plate_make(&plate, 0.024f);
     for (int i = 0; i < NODES; i++)
@@ -583,7 +581,6 @@ TEST(scorch_has_a_tan_band_with_an_uneven_border) {
 
 /// Ahead of a front the band is wide, as vapour condenses there; paper that is evenly warm remains white.
 TEST(scorch_is_wide_ahead_of_a_front_and_nowhere_else) {
-    static Plate plate;
     plate_make(&plate, 0.024f);
     PreviewDef def = close_above(0.016f);
     float browned[2] = {0, 0}, brown = 0; // mm; brown: not tan any more, nor black
@@ -609,7 +606,6 @@ enum { FINE_W = 384, FINE_H = 256 };
 
 /// Char pales by and by: there is about as much dark grey as pale ash. Flat flakes looked pasted on.
 TEST(ash_on_char_pales_by_degrees) {
-    static Plate plate;
     static uint8_t picture[FINE_W * FINE_H * 3], sorted[FINE_W * FINE_H];
     plate_make(&plate, 0.06f);
     for (int i = 0; i < NODES; i++) plate.burn[i] = 0.62f, plate.peak[i] = 900;
@@ -635,16 +631,16 @@ TEST(ash_on_char_pales_by_degrees) {
 }
 
 /// A plate of char that glows away, drawn in the dark: its own light.
-static void draw_leaf(Plate *plate, float glow[FINE_W * FINE_H][3], double time) {
-    plate_make(plate, 0.033f);
-    plate_char(plate, 1000, 0.5f, 0);
+static void draw_leaf(float glow[FINE_W * FINE_H][3], double time) {
+    plate_make(&plate, 0.033f);
+    plate_char(&plate, 1000, 0.5f, 0);
     PreviewDef def = close_above(FINE_HIGH);
     def.width = FINE_W, def.height = FINE_H;
     for (int c = 0; c < 3; c++) def.sun_colour[c] = def.sky_colour[c] = 0;
     def.flakes = 0; // they hide parts of it
     OwnPreview *preview = preview_open(&def);
     const PreviewLayers layers = {.glow = glow};
-    assert_int_equal(preview_draw_layers(preview, &plate->surface, time, NULL, &layers, NULL), SINGE_OK);
+    assert_int_equal(preview_draw_layers(preview, &plate.surface, time, NULL, &layers, NULL), SINGE_OK);
 }
 
 /// How far into the plate a pixel of the fine picture lies, mm, and at which of its sides.
@@ -663,7 +659,6 @@ static float plate_depth(int pixel, float width, int *side, float *along) {
 /// Ash is a fringe along dead borders, and a thin skin elsewhere: pale patches all over a leaf were blots.
 TEST(ash_is_a_fringe_along_dead_borders) {
     enum { BINS = 12 };
-    static Plate plate;
     static uint8_t picture[FINE_W * FINE_H * 3];
     const float width = 0.033f;
     plate_make(&plate, width);
@@ -692,7 +687,6 @@ TEST(ash_is_a_fringe_along_dead_borders) {
 /// How much the green of ash changes from pixel to pixel, over that from each to the tenth beside it, where its middle lay that
 /// far along both sides of its sheet.
 static float ash_grain(float place) {
-    static Plate plate;
     static float rest[NODES][3];
     static uint8_t picture[FINE_W * FINE_H * 3];
     plate_make(&plate, 0.08f);
@@ -724,13 +718,12 @@ TEST(ash_is_alike_all_over_a_sheet) {
 /// middle; and the border is dead in places, for more than a centimetre. An even mat of coals was lava.
 TEST(a_leaf_glows_along_its_border) {
     enum { TIMES = 6, BINS = 12, STEP = 3 }; // bins of a millimetre; stretches of border of three
-    static Plate plate;
     static float glow[FINE_W * FINE_H][3];
     float sum[BINS][2] = {{0}}, count[BINS] = {0};
     int dead = 0, all = 0, longest = 0;
     for (int time = 0; time < TIMES; time++) {
         float border[4 * 11] = {0};
-        draw_leaf(&plate, glow, 20 * time);
+        draw_leaf(glow, 20 * time);
         for (int i = 0; i < FINE_W * FINE_H; i++) {
             int side;
             float way;

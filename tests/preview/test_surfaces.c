@@ -2,6 +2,9 @@
 
 #include "fixture.h"
 
+// what a case works on
+static uint8_t rgb[BYTES];
+
 static const PreviewSurface SURFACES[4] = {PREVIEW_SURFACE_MATT, PREVIEW_SURFACE_WOOD, PREVIEW_SURFACE_METAL,
                                            PREVIEW_SURFACE_CLOTH};
 
@@ -29,12 +32,12 @@ typedef struct Front {
     float mean[3], varies;
 } Front;
 
-static Front front_of(const uint8_t *rgb) {
+static Front front_of(const uint8_t *picture) {
     Front front = {.varies = 0};
     float squares = 0;
     enum { ACROSS = 40, DOWN = 16, COUNT = ACROSS * DOWN };
     for (int i = 0; i < COUNT; i++) {
-        const uint8_t *p = pixel(rgb, W / 2 - ACROSS / 2 + i % ACROSS, H / 2 + i / ACROSS);
+        const uint8_t *p = pixel(picture, W / 2 - ACROSS / 2 + i % ACROSS, H / 2 + i / ACROSS);
         for (int c = 0; c < 3; c++) front.mean[c] += (float)p[c] / COUNT;
         squares += (float)p[1] * (float)p[1] / COUNT;
     }
@@ -101,7 +104,6 @@ TEST(metal_mirrors_a_flame) {
 /// Steel that a fire has heated wears straw at 235 C and blue at 300 C.
 TEST(heated_metal_wears_temper_colours) {
     static const float kelvin[3] = {293, 505, 576};
-    static uint8_t rgb[BYTES];
     PreviewShape box;
     float blue[3];
     for (int k = 0; k < 3; k++) {
@@ -120,7 +122,6 @@ TEST(heated_metal_wears_temper_colours) {
 /// straight. Fibres that went on and on looked like a picture that the camera's motion had smeared.
 TEST(wood_is_not_smeared_along_its_grain) {
     enum { PLACES = 6, APART = 24, ACROSS = 3 };
-    static uint8_t rgb[BYTES];
     float both = 0, square = 0;
     for (int k = 0; k < PLACES; k++) {
         PreviewDef def = above();
@@ -144,7 +145,6 @@ TEST(wood_is_not_smeared_along_its_grain) {
 /// Paper that is bent to a radius of some millimetres has creased: its shade changes along the fold too, where it was as even as
 /// a tube's. Paper that curls does not.
 TEST(paper_that_is_crumpled_has_creases) {
-    static uint8_t rgb[BYTES];
     static Float4 q;
     float changes[2];
     for (int k = 0; k < 2; k++) {
@@ -177,7 +177,6 @@ TEST(crumpled_paper_has_flat_facets) {
     static float position[SIDE * SIDE][3], normal[SIDE * SIDE][3], zero[SIDE * SIDE][2], change[CHANGES];
     static uint32_t triangles[2 * CELLS][3];
     static int32_t sheet[SIDE * SIDE];
-    static uint8_t rgb[BYTES];
     for (int i = 0; i < SIDE * SIDE; i++) {
         const float x = 0.001f * (float)(i % SIDE - SIDE / 2), y = 0.001f * (float)(i / SIDE - SIDE / 2);
         const float turn = 0.5f * sinf(300 * x + 90 * y);
@@ -249,7 +248,6 @@ TEST(stone_draws_a_flame_out) {
 /// centimetres.
 TEST(stone_has_joints_and_large_tones) {
     enum { PLACES = 6, BOX = 16 };
-    static uint8_t rgb[BYTES];
     float darkest = 1, sum = 0, squares = 0, count = 0;
     for (int k = 0; k < PLACES; k++) {
         PreviewDef def = above();
@@ -275,7 +273,6 @@ TEST(stone_has_joints_and_large_tones) {
 
 /// A table far out of focus changes little from pixel to pixel. Its few samples, others in each pixel, left it speckled.
 TEST(a_table_out_of_focus_is_smooth) {
-    static uint8_t rgb[BYTES];
     PreviewDef def = above();
     def.camera.eye[1] = def.camera.target[1] = 0.118f, def.camera.fov = 0.15f; // a joint
     def.camera.aperture = 0.01f, def.camera.focus = 0.25f;
@@ -294,7 +291,6 @@ TEST(a_table_out_of_focus_is_smooth) {
 /// inner face that is darker than four fifths of the mean. It was a mosaic of scale and cracks. Its middle is pale, its limb
 /// orange: blue over red. It was a disc of one orange.
 TEST(a_glowing_ball_wears_a_little_scale) {
-    static uint8_t rgb[BYTES];
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .rotation = {0, 0, 0, 1}, .radius = 0.02f, .temperature = 1300};
     PreviewDef def = above();
     def.camera.fov = 0.09f, def.samples = 16;
@@ -331,7 +327,6 @@ TEST(a_glowing_ball_wears_a_little_scale) {
 
 /// Mortar is lighter than bricks: rows of pixels along a joint, over those along the middles of bricks. It was a dark line.
 TEST(mortar_is_lighter_than_bricks) {
-    static uint8_t rgb[BYTES];
     PreviewDef def = small();
     def.camera = (PreviewCamera){.eye = {0, 0, 0.45f}, .target = {0, 1, 0.45f}, .up = {0, 0, 1}, .fov = 0.3f};
     def.wall = PREVIEW_WALL_BRICK, def.wall_distance = 0.4f;
@@ -351,7 +346,6 @@ TEST(mortar_is_lighter_than_bricks) {
 /// between them. The squares of its noise's lattice were seen as blocks.
 TEST(plaster_is_not_in_blocks) {
     enum { PLACES = 32 };
-    static uint8_t rgb[BYTES];
     float axes[2] = {0, 0}, all = 0;
     for (int k = 0; k < PLACES; k++) {
         PreviewDef def = small();
