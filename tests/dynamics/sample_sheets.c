@@ -14,13 +14,13 @@ Quads quads_grid(uint32_t nx, uint32_t ny, float sx, float sy, bool wrap_x) {
     return quads;
 }
 
-void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int threads) {
-    *bench = (Bench){.memory = memory_make((SingeAllocator){0}), .wind = singe_default_wind()};
-    bench->settings = (DynamicsSettings){.gravity = {0, 0, -9.81f},
-                                         .air_density = 1.2f,
-                                         .solver = singe_default_solver(),
-                                         .thread_count = threads,
-                                         .time_step = 1.0f / 480};
+Bench bench_open(Quads quads, const SingeMaterialDef *material, int threads) {
+    Bench bench = {.memory = memory_make((SingeAllocator){0}), .wind = singe_default_wind()};
+    bench.settings = (DynamicsSettings){.gravity = {0, 0, -9.81f},
+                                        .air_density = 1.2f,
+                                        .solver = singe_default_solver(),
+                                        .thread_count = threads,
+                                        .time_step = 1.0f / 480};
     SingeSheetDef def = test_sheet(&quads);
     if (material) def.material = *material;
     float *uv = malloc(2 * quads.vertex_count * sizeof *uv), *along = malloc(quads.vertex_count * sizeof *along);
@@ -37,13 +37,14 @@ void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int
 
     SingeAttribute attribute = {"along", along};
     def.uv = uv, def.attribute_count = 1, def.attributes = &attribute;
-    assert_int_equal(sheet_source_create(&bench->memory, &def, &bench->source, &bench->error), SINGE_OK);
-    assert_int_equal(shell_create(&bench->memory, &bench->source, 1, &bench->shell, &bench->error), SINGE_OK);
-    assert_int_equal(state_create(&bench->memory, &bench->shell, &bench->state), SINGE_OK);
-    assert_int_equal(dynamics_plan_create(&bench->memory, &bench->shell, &bench->settings, &bench->plan), SINGE_OK);
-    assert_int_equal(pool_create(&bench->memory, (SingeTasks){0}, threads, &bench->pool), SINGE_OK);
+    assert_int_equal(sheet_source_create(&bench.memory, &def, &bench.source, &bench.error), SINGE_OK);
+    assert_int_equal(shell_create(&bench.memory, &bench.source, 1, &bench.shell, &bench.error), SINGE_OK);
+    assert_int_equal(state_create(&bench.memory, &bench.shell, &bench.state), SINGE_OK);
+    assert_int_equal(dynamics_plan_create(&bench.memory, &bench.shell, &bench.settings, &bench.plan), SINGE_OK);
+    assert_int_equal(pool_create(&bench.memory, (SingeTasks){0}, threads, &bench.pool), SINGE_OK);
     test_mesh_free(&quads);
     free(uv), free(along);
+    return bench;
 }
 
 SingeMaterialDef bench_plain_material(void) {
@@ -53,9 +54,9 @@ SingeMaterialDef bench_plain_material(void) {
     return material;
 }
 
-void bench_open_plain(Bench *bench, Quads quads) {
+Bench bench_open_plain(Quads quads) {
     const SingeMaterialDef material = bench_plain_material();
-    bench_open(bench, quads, &material, 1);
+    return bench_open(quads, &material, 1);
 }
 
 void bench_add_collider(Bench *bench, SingeColliderDef def, uint32_t count, const SingePoseKey *keys) {

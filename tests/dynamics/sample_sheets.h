@@ -27,9 +27,9 @@ Quads quads_grid(uint32_t nx, uint32_t ny, float sx, float sy, bool wrap_x);
 
 /// Builds everything; frees the quads. Asserts success. u and v go from 0 to 1 along x and y, and so does the attribute
 /// "along" along x.
-void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int threads);
+Bench bench_open(Quads quads, const SingeMaterialDef *material, int threads);
 /// The same with a material without drag and damping, on one thread.
-void bench_open_plain(Bench *bench, Quads quads);
+Bench bench_open_plain(Quads quads);
 SingeMaterialDef bench_plain_material(void);
 /// Adds the only collider.
 void bench_add_collider(Bench *bench, SingeColliderDef def, uint32_t count, const SingePoseKey *keys);

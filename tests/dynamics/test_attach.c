@@ -5,9 +5,6 @@
 #include "dynamics/dynamics_plan.h"
 #include "sim/scenes.h"
 
-// what a case works on
-static Bench bench;
-
 enum { SIDE = 20, ROW = SIDE + 1 };
 static const float cell = 0.01f;
 static const SingeSheetId the_sheet = {0, 1}; // of test_sim
@@ -15,11 +12,12 @@ static const SingeSheetId the_sheet = {0, 1}; // of test_sim
 static uint32_t vertex(uint32_t i, uint32_t j) { return j * ROW + i; }
 
 /// A sheet of 20 cm, flat, held at `count` vertices and ready for a projection.
-static void hold(Bench *b, const SingeMaterialDef *material, int count, const uint32_t *held) {
-    bench_open(b, quads_grid(SIDE, SIDE, cell, cell, false), material, 1);
-    for (int k = 0; k < count; k++) b->state.dynamics.pinned[held[k]] = 1;
-    dynamics_plan_hold(b->plan, &b->shell, &b->state);
-    bench_prepare(b);
+static Bench hold(const SingeMaterialDef *material, int count, const uint32_t *held) {
+    Bench b = bench_open(quads_grid(SIDE, SIDE, cell, cell, false), material, 1);
+    for (int k = 0; k < count; k++) b.state.dynamics.pinned[held[k]] = 1;
+    dynamics_plan_hold(b.plan, &b.shell, &b.state);
+    bench_prepare(&b);
+    return b;
 }
 
 /// Displaces all free particles at random, by up to 10 cm.
@@ -54,7 +52,7 @@ static double far_from_start(const Bench *b, uint32_t i) {
 TEST(no_vertex_is_too_far_from_a_pin) {
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0)};
     for (int count = 1; count <= 2; count++) {
-        hold(&bench, NULL, count, corners);
+        OwnBench bench = hold(NULL, count, corners);
         scatter(&bench);
         float(*before)[4] = malloc(bench.shell.particle_count * sizeof *before);
         assert_non_null(before);
@@ -71,14 +69,13 @@ TEST(no_vertex_is_too_far_from_a_pin) {
         assert_memory_equal(before[first], bench.state.dynamics.position[first],
                             bench.shell.cell_count * sizeof *before);
         free(before);
-        bench_close(&bench);
     }
 }
 
 /// Vertices within reach keep their position to the bit.
 TEST(slack_is_left_alone) {
     const uint32_t corner = vertex(0, 0);
-    hold(&bench, NULL, 1, &corner);
+    OwnBench bench = hold(NULL, 1, &corner);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         if (i != corner)
             bench.state.dynamics.position[i][2] = 0.3f * bench.state.dynamics.position[i][0],
@@ -89,12 +86,11 @@ TEST(slack_is_left_alone) {
     project(&bench);
     assert_memory_equal(before, bench.state.dynamics.position, bench.shell.particle_count * sizeof *before);
     free(before);
-    bench_close(&bench);
 }
 
 TEST(a_loose_piece_is_free) {
     const uint32_t corner = vertex(0, 0);
-    hold(&bench, NULL, 1, &corner);
+    OwnBench bench = hold(NULL, 1, &corner);
     for (uint32_t v = vertex(0, 10); v < bench.shell.vertex_count; v++) bench.state.ablate.piece[v] = 7;
     bench.state.ablate.topology_version++;
     attach_update(&bench.plan->attachments, &bench.shell, STATE_INPUT(&bench.state), false);
@@ -113,15 +109,13 @@ TEST(a_loose_piece_is_free) {
             assert_true(v >= vertex(0, 10) ? isinf(length) && length > 0 : isfinite(length));
         }
     }
-
-    bench_close(&bench);
 }
 
 /// Neither a pin that was removed nor a vertex that is gone holds anything.
 TEST(removed_pins_and_burnt_particles_hold_nothing) {
     const uint32_t corner = vertex(0, 0);
     for (int burnt = 0; burnt < 2; burnt++) {
-        hold(&bench, NULL, 1, &corner);
+        OwnBench bench = hold(NULL, 1, &corner);
         if (burnt) {
             bench.state.ablate.particle_flags[corner] = 0, bench.state.ablate.piece[corner] = -1;
             bench.state.ablate.topology_version++;
@@ -136,7 +130,6 @@ TEST(removed_pins_and_burnt_particles_hold_nothing) {
         for (uint32_t v = 1; v < bench.shell.vertex_count; v++) bench.state.dynamics.position[v][2] = -1;
         project(&bench);
         for (uint32_t v = 1; v < bench.shell.vertex_count; v++) assert_true(bench.state.dynamics.position[v][2] == -1);
-        bench_close(&bench);
     }
 }
 
@@ -144,22 +137,19 @@ TEST(removed_pins_and_burnt_particles_hold_nothing) {
 TEST(up_to_four_sources_are_far_apart) {
     uint32_t edge[ROW];
     for (uint32_t i = 0; i < ROW; i++) edge[i] = vertex(i, SIDE);
-    hold(&bench, NULL, ROW, edge);
-    const uint32_t *source = bench.plan->attachments.source[0];
+    OwnBench across = hold(NULL, ROW, edge);
+    const uint32_t *source = across.plan->attachments.source[0];
     assert_int_equal(source[0], edge[0]);
     assert_int_equal(source[1], edge[SIDE]);
     assert_int_equal(source[2], edge[SIDE / 2]);
     assert_int_not_equal(source[3], SHELL_NONE);
-    bench_close(&bench);
     const uint32_t close[] = {vertex(0, 0), vertex(SIDE, 0), vertex(1, 0)};
-    hold(&bench, NULL, 3, close); // the third is nearer than a tenth
-    assert_int_equal(bench.plan->attachments.source[0][2], SHELL_NONE);
-    bench_close(&bench);
+    OwnBench near = hold(NULL, 3, close); // the third is nearer than a tenth
+    assert_int_equal(near.plan->attachments.source[0][2], SHELL_NONE);
     SingeMaterialDef gives = singe_default_material();
     gives.compliance[SINGE_BLUE] = singe_param(1e-3f);
-    hold(&bench, &gives, ROW, edge);
-    assert_int_equal(bench.plan->attachments.source[0][0], SHELL_NONE);
-    bench_close(&bench);
+    OwnBench soft = hold(&gives, ROW, edge);
+    assert_int_equal(soft.plan->attachments.source[0][0], SHELL_NONE);
 }
 
 /// Updates the attachments as at the end of a step, for which a measurement may be due.
@@ -171,7 +161,7 @@ static void end_step(Bench *b, uint64_t step) {
 /// A fire eats a disc from its middle: distances around the hole grow at once, and none becomes shorter.
 TEST(lengths_grow_at_once) {
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0)};
-    hold(&bench, NULL, 2, corners);
+    OwnBench bench = hold(NULL, 2, corners);
     const Attachments *attachments = &bench.plan->attachments;
     float before[ROW * ROW][ATTACH_SOURCES];
     int grown = 0;
@@ -195,13 +185,12 @@ TEST(lengths_grow_at_once) {
     }
 
     assert_true(grown > 100);
-    bench_close(&bench);
 }
 
 /// Lengths that shrink to 0.8 get there in equal steps by the time of the next measurement.
 TEST(lengths_shorten_in_steps) {
     const uint32_t corner = vertex(0, 0), far = vertex(SIDE, SIDE);
-    hold(&bench, NULL, 1, &corner);
+    OwnBench bench = hold(NULL, 1, &corner);
     const float *length = bench.plan->attachments.length[far];
     const float start = *length;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
@@ -213,8 +202,6 @@ TEST(lengths_shorten_in_steps) {
         float done = step <= ATTACH_PERIOD ? 0 : (float)(step - ATTACH_PERIOD) / ATTACH_PERIOD;
         assert_true(fabsf(*length - start * (1 - 0.2f * done)) < 1e-4f * start);
     }
-
-    bench_close(&bench);
 }
 
 static double farthest_moved(const Bench *b, float (*before)[4]) {
@@ -232,7 +219,7 @@ TEST(rest_ends_without_a_jerk) {
     const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0), vertex(0, SIDE)};
     static float before[ROW * ROW][4];
 
-    hold(&bench, NULL, 3, corners);
+    OwnBench bench = hold(NULL, 3, corners);
     float(*x)[4] = bench.state.dynamics.position;
     bench.shell.spare_count = 1; // it may tear
     for (uint32_t v = 0; v < bench.shell.vertex_count; v++)
@@ -254,7 +241,6 @@ TEST(rest_ends_without_a_jerk) {
 
     assert_true(excess(&bench, 0) < 1e-4 && (double)x[vertex(SIDE, SIDE)][0] < start - 0.02);
     bench.shell.spare_count = 0;
-    bench_close(&bench);
 }
 
 /// A sheet held at two corners; the second goes `away` m within half a second.

@@ -6,9 +6,6 @@
 #include "dynamics/dynamics_plan.h"
 #include "world/solids.h"
 
-// what a case works on
-static Bench bench;
-
 static const float STEP = 1.0f / 480;
 
 static Float3 centroid(const Bench *b) {
@@ -28,7 +25,7 @@ static void position(Bench *b, const float rotation[4], Float3 at) {
 
 /// A sheet of 2 mm cells thrown at a plate of 6 cm: how many particles are behind it at last.
 static int passed(SingeColliderDef plate, float sheet_speed, float plate_speed, const float rotation[4]) {
-    bench_open_plain(&bench, quads_grid(16, 16, 0.002f, 0.002f, false));
+    OwnBench bench = bench_open_plain(quads_grid(16, 16, 0.002f, 0.002f, false));
     SingePoseKey keys[2] = {{0, {0, 0, 0}, {0, 0, 0, 1}}, {1, {0, 0, plate_speed}, {0, 0, 0, 1}}};
     for (int k = 0; k < 4; k++) keys[0].rotation[k] = keys[1].rotation[k] = rotation[k];
     bench_add_collider(&bench, plate, 2, keys);
@@ -42,7 +39,6 @@ static int passed(SingeColliderDef plate, float sheet_speed, float plate_speed, 
         Float3 local = pose_unapply(&pose, float3_load(bench.state.dynamics.position[i]));
         count += local.z < 0 && fabsf(local.x) < 0.03f && fabsf(local.y) < 0.03f;
     }
-    bench_close(&bench);
     return count;
 }
 
@@ -80,7 +76,7 @@ static SingeColliderDef slab(SingeColliderKind kind, Triangles *triangles, const
 
 /// m that a sheet of 4 cm slides in 0.5 s on a slab of that slope, and in the second half of it.
 static double slide(SingeColliderDef def, float slope, double *late) {
-    bench_open_plain(&bench, quads_grid(8, 8, 0.005f, 0.005f, false));
+    OwnBench bench = bench_open_plain(quads_grid(8, 8, 0.005f, 0.005f, false));
     SingePoseKey key = {0, {0, 0, 0}, {0, sinf(slope / 2), 0, cosf(slope / 2)}};
     float top = def.kind == SINGE_COLLIDER_BOX || def.kind == SINGE_COLLIDER_MESH ? 0.05f : 0;
     bench_add_collider(&bench, def, 1, &key);
@@ -92,7 +88,6 @@ static double slide(SingeColliderDef def, float slope, double *late) {
     }
     double displacement = (double)float3_length(float3_sub(centroid(&bench), start));
     if (late) *late = (double)float3_length(float3_sub(centroid(&bench), half));
-    bench_close(&bench);
     return displacement;
 }
 
@@ -131,7 +126,7 @@ TEST(resting_sheets_do_not_creep) {
 /// m that a sheet stays behind a belt in 0.4 s, which starts from rest with this acceleration.
 static double behind_belt(SingeColliderDef def, float acceleration) {
     enum { KEYS = 100 };
-    bench_open_plain(&bench, quads_grid(8, 8, 0.005f, 0.005f, false));
+    OwnBench bench = bench_open_plain(quads_grid(8, 8, 0.005f, 0.005f, false));
     SingePoseKey keys[KEYS];
     for (int k = 0; k < KEYS; k++) {
         float t = 0.45f * (float)k / (KEYS - 1);
@@ -141,7 +136,6 @@ static double behind_belt(SingeColliderDef def, float acceleration) {
     float start = centroid(&bench).x;
     for (int step = 0; step < 192; step++) bench_step(&bench, STEP);
     double displacement = (double)(centroid(&bench).x - start), belt = 0.5 * (double)acceleration * 0.16;
-    bench_close(&bench);
     return belt - displacement;
 }
 
@@ -187,7 +181,7 @@ static double rests(SingeColliderDef def, const char *name, float height) {
     enum { CELLS = 40 };
     const float cell = 0.002f;
     SingeMaterialDef material = singe_default_material();
-    bench_open(&bench, quads_grid(CELLS, CELLS, cell, cell, false), &material, 2);
+    OwnBench bench = bench_open(quads_grid(CELLS, CELLS, cell, cell, false), &material, 2);
     SingePoseKey key = {0, {0, 0, 0}, {0, 0, 0, 1}};
     bench_add_collider(&bench, def, 1, &key);
     const float turned[4] = {0, 0, 0.2588f, 0.9659f};
@@ -196,7 +190,6 @@ static double rests(SingeColliderDef def, const char *name, float height) {
     double speed, worst = deepest(&bench, &speed);
     printf("%s: after 0.4 s the deepest point of the sheet is %.3f mm in (%.1f %% of a cell), mean speed %.1f mm/s\n",
            name, 1e3 * worst, 100 * worst / (double)cell, 1e3 * speed);
-    bench_close(&bench);
     assert_true(speed < 1e-3); // m/s: one that has fallen past is not in it either
     return worst / (double)cell;
 }
@@ -219,7 +212,7 @@ TEST(sheets_rest_on_meshes_and_heights) {
 TEST(small_spheres_hold) {
     for (float radius = 8e-3f; radius > 0.4e-3f; radius /= 2) {
         SingeMaterialDef material = singe_default_material();
-        bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
+        OwnBench bench = bench_open(quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
         SingeColliderDef def = singe_default_collider();
         def.kind = SINGE_COLLIDER_SPHERE, def.radius = radius;
         SingePoseKey key = {0, {0.0153f, 0.0147f, -radius - 0.002f}, {0, 0, 0, 1}}; // below the inside of a cell
@@ -231,7 +224,6 @@ TEST(small_spheres_hold) {
         }
         printf("sphere of %.1f mm under cells of 2 mm: %.2f mm in at the worst\n", 1e3 * (double)radius, 1e3 * worst);
         if (radius > 1.5e-3f) assert_true(worst < 0);
-        bench_close(&bench);
     }
 }
 
@@ -252,7 +244,7 @@ static double fastest(const Bench *b, int *under) {
 TEST(pressed_sheets_stay_and_rest) {
     for (float gap = 2e-3f; gap > 0.2e-3f; gap /= 2) {
         SingeMaterialDef material = singe_default_material();
-        bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
+        OwnBench bench = bench_open(quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
         OwnTriangles triangles = triangles_box(4, 0.02f, 0.02f, 0.01f);
         SingeColliderDef def = triangles_def(&triangles), plate = singe_default_collider();
         const float high = 0.005f + 0.006f, low = 0.005f + gap, x = 0.016f;
@@ -286,13 +278,12 @@ TEST(pressed_sheets_stay_and_rest) {
                1e3 * (double)gap, max, last, ever);
         assert_true(ever == 0 && max < 2 && last < 0.02);
         collider_free(&bench.memory, &both[1]);
-        bench_close(&bench);
     }
 }
 
 /// A plate that turns about its edge hits a sheet in flight: nothing gets through.
 TEST(swung_plates_let_nothing_through) {
-    bench_open_plain(&bench, quads_grid(16, 16, 0.002f, 0.002f, false));
+    OwnBench bench = bench_open_plain(quads_grid(16, 16, 0.002f, 0.002f, false));
     OwnTriangles triangles = triangles_box(6, 0.1f, 0.1f, 0.0005f);
     for (uint32_t v = 0; v < triangles.vertex_count; v++) triangles.vertices[3 * (size_t)v] += 0.06f; // about its edge
     enum { KEYS = 40 };
@@ -316,7 +307,6 @@ TEST(swung_plates_let_nothing_through) {
 
     printf("swat: %d of %u particles hit, %d through\n", hit, bench.shell.particle_count, through);
     assert_true(hit > 400 && through == 0);
-    bench_close(&bench);
 }
 
 // ---- in lanes
@@ -333,7 +323,8 @@ TEST(particles_move_in_lanes_as_one_by_one) {
 
     for (int trial = 0; trial < 12; trial++) {
         // at rest as it is, at rest but turned, moving
-        bench_open_plain(&bench, quads_grid(29, 31, 0.002f, 0.002f, false)); // 1859 particles: lanes leave some
+        OwnBench bench =
+            bench_open_plain(quads_grid(29, 31, 0.002f, 0.002f, false)); // 1859 particles: lanes leave some
         SingeColliderDef def = singe_default_collider();
         def.kind = kinds[trial % 4];
         def.radius = 0.01f;
@@ -375,7 +366,6 @@ TEST(particles_move_in_lanes_as_one_by_one) {
         }
         all += contacts;
         free(one);
-        bench_close(&bench);
     }
 
     assert_true(all > 1000);
@@ -388,7 +378,7 @@ TEST(of_many_colliders_none_is_missed) {
     const float h = STEP / 3, none[4] = {0, 0, 0, 1};
     for (int trial = 0; trial < 6; trial++) {
         const uint32_t near = trial < 3 ? 40 : 400, count = near + 200;
-        bench_open_plain(&bench, quads_grid(40, 40, 0.002f, 0.002f, false));
+        OwnBench bench = bench_open_plain(quads_grid(40, 40, 0.002f, 0.002f, false));
         assert_true(dynamics_plan_reserve(&bench.memory, bench.plan, MOST));
         Collider *colliders = calloc(MOST, sizeof *colliders);
         for (uint32_t c = 0; c < count; c++) {
@@ -436,7 +426,6 @@ TEST(of_many_colliders_none_is_missed) {
         free(one);
         for (uint32_t c = 0; c < count; c++) collider_free(&bench.memory, &colliders[c]);
         free(colliders);
-        bench_close(&bench);
     }
 }
 
@@ -467,7 +456,7 @@ static double look(Bench *b, Float3 at, uint64_t *contacts) {
 TEST(far_colliders_cost_almost_nothing) {
     SingeMaterialDef material = bench_plain_material();
     material.thickness = singe_param(0.0004f); // both layers in reach
-    bench_open(&bench, quads_grid(70, 70, 0.001f, 0.001f, false), &material, 1);
+    OwnBench bench = bench_open(quads_grid(70, 70, 0.001f, 0.001f, false), &material, 1);
     OwnTriangles triangles = triangles_box(29, 0.1f, 0.1f, 0.02f);
     SingePoseKey key = {0, {0.035f, 0.035f, -0.01f}, {0, 0, 0, 1}};
     bench_add_collider(&bench, triangles_def(&triangles), 1, &key);
@@ -478,5 +467,4 @@ TEST(far_colliders_cost_almost_nothing) {
            bench.shell.particle_count, triangles.triangle_count, far, above, touching);
     assert_true(none == 0 && some == 0 && all == bench.shell.particle_count);
     assert_true(far < touching / 20);
-    bench_close(&bench);
 }

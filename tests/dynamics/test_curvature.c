@@ -3,16 +3,13 @@
 
 #include "dynamics/dynamics_plan.h"
 
-// what a case works on
-static Bench bench;
-
 enum { NX = 24, NY = 6 };
 static const float cell = 2e-3f, curvature = 350; // about 40 degrees a cell
 
-static void open_sheet(Bench *b, Quads quads, float limit) {
+static Bench open_sheet(Quads quads, float limit) {
     SingeMaterialDef material = singe_default_material();
     material.curvature_max = singe_param(limit);
-    bench_open(b, quads, &material, 2);
+    return bench_open(quads, &material, 2);
 }
 
 /// Folds a grid along its middle column: `angle` in rad within one row of edges, or spread over an arc of `turns`
@@ -78,17 +75,16 @@ static bool is_touched(Bench *b) {
 }
 
 TEST(sharp_folds_are_rounded) {
-    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
+    OwnBench bench = open_sheet(quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
     bench_prepare(&bench);
     assert_true(sharpest(&bench) > 2);
     for (int i = 0; i < 400; i++) curvature_project(bench.plan, bench.pool, &bench.state.dynamics);
     assert_true(sharpest(&bench) < 1.02);
-    bench_close(&bench);
 }
 
 TEST(momenta_are_kept) {
-    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
+    OwnBench bench = open_sheet(quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
     bench_prepare(&bench);
     float(*start)[4] = copy_positions(&bench);
@@ -103,16 +99,14 @@ TEST(momenta_are_kept) {
     for (int k = 0; k < 3; k++) assert_true(fabs(sums[k]) < 1e-4 * moved);
     for (int k = 3; k < 6; k++) assert_true(fabs(sums[k]) < 1e-4 * moved * NX * (double)cell + 1e-12);
     free(start);
-    bench_close(&bench);
 }
 
 TEST(gentle_bends_are_not_touched) {
-    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
+    OwnBench bench = open_sheet(quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 0.9f * curvature * cell * 8, 8);
     assert_false(is_touched(&bench));
     fold(&bench, 1.2f * curvature * cell * 8, 8);
     assert_true(is_touched(&bench));
-    bench_close(&bench);
 }
 
 /// A vertex of a grid around the origin that is bent to a cylinder whose axis is at an angle to its columns.
@@ -127,7 +121,7 @@ static void cylinder(const float *rest, double bend, double angle, double *x) {
 static double resistance(double angle, bool isotropic) {
     const double bend = 150;
     double work = 0;
-    open_sheet(&bench, quads_grid(NX, NX, cell, cell, false), 100);
+    OwnBench bench = open_sheet(quads_grid(NX, NX, cell, cell, false), 100);
     dynamics_plan_free(&bench.memory, &bench.shell, bench.plan);
     bench.settings.solver.isotropic = isotropic;
     assert_int_equal(dynamics_plan_create(&bench.memory, &bench.shell, &bench.settings, &bench.plan), SINGE_OK);
@@ -148,7 +142,6 @@ static double resistance(double angle, bool isotropic) {
                     ((double)bench.state.dynamics.position[v][k] - (double)before[v][k]);
     }
     free(before);
-    bench_close(&bench);
     return work;
 }
 
@@ -165,57 +158,51 @@ TEST(isotropic_limits_hold_all_folds_alike) {
 /// A limit beyond what cells of this size bear is that of the cells: beta, 45 degrees for these.
 TEST(coarse_cells_set_the_curvature_limit) {
     const float beta = atanf(2 * singe_default_material().thickness.value / cell);
-    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), 1e5f);
+    OwnBench bench = open_sheet(quads_grid(NX, NY, cell, cell, false), 1e5f);
     fold(&bench, 0.95f * beta * 8, 8);
     assert_false(is_touched(&bench));
     fold(&bench, 1.2f * beta * 8, 8);
     assert_true(is_touched(&bench));
-    bench_close(&bench);
 }
 
 TEST(without_a_limit_nothing_is_touched) {
-    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), 0);
+    OwnBench bench = open_sheet(quads_grid(NX, NY, cell, cell, false), 0);
     fold(&bench, 2.5f, 1);
     assert_false(is_touched(&bench));
-    bench_close(&bench);
 }
 
 TEST(char_folds_as_it_likes) {
-    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
+    OwnBench bench = open_sheet(quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.burn.mass[i] = 0.9f;
     assert_false(is_touched(&bench));
-    bench_close(&bench);
 }
 
 TEST(removed_springs_do_not_bend) {
-    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
+    OwnBench bench = open_sheet(quads_grid(NX, NY, cell, cell, false), curvature);
     fold(&bench, 2, 1);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         memset(bench.state.ablate.spring_flags[colour], 0, bench.shell.springs[colour].count);
     assert_false(is_touched(&bench));
-    bench_close(&bench);
 }
 
 /// A tube that is rounder at rest than the limit, and a flat sheet whose vertices lie off their rows.
 TEST(rest_shapes_are_kept) {
-    open_sheet(&bench, quads_grid(8, NY, cell, cell, true), 100);
-    assert_false(is_touched(&bench));
-    bench_close(&bench);
+    OwnBench tube = open_sheet(quads_grid(8, NY, cell, cell, true), 100);
+    assert_false(is_touched(&tube));
 
     Quads quads = quads_grid(NX, NY, cell, cell, false);
     for (uint32_t v = 0; v < quads.vertex_count; v++) {
         quads.positions[3 * v] += 0.3f * cell * sinf(7.0f * (float)v);
         quads.positions[3 * v + 1] += 0.3f * cell * sinf(13.0f * (float)v);
     }
-    open_sheet(&bench, quads, 10);
-    assert_false(is_touched(&bench));
-    bench_close(&bench);
+    OwnBench sheet = open_sheet(quads, 10);
+    assert_false(is_touched(&sheet));
 }
 
 /// Around a tube that is pressed flat there are folds at every ring's first vertex or elsewhere: all are rounded.
 TEST(rings_are_limited_all_around) {
-    open_sheet(&bench, quads_grid(32, 2, cell, cell, true), curvature);
+    OwnBench bench = open_sheet(quads_grid(32, 2, cell, cell, true), curvature);
     for (uint32_t turn = 0; turn < 32; turn++) {
         for (uint32_t v = 0; v < bench.shell.vertex_count; v++) {
             uint32_t i = (v + turn) % 32; // two flat sides, and folds where i is 0 and 16
@@ -232,6 +219,4 @@ TEST(rings_are_limited_all_around) {
             assert_true(float3_length(r) < 1.15f * 2 * cell * sinf(0.5f * curvature * cell) + 0.2f * cell);
         }
     }
-
-    bench_close(&bench);
 }

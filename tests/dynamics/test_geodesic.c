@@ -10,7 +10,7 @@ typedef struct Distances {
 } Distances;
 
 static void distances_open(Distances *d, Quads quads) {
-    bench_open(&d->bench, quads, NULL, 1);
+    d->bench = bench_open(quads, NULL, 1);
     assert_true(geodesic_create(&d->bench.memory, d->bench.shell.vertex_count, &d->search));
     d->distance = malloc(d->bench.shell.vertex_count * sizeof *d->distance);
     assert_non_null(d->distance);

@@ -3,9 +3,6 @@
 
 #include "dynamics/dynamics_plan.h"
 
-// what a case works on
-static Bench bench;
-
 static const float pi = 3.14159265f;
 
 static void momentum(const Bench *b, double p[3]) {
@@ -18,7 +15,7 @@ static void momentum(const Bench *b, double p[3]) {
 static double wave_left(float cell, float wavelength, int steps) {
     uint32_t n = (uint32_t)lroundf(0.4f / cell);
 
-    bench_open_plain(&bench, quads_grid(n, 4, cell, cell, false));
+    OwnBench bench = bench_open_plain(quads_grid(n, 4, cell, cell, false));
     bench_prepare(&bench);
     float(*v)[4] = bench.state.dynamics.velocity;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
@@ -33,7 +30,6 @@ static double wave_left(float cell, float wavelength, int steps) {
         dot += wave * (double)v[i][2], square += wave * wave;
     }
 
-    bench_close(&bench);
     return dot / square;
 }
 
@@ -48,7 +44,7 @@ TEST(waves_decay_by_their_length) {
 }
 
 TEST(friction_keeps_momentum) {
-    bench_open_plain(&bench, quads_grid(20, 16, 0.004f, 0.004f, false));
+    OwnBench bench = bench_open_plain(quads_grid(20, 16, 0.004f, 0.004f, false));
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         bench.state.burn.mass[i] = 0.3f + 0.7f * (float)(i % 7) / 6;
     bench_prepare(&bench);
@@ -67,12 +63,11 @@ TEST(friction_keeps_momentum) {
     dynamics_smooth(bench.plan, &bench.shell, &bench.state.ablate, bench.pool, 1.0f / 480, &bench.state.dynamics);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         assert_true(v[i][0] == 1 && v[i][1] == -2 && v[i][2] == 3);
-    bench_close(&bench);
 }
 
 /// Friction does not act across a spring that is gone.
 TEST(friction_stops_at_cuts) {
-    bench_open_plain(&bench, quads_grid(20, 1, 0.01f, 0.01f, false));
+    OwnBench bench = bench_open_plain(quads_grid(20, 1, 0.01f, 0.01f, false));
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t k = 0; k < bench.shell.springs[c].count; k++) {
             const uint32_t *ends = bench.shell.springs[c].ends[k];
@@ -87,11 +82,10 @@ TEST(friction_stops_at_cuts) {
         dynamics_smooth(bench.plan, &bench.shell, &bench.state.ablate, bench.pool, 1.0f / 480, &bench.state.dynamics);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         assert_true(v[i][2] == (bench.shell.rest_position[i][0] < 0.1001f ? 0 : 1));
-    bench_close(&bench);
 }
 
 TEST(inverted_cells_are_mended) {
-    bench_open_plain(&bench, quads_grid(8, 8, 0.005f, 0.005f, false));
+    OwnBench bench = bench_open_plain(quads_grid(8, 8, 0.005f, 0.005f, false));
     double thickness = (double)field_at(bench.shell.matter.thickness, shell_centre(&bench.shell, 0));
     for (uint32_t c = 0; c < bench.shell.cell_count; c += 9) // the diagonal: centres pushed through their corners
         bench.state.dynamics.position[shell_centre(&bench.shell, c)][2] -= (float)(1.5 * thickness);
@@ -107,7 +101,6 @@ TEST(inverted_cells_are_mended) {
     for (uint32_t c = 0; c < bench.shell.cell_count; c++)
         assert_true(bench_height(&bench, c) > 0.99 * (double)bench.settings.solver.height_min * thickness);
     assert_true(fabs(after - before) < 1e-6 * thickness); // a sheet of 3.2 g: the centre of mass stays
-    bench_close(&bench);
 }
 
 /// The most that a side of any cell is longer than its target, times it.
@@ -127,7 +120,7 @@ static double longest_side(const Bench *b) {
 /// A vertex that was pulled away by three cells returns to a quarter more than a side and flies off no further;
 /// momentum is conserved.
 TEST(sides_have_a_max) {
-    bench_open_plain(&bench, quads_grid(12, 12, 0.01f, 0.01f, false));
+    OwnBench bench = bench_open_plain(quads_grid(12, 12, 0.01f, 0.01f, false));
     bench_prepare(&bench);
     float(*x)[4] = bench.state.dynamics.position, (*v)[4] = bench.state.dynamics.velocity;
     const uint32_t at = 6 * 13 + 6;
@@ -147,7 +140,6 @@ TEST(sides_have_a_max) {
 
     assert_false(
         dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool, &bench.state.dynamics));
-    bench_close(&bench);
 }
 
 /// Sides that have burnt, may stretch or are held at both ends have no maximum length, nor has a sheet held too far
@@ -156,7 +148,7 @@ TEST(some_sides_have_no_max) {
     for (int kind = 0; kind < 5; kind++) {
         SingeMaterialDef material = bench_plain_material();
         if (kind == 1) material.compliance[SINGE_BLUE].value = 1e-3f;
-        bench_open(&bench, quads_grid(3, 1, 0.01f, 0.01f, false), &material, 1);
+        OwnBench bench = bench_open(quads_grid(3, 1, 0.01f, 0.01f, false), &material, 1);
         bench_prepare(&bench);
         float(*x)[4] = bench.state.dynamics.position;
         const float far = x[7][0] + 0.02f;
@@ -171,7 +163,6 @@ TEST(some_sides_have_no_max) {
             dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool, &bench.state.dynamics);
         assert_true(found == (kind == 4)); // burnt, soft, held or tightly attached sides have none
         assert_true(kind == 4 ? x[7][0] < far - 1e-3f : x[7][0] == far);
-        bench_close(&bench);
     }
 }
 
@@ -179,7 +170,7 @@ TEST(some_sides_have_no_max) {
 TEST(weights_follow_eq_19) {
     SingeMaterialDef material = bench_plain_material();
     material.weight[SINGE_BLUE].value = 0.8f, material.char_weight.value = 0.4f, material.mass_min.value = 0.2f;
-    bench_open(&bench, quads_grid(3, 3, 0.005f, 0.005f, false), &material, 1);
+    OwnBench bench = bench_open(quads_grid(3, 3, 0.005f, 0.005f, false), &material, 1);
     const SpringSet *blue = &bench.shell.springs[SINGE_BLUE];
     bench.state.burn.mass[blue->ends[0][0]] = 0.2f; // ash
     bench.state.burn.mass[blue->ends[0][1]] = 0.6f; // half burnt
@@ -188,7 +179,6 @@ TEST(weights_follow_eq_19) {
     assert_true(fabsf(bench_weight(&bench, SINGE_BLUE, 0) - 0.8f * (1 - 0.6f * 0.75f)) < 1e-6f);
     assert_true(bench_weight(&bench, SINGE_BLUE, 1) == 0);
     assert_true(fabsf(bench_weight(&bench, SINGE_BLUE, blue->count - 1) - 0.8f) < 1e-6f);
-    bench_close(&bench);
 }
 
 /// A ribbon of compliant springs hangs as long whatever the number of substeps.
@@ -198,7 +188,7 @@ TEST(compliance_does_not_depend_on_substeps) {
         SingeMaterialDef material = bench_plain_material();
         material.damping = singe_param(6);
         for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = singe_param(5);
-        bench_open(&bench, quads_grid(1, 10, 0.01f, 0.01f, false), &material, 1);
+        OwnBench bench = bench_open(quads_grid(1, 10, 0.01f, 0.01f, false), &material, 1);
         bench.plan->settings.solver.substeps = run ? 12 : 3;
         bench.plan->settings.solver.height_min = 0;
         for (int c = 0; c < SINGE_COLOUR_COUNT; c++) bench.plan->settings.solver.regularisation[c] = 1e-6f;
@@ -210,7 +200,6 @@ TEST(compliance_does_not_depend_on_substeps) {
         for (uint32_t i = 0; i < bench.shell.vertex_count; i++)
             low = fmin(low, (double)bench.state.dynamics.position[i][1]);
         stretch[run] = -low;
-        bench_close(&bench);
     }
 
     assert_true(stretch[0] > 1e-4 && fabs(stretch[0] / stretch[1] - 1) < 0.02);
@@ -222,7 +211,7 @@ TEST(compliant_springs_swing_with_their_period_and_energy) {
     SingeMaterialDef material = bench_plain_material();
     const double compliance = 20, h = 1.0 / 40000;
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = singe_param(c == SINGE_BLUE ? 20 : 1e6f);
-    bench_open(&bench, quads_grid(1, 1, 0.01f, 0.01f, false), &material, 1);
+    OwnBench bench = bench_open(quads_grid(1, 1, 0.01f, 0.01f, false), &material, 1);
     SingeSolverDef *solver = &bench.plan->settings.solver;
     solver->substeps = 1, solver->smoothing = solver->height_min = 0;
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) solver->regularisation[c] = 1e-6f;
@@ -251,7 +240,6 @@ TEST(compliant_springs_swing_with_their_period_and_energy) {
                   fastest);
     assert_true(fabs(period / expected - 1) < 0.02);
     assert_true(fastest > 0.9 * 0.05 && fastest < 1.01 * 0.05);
-    bench_close(&bench);
 }
 
 /// Springs burnt to ash keep a share of their weight that varies: here from 0.2 at the left to 0.8 at the right.
@@ -259,7 +247,7 @@ TEST(char_weight_follows_an_attribute) {
     SingeMaterialDef material = bench_plain_material();
     material.char_weight =
         singe_param_field(0.2f, 0.8f, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "along"});
-    bench_open(&bench, quads_grid(10, 2, 0.01f, 0.01f, false), &material, 1);
+    OwnBench bench = bench_open(quads_grid(10, 2, 0.01f, 0.01f, false), &material, 1);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         bench.state.burn.mass[i] = field_at(bench.shell.matter.mass_min, i);
     bench_prepare(&bench);
@@ -269,7 +257,6 @@ TEST(char_weight_follows_an_attribute) {
             float x = 0.5f * (bench.shell.rest_position[ends[0]][0] + bench.shell.rest_position[ends[1]][0]);
             assert_true(fabsf(bench_weight(&bench, colour, k) - (0.2f + 6 * x)) < 1e-5f);
         }
-    bench_close(&bench);
 }
 
 /// Each particle is slowed by its own damping and drag; springs without weight do not even them out.
@@ -281,7 +268,7 @@ TEST(damping_and_drag_follow_a_texture) {
             singe_param_field(0, 4, &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}});
         if (drag) material.drag = param;
         else material.damping = param;
-        bench_open(&bench, quads_grid(8, 2, 0.01f, 0.01f, false), &material, 1);
+        OwnBench bench = bench_open(quads_grid(8, 2, 0.01f, 0.01f, false), &material, 1);
         for (int k = 0; k < 3; k++) bench.plan->settings.gravity[k] = 0;
         float h = 0.01f;
         for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.dynamics.velocity[i][2] = 2;
@@ -294,8 +281,6 @@ TEST(damping_and_drag_follow_a_texture) {
             float slower = drag ? h * 0.25f * 1.2f * 4 * f / 0.04f * 2 : h * 4 * f;
             assert_true(fabsf(bench.state.dynamics.velocity[i][2] - 2 / (1 + slower)) < 1e-5f);
         }
-
-        bench_close(&bench);
     }
 }
 
@@ -304,7 +289,7 @@ static void hang(SingeParam compliance, double stretch[2]) {
     SingeMaterialDef material = bench_plain_material();
     material.damping = singe_param(6);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = compliance;
-    bench_open(&bench, quads_grid(1, 20, 0.01f, 0.01f, false), &material, 1);
+    OwnBench bench = bench_open(quads_grid(1, 20, 0.01f, 0.01f, false), &material, 1);
     bench.plan->settings.solver.substeps = 6;
     bench.plan->settings.solver.height_min = 0;
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) bench.plan->settings.solver.regularisation[c] = 1e-6f;
@@ -317,8 +302,6 @@ static void hang(SingeParam compliance, double stretch[2]) {
         const float(*x)[4] = (const float(*)[4])bench.state.dynamics.position;
         stretch[end] = (double)(x[2 * (row + 5)][1] - x[2 * row][1]) - 0.05;
     }
-
-    bench_close(&bench);
 }
 
 TEST(compliance_follows_a_texture) {

@@ -4,9 +4,6 @@
 #include "common/random.h"
 #include "dynamics/dynamics_plan.h"
 
-// what a case works on
-static Bench bench;
-
 static Float3 centre_of_mass(const Bench *b) {
     double sum[3] = {0, 0, 0}, mass = 0;
     for (uint32_t i = 0; i < b->shell.particle_count; i++) {
@@ -31,7 +28,7 @@ static double blue_strain(const Bench *b) {
 }
 
 TEST(a_sheet_falls_freely) {
-    bench_open_plain(&bench, quads_grid(10, 10, 0.02f, 0.02f, false));
+    OwnBench bench = bench_open_plain(quads_grid(10, 10, 0.02f, 0.02f, false));
     float start = centre_of_mass(&bench).z;
     for (int step = 0; step < 240; step++) bench_step(&bench, 1.0f / 480);
 
@@ -39,19 +36,17 @@ TEST(a_sheet_falls_freely) {
     double n = 240.0 * bench.settings.solver.substeps, expected = 0.5 * 9.81 * 0.25 * (1 + 1 / n);
     assert_true(fabs((double)(start - centre_of_mass(&bench).z) - expected) < 2e-4);
     assert_true(blue_strain(&bench) < 1e-4);
-    bench_close(&bench);
 }
 
 TEST(drag_gives_a_terminal_speed) {
     SingeMaterialDef material = bench_plain_material();
     material.drag = singe_param(1.3f);
-    bench_open(&bench, quads_grid(6, 6, 0.02f, 0.02f, false), &material, 1);
+    OwnBench bench = bench_open(quads_grid(6, 6, 0.02f, 0.02f, false), &material, 1);
     for (int step = 0; step < 960; step++) bench_step(&bench, 1.0f / 480);
     double expected = sqrt(2 * 0.080 * 9.81 / (1.2 * 1.3)), speed = 0;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) speed -= (double)bench.state.dynamics.velocity[i][2];
     speed /= bench.shell.particle_count;
     assert_true(fabs(speed / expected - 1) < 0.02);
-    bench_close(&bench);
 }
 
 /// A leaf of char, tilted by 20 degrees, falls for a second. Drag of its normal velocity alone lets it slide away as it is
@@ -65,7 +60,7 @@ TEST(free_pieces_flutter) {
         material.grammage = singe_param(0.020f);
         Quads quads = quads_grid(8, 5, 0.0015f, 0.0015f, false);
         for (uint32_t v = 0; v < quads.vertex_count; v++) quads.positions[3 * v + 2] = 0.36f * quads.positions[3 * v];
-        bench_open(&bench, quads, &material, 1);
+        OwnBench bench = bench_open(quads, &material, 1);
         for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.ablate.piece[i] = freed;
         bench.state.ablate.piece_count = freed ? 2 : 1;
 
@@ -85,7 +80,6 @@ TEST(free_pieces_flutter) {
                       freed ? "a free piece" : "a sheet", turned[freed], (double)way.x * 1e3, (double)-way.z * 1e3,
                       blue_strain(&bench));
         assert_true(blue_strain(&bench) < 0.02);
-        bench_close(&bench);
     }
     assert_true(turned[0] < 0.5);
     for (int piece = 1; piece < PIECES; piece++) assert_true(turned[piece] > 3);
@@ -93,7 +87,7 @@ TEST(free_pieces_flutter) {
 
 /// A thrown, spinning sheet: lengths kept, momentum kept.
 TEST(free_flight_keeps_lengths_and_momentum) {
-    bench_open_plain(&bench, quads_grid(20, 20, 0.01f, 0.01f, false));
+    OwnBench bench = bench_open_plain(quads_grid(20, 20, 0.01f, 0.01f, false));
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
         const float *r = bench.shell.rest_position[i];
         float ripple = 0.3f * sinf(40 * r[0]) * sinf(30 * r[1]);
@@ -109,14 +103,13 @@ TEST(free_flight_keeps_lengths_and_momentum) {
     }
     assert_true(worst < 0.01);
     assert_true(fabsf(centre_of_mass(&bench).x - start.x - 0.25f) < 0.002f);
-    bench_close(&bench);
 }
 
 /// Damping takes exp(-d t) of a free motion, by (1 + h d)^-1 in every substep.
 TEST(damping_decays_exponentially) {
     SingeMaterialDef material = bench_plain_material();
     material.damping = singe_param(2);
-    bench_open(&bench, quads_grid(4, 4, 0.01f, 0.01f, false), &material, 1);
+    OwnBench bench = bench_open(quads_grid(4, 4, 0.01f, 0.01f, false), &material, 1);
     bench.plan->settings.gravity[2] = 0;
     bench.plan->settings.solver.substeps = 3; // each rounds positions
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
@@ -137,7 +130,6 @@ TEST(damping_decays_exponentially) {
                   mean / (0.3 * exp(-2)) - 1);
     assert_true(fabs(mean / (0.3 * left) - 1) < 2e-3);
     assert_true(fabs(mean / (0.3 * exp(-2)) - 1) < 4e-3);
-    bench_close(&bench);
 }
 
 /// Angular momentum about the centre of mass.
@@ -168,7 +160,7 @@ static double spin_left(int axis, float smoothing, bool bent) {
         float *p = quads.positions + 3 * v, angle = 5 * (p[0] - 0.1f);
         p[0] = 0.2f * sinf(angle), p[2] = 0.2f * cosf(angle);
     }
-    bench_open(&bench, quads, &material, 1);
+    OwnBench bench = bench_open(quads, &material, 1);
     bench.plan->settings.gravity[2] = 0;
     bench.plan->settings.solver.smoothing = smoothing;
     Float3 centre = centre_of_mass(&bench), turn = float3(axis == 0 ? 6.2832f : 0, 0, axis == 2 ? 6.2832f : 0);
@@ -179,7 +171,6 @@ static double spin_left(int axis, float smoothing, bool bent) {
     angular_momentum(&bench, before);
     for (int step = 0; step < 480; step++) bench_step(&bench, 1.0f / 480);
     angular_momentum(&bench, after);
-    bench_close(&bench);
     return after[axis] / before[axis];
 }
 
@@ -203,7 +194,7 @@ TEST(spin_decays_as_predicted) {
 
 /// The largest strain after a second of a sheet crushed to 1 % of its size, and a little thrown about.
 static double open_crushed(uint32_t seed) {
-    bench_open_plain(&bench, quads_grid(12, 12, 0.01f, 0.01f, false));
+    OwnBench bench = bench_open_plain(quads_grid(12, 12, 0.01f, 0.01f, false));
     bench.plan->settings.gravity[2] = 0;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
         float *x = bench.state.dynamics.position[i];
@@ -221,7 +212,6 @@ static double open_crushed(uint32_t seed) {
     double strain = blue_strain(&bench);
     print_message("crushed to 1 %%: opens at %.1f m/s, strain %.4f after 1 s\n", fastest, strain);
     assert_true(fastest < 0.01 * 480 * bench.settings.solver.substeps); // a cell in a substep
-    bench_close(&bench);
     return strain;
 }
 
@@ -235,7 +225,7 @@ TEST(a_crushed_sheet_opens) {
 
 /// Distance that a small sheet slides in 0.5 s down a plane of this slope.
 static double slide(float slope, float friction) {
-    bench_open_plain(&bench, quads_grid(4, 4, 0.01f, 0.01f, false));
+    OwnBench bench = bench_open_plain(quads_grid(4, 4, 0.01f, 0.01f, false));
     SingeColliderDef plane = singe_default_collider();
     plane.friction = friction;
     plane.offset = 0;
@@ -249,7 +239,6 @@ static double slide(float slope, float friction) {
     Float3 start = centre_of_mass(&bench);
     for (int step = 0; step < 240; step++) bench_step(&bench, 1.0f / 480);
     double displacement = (double)float3_length(float3_sub(centre_of_mass(&bench), start));
-    bench_close(&bench);
     return displacement;
 }
 
@@ -265,7 +254,7 @@ TEST(friction_holds_a_block_on_a_slope) {
 }
 
 TEST(a_moving_plane_carries_the_sheet) {
-    bench_open_plain(&bench, quads_grid(4, 4, 0.01f, 0.01f, false));
+    OwnBench bench = bench_open_plain(quads_grid(4, 4, 0.01f, 0.01f, false));
     SingeColliderDef plane = singe_default_collider();
     plane.friction = 0.8f;
     SingePoseKey keys[] = {{0, {0, 0, -0.0005f}, {0, 0, 0, 1}}, {1, {0.2f, 0, -0.0005f}, {0, 0, 0, 1}}};
@@ -274,12 +263,11 @@ TEST(a_moving_plane_carries_the_sheet) {
     for (int step = 0; step < 480; step++) bench_step(&bench, 1.0f / 480);
     assert_true(fabsf(centre_of_mass(&bench).x - start - 0.2f) <
                 0.006f); // slips while it gathers speed: v^2/(2 mu g) = 2.5 mm
-    bench_close(&bench);
 }
 
 TEST(no_vertex_is_inside_a_collider) {
     for (SingeColliderKind kind = SINGE_COLLIDER_SPHERE; kind <= SINGE_COLLIDER_CAPSULE; kind++) {
-        bench_open_plain(&bench, quads_grid(20, 20, 0.01f, 0.01f, false));
+        OwnBench bench = bench_open_plain(quads_grid(20, 20, 0.01f, 0.01f, false));
         SingeColliderDef def = singe_default_collider();
         def.kind = kind;
         def.radius = 0.04f;
@@ -292,16 +280,13 @@ TEST(no_vertex_is_inside_a_collider) {
             Float3 local = pose_unapply(&pose, float3_load(bench.state.dynamics.position[i]));
             assert_true(collider_distance(bench.colliders.items, local, INFINITY, &normal) > def.offset - 1e-5f);
         }
-
-        bench_close(&bench);
     }
 }
 
 TEST(bytes_do_not_depend_on_the_thread_count) {
-    Bench one, more;
-    bench_open(&one, quads_grid(60, 50, 0.01f, 0.01f, false), NULL, 1);
+    OwnBench one = bench_open(quads_grid(60, 50, 0.01f, 0.01f, false), NULL, 1);
     for (int threads = 2; threads <= 4; threads++) {
-        bench_open(&more, quads_grid(60, 50, 0.01f, 0.01f, false), NULL, threads);
+        OwnBench more = bench_open(quads_grid(60, 50, 0.01f, 0.01f, false), NULL, threads);
         Bench *both[] = {&one, &more};
         for (int b = 0; b < 2; b++) {
             both[b]->wind.gust = 2;
@@ -313,10 +298,7 @@ TEST(bytes_do_not_depend_on_the_thread_count) {
         }
         assert_memory_equal(one.state.dynamics.position, more.state.dynamics.position, one.shell.particle_count * 16);
         assert_memory_equal(one.state.dynamics.velocity, more.state.dynamics.velocity, one.shell.particle_count * 16);
-        bench_close(&more);
     }
-
-    bench_close(&one);
 }
 
 /// A sheet held along its upper edge comes to rest with little strain, no crossed layer, no jitter.
@@ -328,7 +310,7 @@ TEST(a_hung_sheet_comes_to_rest) {
         float *p = quads.positions + 3 * v;
         p[2] = p[1], p[1] = 0;
     }
-    bench_open(&bench, quads, &material, 1);
+    OwnBench bench = bench_open(quads, &material, 1);
     for (uint32_t i = 40 * 31; i < 41 * 31; i++) bench.state.dynamics.pinned[i] = 1;
     for (int step = 0; step < 1440; step++) bench_step(&bench, 1.0f / 480);
     double square = 0;
@@ -339,5 +321,4 @@ TEST(a_hung_sheet_comes_to_rest) {
     assert_true(sqrt(square / bench.shell.particle_count) < 1e-3);
     assert_true(blue_strain(&bench) < 2e-3);
     for (uint32_t c = 0; c < bench.shell.cell_count; c++) assert_true(bench_height(&bench, c) > 0);
-    bench_close(&bench);
 }

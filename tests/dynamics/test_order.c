@@ -7,16 +7,17 @@
 static float scatter(uint32_t i) { return 2 * (float)((i * 2654435761u >> 8) % 65536) / 65535 - 1; }
 
 /// A sheet whose particles have been thrown about by more than a cell and a thickness.
-static void open_jumble(Bench *bench, int threads) {
-    bench_open(bench, quads_grid(24, 20, 0.005f, 0.004f, false), NULL, threads);
-    DynamicsState *dynamics = &bench->state.dynamics;
-    dynamics->pinned[shell_centre(&bench->shell, 7)] = dynamics->pinned[bench->shell.cells[7][1]] = 1;
-    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, NULL, bench->pool, dynamics);
-    for (uint32_t i = 0; i < bench->shell.particle_count; i++)
+static Bench open_jumble(int threads) {
+    Bench bench = bench_open(quads_grid(24, 20, 0.005f, 0.004f, false), NULL, threads);
+    DynamicsState *dynamics = &bench.state.dynamics;
+    dynamics->pinned[shell_centre(&bench.shell, 7)] = dynamics->pinned[bench.shell.cells[7][1]] = 1;
+    dynamics_prepare(bench.plan, &bench.shell, STATE_INPUT(&bench.state), &bench.wind, NULL, bench.pool, dynamics);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         for (uint32_t k = 0; k < 3; k++) {
             dynamics->position[i][k] += 0.006f * scatter(3 * i + k);
             dynamics->velocity[i][k] = scatter(7 * i + k);
         }
+    return bench;
 }
 
 static void order(Bench *bench) {
@@ -36,8 +37,7 @@ static double parting(const Bench *bench, uint32_t c) {
 }
 
 TEST(only_centres_move) {
-    OwnBench bench;
-    open_jumble(&bench, 1);
+    OwnBench bench = open_jumble(1);
     const uint32_t vertices = bench.shell.vertex_count, cells = bench.shell.cell_count;
     size_t size = bench.shell.particle_count * sizeof *bench.state.dynamics.position;
     float(*x)[4] = malloc(size), (*v)[4] = malloc(size);
@@ -73,8 +73,7 @@ static void lift(Bench *bench, SingeInstructions instructions, const float (*sta
 }
 
 TEST(heights_are_the_same_in_lanes_of_every_width) {
-    OwnBench bench;
-    open_jumble(&bench, 2);
+    OwnBench bench = open_jumble(2);
     const size_t size = bench.shell.particle_count * sizeof *bench.state.dynamics.position;
     float(*start)[4] = malloc(size), (*four)[4] = malloc(size), (*lanes)[4] = malloc(size);
     memcpy(start, bench.state.dynamics.position, size);
@@ -97,17 +96,14 @@ TEST(heights_are_the_same_in_lanes_of_every_width) {
 }
 
 TEST(bytes_do_not_depend_on_threads) {
-    Bench one, three;
-    open_jumble(&one, 1), open_jumble(&three, 3);
+    OwnBench one = open_jumble(1), three = open_jumble(3);
     order(&one), order(&three);
     assert_memory_equal(one.state.arena, three.state.arena, one.state.arena_size);
-    bench_close(&one), bench_close(&three);
 }
 
 /// A pinned centre gives way as well. A cell crushed to a line has no front: its centre stays where it is.
 TEST(pinned_and_crushed_cells_stay_ordered) {
-    OwnBench bench;
-    bench_open(&bench, quads_grid(3, 3, 0.005f, 0.005f, false), NULL, 1);
+    OwnBench bench = bench_open(quads_grid(3, 3, 0.005f, 0.005f, false), NULL, 1);
     float(*x)[4] = bench.state.dynamics.position, *pinned = x[shell_centre(&bench.shell, 0)];
     float *crushed = x[shell_centre(&bench.shell, 8)];
     bench.state.dynamics.pinned[shell_centre(&bench.shell, 0)] = 1;

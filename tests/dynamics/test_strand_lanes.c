@@ -110,10 +110,9 @@ static void read_compliances(Bench *bench, bool vary) {
 
 /// Every kernel against the plain one. What compliances do is the same however they are read.
 static void compare_kernels(Quads quads, bool vary) {
-    OwnBench bench;
     SingeMaterialDef material = singe_default_material();
     material.curvature_max = singe_param(vary ? 100 : 0);
-    bench_open(&bench, quads, &material, 2);
+    OwnBench bench = bench_open(quads, &material, 2);
     disturb(&bench);
     if (vary) read_compliances(&bench, true);
     size_t bytes = (bench.shell.particle_count + 1) * 4 * sizeof(float);
@@ -178,9 +177,8 @@ static void check_lanes(const SpringSet *springs, const StrandSet *set, Density 
 }
 
 static Density measure_lanes(const char *name, Quads quads) {
-    OwnBench bench;
     Density density = {0};
-    bench_open(&bench, quads, NULL, 1);
+    OwnBench bench = bench_open(quads, NULL, 1);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         check_lanes(&bench.shell.springs[colour], &bench.plan->strands.sets[colour], &density);
     print_message("%s: %.1f %% of the slots empty, %.0f %% of the rows beside each other\n", name,
@@ -231,9 +229,8 @@ static void rub(Bench *bench, SingeInstructions instructions, bool apart, float 
 
 /// Internal friction in lanes of every width, against that of single strands. Returns the number of groups in lanes.
 static uint32_t compare_friction(Quads quads) {
-    OwnBench bench;
     uint32_t groups = 0;
-    bench_open(&bench, quads, NULL, 2);
+    OwnBench bench = bench_open(quads, NULL, 2);
     disturb(&bench);
     const size_t bytes = bench.shell.particle_count * 4 * sizeof(float);
     float *single = malloc(bytes), *lanes = malloc(bytes);

@@ -79,9 +79,8 @@ static void shake(Bench *bench, float amount) {
 }
 
 static void compare(Quads quads, bool pin_some) {
-    OwnBench bench;
     DynamicsCounters counters = {0};
-    bench_open(&bench, quads, NULL, 1);
+    OwnBench bench = bench_open(quads, NULL, 1);
     if (pin_some)
         for (uint32_t i = 0; i < bench.shell.particle_count; i += 5) bench.state.dynamics.pinned[i] = 1;
     shake(&bench, 0.002f);
@@ -113,9 +112,8 @@ TEST(rings_match_a_dense_solver) {
 }
 
 TEST(gone_springs_decouple) {
-    OwnBench bench;
     DynamicsCounters counters = {0};
-    bench_open(&bench, quads_grid(6, 1, 0.01f, 0.01f, false), NULL, 1);
+    OwnBench bench = bench_open(quads_grid(6, 1, 0.01f, 0.01f, false), NULL, 1);
     shake(&bench, 0.002f);
     const SpringSet *blue = &bench.shell.springs[SINGE_BLUE];
     for (uint32_t k = 0; k < blue->count; k++) bench.state.ablate.spring_flags[SINGE_BLUE][k] = 0;
@@ -127,8 +125,7 @@ TEST(gone_springs_decouple) {
 }
 
 TEST(springs_pinned_at_both_ends_do_not_move) {
-    OwnBench bench;
-    bench_open(&bench, quads_grid(6, 2, 0.01f, 0.01f, false), NULL, 1);
+    OwnBench bench = bench_open(quads_grid(6, 2, 0.01f, 0.01f, false), NULL, 1);
     memset(bench.state.dynamics.pinned, 1, bench.shell.particle_count);
     bench.state.dynamics.pinned[9] = 0; // one free corner among pinned ones
     for (int step = 0; step < 100; step++) bench_step(&bench, 0.002f);
