@@ -24,8 +24,7 @@ static GasSettings settings_default(void) {
 
 static void air_open(Air *a, const GasSettings *settings) {
     RigDef def = rig_default(8, 8, 0.005f, 0.005f);
-    *a = (Air){.wind = singe_default_wind()};
-    rig_open(&a->rig, &def);
+    *a = (Air){.rig = rig_open(&def), .wind = singe_default_wind()};
     SingeResult result = gas_plan_create(&a->rig.memory, &a->rig.shell, settings, &a->plan, &a->rig.state.gas);
     assert_int_equal(result, SINGE_OK);
 }
@@ -249,8 +248,8 @@ TEST(solids_shut_cells) {
         def.vertex_count = 8, def.vertices = vertices, def.triangle_count = 12, def.triangles = triangles;
         def.columns = def.rows = 2, def.heights = heights, def.size[0] = 2 * half[0], def.size[1] = 2 * half[1];
         if (q == 2) key.position[2] += half[2];
-        assert_int_equal(collider_create(&air.rig.memory, &def, &air.rig.collider[0], NULL), SINGE_OK);
-        air.rig.collider[0].generation = 1;
+        assert_int_equal(collider_create(&air.rig.memory, &def, &air.rig.colliders.items[0], NULL), SINGE_OK);
+        air.rig.colliders.items[0].generation = 1;
         air.rig.colliders.count = 1;
         air_burn(&air, 1, true); // wakes it
         air_step(&air);
@@ -267,7 +266,7 @@ TEST(solids_shut_cells) {
                     solid += plan->solid[c];
                 }
         assert_true(solid > 20);
-        collider_free(&air.rig.memory, &air.rig.collider[0]);
+        collider_free(&air.rig.memory, &air.rig.colliders.items[0]);
         air_close(&air);
     }
 }
@@ -278,7 +277,7 @@ TEST(flow_goes_around) {
     GasSettings settings = settings_default();
     air_open(&air, &settings);
     SingePoseKey key = {.position = {0, 0, 0.18f}, .rotation = {0, 0, 0, 1}};
-    Collider *ball = &air.rig.collider[0];
+    Collider *ball = &air.rig.colliders.items[0];
     *ball = (Collider){.generation = 1, .def = singe_default_collider()};
     ball->def.kind = SINGE_COLLIDER_SPHERE, ball->def.radius = 0.03f;
     key.position[0] = key.position[1] = 0.02f;

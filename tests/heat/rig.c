@@ -13,12 +13,12 @@ RigDef rig_default(int nx, int ny, float dx, float dy) {
     return def;
 }
 
-void rig_open(Rig *rig, const RigDef *def) {
-    *rig = (Rig){.memory = memory_make((SingeAllocator){0}),
-                 .nx = def->nx,
-                 .ny = def->ny,
-                 .settings = def->settings,
-                 .h = 0.002f};
+Rig rig_open(const RigDef *def) {
+    Rig rig = {.memory = memory_make((SingeAllocator){0}),
+               .nx = def->nx,
+               .ny = def->ny,
+               .settings = def->settings,
+               .h = 0.002f};
 
     TestMesh mesh = test_grid((uint32_t)def->nx, (uint32_t)def->ny, def->dx, def->dy);
     for (int j = 0; def->shape && j <= def->ny; j++)
@@ -27,21 +27,23 @@ void rig_open(Rig *rig, const RigDef *def) {
     sheet.material = def->material;
 
     SheetSource source;
-    if (sheet_source_create(&rig->memory, &sheet, &source, &rig->error) ||
-        shell_create(&rig->memory, &source, 1, &rig->shell, &rig->error))
-        fail_msg("%s", rig->error.message);
+    if (sheet_source_create(&rig.memory, &sheet, &source, &rig.error) ||
+        shell_create(&rig.memory, &source, 1, &rig.shell, &rig.error))
+        fail_msg("%s", rig.error.message);
 
-    sheet_source_free(&rig->memory, &source);
+    sheet_source_free(&rig.memory, &source);
     test_mesh_free(&mesh);
-    assert_int_equal(state_create(&rig->memory, &rig->shell, &rig->state), SINGE_OK);
-    assert_int_equal(heat_plan_create(&rig->memory, &rig->shell, &rig->settings, &rig->plan, &rig->error), SINGE_OK);
-    rig->sources = (SourceList){.capacity = 2, .items = rig->source};
-    rig->colliders = (ColliderList){.capacity = 1, .items = rig->collider};
+    assert_int_equal(state_create(&rig.memory, &rig.shell, &rig.state), SINGE_OK);
+    assert_int_equal(heat_plan_create(&rig.memory, &rig.shell, &rig.settings, &rig.plan, &rig.error), SINGE_OK);
+    rig.sources = (SourceList){.capacity = 2, .items = calloc(2, sizeof(Source))};
+    rig.colliders = (ColliderList){.capacity = 1, .items = calloc(1, sizeof(Collider))};
+    return rig;
 }
 
 void rig_close(Rig *rig) {
-    for (uint32_t k = 0; k < rig->sources.count; k++) source_free(&rig->memory, &rig->shell, &rig->source[k]);
-    for (uint32_t k = 0; k < rig->colliders.count; k++) path_free(&rig->collider[k].path, &rig->memory);
+    for (uint32_t k = 0; k < rig->sources.count; k++) source_free(&rig->memory, &rig->shell, &rig->sources.items[k]);
+    for (uint32_t k = 0; k < rig->colliders.count; k++) path_free(&rig->colliders.items[k].path, &rig->memory);
+    free(rig->sources.items), free(rig->colliders.items);
     pool_destroy(&rig->memory, rig->pool);
     heat_plan_free(&rig->memory, rig->plan);
     state_free(&rig->memory, &rig->state);
@@ -72,7 +74,7 @@ void rig_step(Rig *rig) {
 }
 
 void rig_source(Rig *rig, const SingeSourceDef *def) {
-    Source *source = &rig->source[rig->sources.count];
+    Source *source = &rig->sources.items[rig->sources.count];
     if (source_create(&rig->memory, &rig->shell, def, source, &rig->error)) fail_msg("%s", rig->error.message);
     source->generation = 1;
     rig->sources.count++;

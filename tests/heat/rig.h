@@ -27,8 +27,6 @@ typedef struct Rig {
     Pool *pool;
     SourceList sources;
     ColliderList colliders;
-    Source source[2];
-    Collider collider[1];
     float h;
     HeatCounters counters;
     SingeError error;
@@ -37,7 +35,7 @@ typedef struct Rig {
 
 /// A sheet without losses, of diffusivity 1e-4 m2/s, F = 1, in a plane z = 0; ambient 293 K, tolerance 1e-7.
 RigDef rig_default(int nx, int ny, float dx, float dy);
-void rig_open(Rig *rig, const RigDef *def);
+Rig rig_open(const RigDef *def);
 /// Frees everything and fails when something was leaked.
 void rig_close(Rig *rig);
 #define OwnRig OWNED(rig_close) Rig

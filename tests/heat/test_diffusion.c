@@ -1,9 +1,6 @@
 // The diffusion operators against solutions of the heat equation.
 #include "rig.h"
 
-// what a case works on
-static Rig rig;
-
 static const double PI = 3.14159265358979;
 
 // --- slab: T = 600 + 300 cos(pi x/L) decays as exp(-alpha (pi/L)^2 t), insulated at both ends -------------------
@@ -27,7 +24,7 @@ static double mode_error(int n, float aspect, bool centres, float exchange) {
     float dx = (float)length / (float)n;
     RigDef def = rig_default(n, 3, dx, dx * aspect);
     def.material.layer_exchange = singe_param(exchange);
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
 
     int steps = 2 * n * n;
     rig.h = (float)(seconds / steps);
@@ -42,7 +39,6 @@ static double mode_error(int n, float aspect, bool centres, float exchange) {
     double lambda = (2e-4 / (d * d) - x / 8) * (1 - cos(k * d)) + x / 2 * (1 - cos(k * d / 2));
     const double half = (double)rig.h * lambda / 2;
     CHECK_NEAR(amplitude, 300 * pow((1 - half) / (1 + half), steps), 2e-3);
-    rig_close(&rig);
     return fabs(amplitude / (300 * exp(-decay * seconds)) - 1);
 }
 
@@ -93,7 +89,7 @@ static Moments moments(const Rig *r, int layer) {
 
 /// Growth of the variances over 2 t, that is the diffusivity in each direction.
 static Moments gaussian(const RigDef *def, int layer, double deviation) {
-    rig_open(&rig, def);
+    OwnRig rig = rig_open(def);
     double x = (double)rig_position(&rig, rig_vertex(&rig, def->nx / 2, def->ny / 2))[0];
     double y = (double)rig_position(&rig, rig_vertex(&rig, def->nx / 2, def->ny / 2))[1];
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
@@ -111,7 +107,6 @@ static Moments gaussian(const RigDef *def, int layer, double deviation) {
 
     Moments after = moments(&rig, layer);
     double twice = 2 * 100 * (double)rig.h;
-    rig_close(&rig);
     return (Moments){(after.x - before.x) / twice, (after.y - before.y) / twice, (after.xy - before.xy) / twice,
                      after.sum / before.sum};
 }
@@ -182,29 +177,27 @@ TEST(umbrella_has_its_derived_diffusivity) {
 }
 
 /// A warm spot on a crumpled sheet spreads for 20 steps; the sheet's corner is burnt away in the middle of them.
-static void spread(Rig *r, SingeHeatOperator operator, float size, bool burns) {
+static Rig spread(SingeHeatOperator operator, float size, bool burns) {
     RigDef def = rig_default(12, 12, 0.002f, 0.002f);
     def.material.heat_operator = operator;
-    rig_open(r, &def);
+    Rig r = rig_open(&def);
 
-    for (uint32_t i = 0; i < r->shell.particle_count; i++) {
-        for (int k = 0; k < 3; k++) r->state.dynamics.position[i][k] = size * rig_position(r, i)[k];
-        r->state.heat.temperature[i] = i % 7 == 0 ? 900.0f : 300.0f;
+    for (uint32_t i = 0; i < r.shell.particle_count; i++) {
+        for (int k = 0; k < 3; k++) r.state.dynamics.position[i][k] = size * rig_position(&r, i)[k];
+        r.state.heat.temperature[i] = i % 7 == 0 ? 900.0f : 300.0f;
     }
 
     for (int k = 0; k < 20; k++) {
-        if (burns && k == 10) rig_remove(r, rig_vertex(r, 5, 5)), rig_remove(r, rig_vertex(r, 6, 5));
-        rig_step(r);
+        if (burns && k == 10) rig_remove(&r, rig_vertex(&r, 5, 5)), rig_remove(&r, rig_vertex(&r, 6, 5));
+        rig_step(&r);
     }
+    return r;
 }
 
 TEST(umbrella_as_printed_is_the_umbrella_on_a_sheet_at_rest) {
-    Rig initial, printed;
-    spread(&initial, SINGE_HEAT_UMBRELLA, 1, false);
-    spread(&printed, SINGE_HEAT_UMBRELLA_LIVE, 1, false);
+    OwnRig initial = spread(SINGE_HEAT_UMBRELLA, 1, false), printed = spread(SINGE_HEAT_UMBRELLA_LIVE, 1, false);
     for (uint32_t i = 0; i < initial.shell.particle_count; i++)
         CHECK_NEAR(printed.state.heat.temperature[i], initial.state.heat.temperature[i], 0.01);
-    rig_close(&initial), rig_close(&printed);
 }
 
 TEST(the_printed_umbrella_uses_current_lengths) {
@@ -222,9 +215,7 @@ TEST(the_printed_umbrella_uses_current_lengths) {
 
 TEST(umbrella_as_printed_leaves_out_burnt_springs) {
     // E_i is that of the springs that are left: next to a hole a particle's heat moves on faster than with all of them
-    Rig initial, printed;
-    spread(&initial, SINGE_HEAT_UMBRELLA, 1, true);
-    spread(&printed, SINGE_HEAT_UMBRELLA_LIVE, 1, true);
+    OwnRig initial = spread(SINGE_HEAT_UMBRELLA, 1, true), printed = spread(SINGE_HEAT_UMBRELLA_LIVE, 1, true);
 
     double near = 0, far = 0;
     for (uint32_t i = 0; i < initial.shell.vertex_count; i++) {
@@ -238,7 +229,6 @@ TEST(umbrella_as_printed_leaves_out_burnt_springs) {
 
     print_message("a hole: differs by %.2f K at its edge, by %.4f K far off\n", near, far);
     assert_true(near > 1 && far < 0.1 * near);
-    rig_close(&initial), rig_close(&printed);
 }
 
 TEST(umbrella_slab_mode_decays) {
@@ -250,7 +240,7 @@ TEST(umbrella_slab_mode_decays) {
         RigDef def = rig_default(n, n, s, s);
         def.material.heat_operator = SINGE_HEAT_UMBRELLA;
         def.material.thickness = singe_param(s / 2);
-        rig_open(&rig, &def);
+        OwnRig rig = rig_open(&def);
         rig.h = 0.01f;
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
             rig.state.heat.temperature[i] = (float)(600 + 300 * cos(PI * (double)rig_position(&rig, i)[0] / length));
@@ -258,7 +248,6 @@ TEST(umbrella_slab_mode_decays) {
 
         double lambda = 1e-4 * umbrella_factor(1, 1, 0.5) * PI * PI / (length * length);
         error[k] = fabs(mode_amplitude(&rig, length, false) / (300 * pow(1 + lambda * (double)rig.h, -300)) - 1);
-        rig_close(&rig);
     }
 
     double order[2] = {log2(error[0] / error[1]), log2(error[1] / error[2])};
@@ -278,7 +267,7 @@ TEST(insulated_sheet_keeps_its_heat) {
     RigDef def = rig_default(20, 20, 0.002f, 0.002f);
     def.shape = jitter;
     def.settings.tolerance = 1e-2f; // conserved however badly it is solved
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = 300 + 900 * rig_random(i, 5);
     for (uint32_t i = 0; i < 30; i++) rig_remove(&rig, 200 + i);
@@ -290,7 +279,6 @@ TEST(insulated_sheet_keeps_its_heat) {
         if (rig.state.ablate.particle_flags[i])
             spread = fmax(spread, fabs((double)rig.state.heat.temperature[i] - 750));
     assert_true(spread < 200); // it did diffuse
-    rig_close(&rig);
 }
 
 TEST(uniform_temperature_stays_to_the_bit) {
@@ -298,11 +286,10 @@ TEST(uniform_temperature_stays_to_the_bit) {
         RigDef def = rig_default(9, 7, 0.002f, 0.002f);
         def.shape = jitter;
         def.material.heat_operator = k ? SINGE_HEAT_UMBRELLA : SINGE_HEAT_SURFACE;
-        rig_open(&rig, &def);
+        OwnRig rig = rig_open(&def);
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.heat.temperature[i] = 517.3f;
         for (int step = 0; step < 20; step++) rig_step(&rig);
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) assert_true(rig.state.heat.temperature[i] == 517.3f);
-        rig_close(&rig);
     }
 }
 
@@ -310,7 +297,7 @@ TEST(linear_temperature_is_steady_on_skewed_quads) {
     RigDef def = rig_default(16, 16, 0.002f, 0.002f);
     def.shape = jitter;
     def.material.layer_exchange = singe_param(0);
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     rig.h = 2e-4f; // alpha dt/s^2 = 0.005: the border is not felt four cells away
     for (uint32_t i = 0; i < rig.shell.vertex_count; i++)
         rig.state.heat.temperature[i] = 400 + 9000 * rig_position(&rig, i)[0] - 4000 * rig_position(&rig, i)[1];
@@ -327,14 +314,13 @@ TEST(linear_temperature_is_steady_on_skewed_quads) {
         }
 
     assert_true(border > 0.05); // where insulation bends it
-    rig_close(&rig);
 }
 
 /// A long strip and a step of 20 s: the solver stops at its cap, says so, and loses no heat.
 TEST(iterations_have_an_end) {
     RigDef def = rig_default(600, 1, 0.002f, 0.002f);
     def.settings.tolerance = 1e-6f;
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = rig_position(&rig, i)[0] < 0.3f ? 900 : 400;
 
@@ -349,14 +335,13 @@ TEST(iterations_have_an_end) {
     assert_int_equal(rig.counters.unconverged, 1);
     assert_int_equal(rig.counters.iterations, 200);
     CHECK_NEAR(rig_content(&rig, 0) / before, 1, 1e-6);
-    rig_close(&rig);
 }
 
 TEST(layers_even_out_at_their_rate) {
     RigDef def = rig_default(8, 6, 0.002f, 0.003f);
     def.shape = jitter;
     def.material.thickening = 2;
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = shell_is_corner(&rig.shell, i) ? 900 : 300;
     for (int k = 0; k < 50; k++) rig_step(&rig);
@@ -367,13 +352,12 @@ TEST(layers_even_out_at_their_rate) {
         double sign = shell_is_corner(&rig.shell, i) ? 0.5 : -0.5;
         CHECK_NEAR(rig.state.heat.temperature[i], 600 + sign * difference, 5e-3);
     }
-    rig_close(&rig);
 }
 
 TEST(removed_particles_conduct_nothing) {
     RigDef def = rig_default(8, 2, 0.002f, 0.002f);
     def.shape = shear;
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = rig_position(&rig, i)[0] < 0.008f ? 900 : 300;
     rig_step(&rig);
@@ -401,7 +385,6 @@ TEST(removed_particles_conduct_nothing) {
     CHECK_NEAR(T[rig_vertex(&rig, 0, 0)], T[rig_vertex(&rig, 3, 2)], 0.5);
     CHECK_NEAR(T[rig_vertex(&rig, 5, 0)], T[rig_vertex(&rig, 8, 2)], 0.5);
     assert_true((left - right) / area > 300);
-    rig_close(&rig);
 }
 
 /// Conduction moves heat, not temperature: where the sheet is heavier or of more specific heat, as much heat warms it
@@ -414,7 +397,7 @@ TEST(heat_is_kept_where_capacity_varies) {
     def.material.specific_heat =
         singe_param_field(900, 1800, &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.01f, 2, 5}});
     def.material.reference_grammage = 0;
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
 
     double sum = 0, capacity = 0;
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
@@ -432,7 +415,6 @@ TEST(heat_is_kept_where_capacity_varies) {
     assert_true(sum / capacity < 450); // the light half's heat goes into the heavy one
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         CHECK_NEAR(rig.state.heat.temperature[i], sum / capacity, 0.05);
-    rig_close(&rig);
 }
 
 /// Where the exchange varies, the layers even out at the local rate, and no heat is lost.
@@ -442,7 +424,7 @@ TEST(layers_even_out_at_their_own_rates) {
     def.material.diffusivity = singe_param(0);
     def.material.layer_exchange =
         singe_param_field(10, 40, &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}});
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.heat.temperature[i] = i < rig.shell.vertex_count ? 500 : 300;
 
@@ -456,5 +438,4 @@ TEST(layers_even_out_at_their_own_rates) {
     CHECK_NEAR(left / 200, exp(-10 * 0.05), 1e-3);
     CHECK_NEAR(right / 200, exp(-40 * 0.05), 1e-3);
     CHECK_NEAR(rig_content(&rig, 1), before, 1e-6 * before);
-    rig_close(&rig);
 }

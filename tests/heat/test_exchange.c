@@ -2,9 +2,6 @@
 #include "rig.h"
 #include "support/support.h"
 
-// what a case works on
-static Rig rig;
-
 static const double SIGMA = 5.670374e-8;
 
 static void fill(Rig *r, float temperature) {
@@ -39,14 +36,13 @@ static double cooled(double seconds, double mass, double thickening) {
 static double cool(float h, float mass, float thickening) {
     RigDef def = lossy();
     def.material.thickening = thickening;
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     fill(&rig, 1100);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = mass;
     rig.h = h;
     for (int k = 0; k < (int)lround(2 / (double)h); k++) rig_step(&rig);
 
     double T = (double)rig.state.heat.temperature[3];
-    rig_close(&rig);
     return T;
 }
 
@@ -67,7 +63,7 @@ TEST(cooling_follows_radiation_and_convection) {
 
 TEST(one_step_of_losses_matches_the_formula) {
     RigDef def = lossy();
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     fill(&rig, 900);
     rig_step(&rig);
 
@@ -80,14 +76,13 @@ TEST(one_step_of_losses_matches_the_formula) {
     CHECK_NEAR((900 - after) / 0.002, -cooling(900, 1, 1), 0.005 * -cooling(900, 1, 1));
     double lost = share * (after - 293) * rig_content(&rig, 1) / ((double)rig.state.heat.temperature[0] - 293);
     CHECK_NEAR(rig.state.heat.heat_lost, lost, 1e-4 * lost);
-    rig_close(&rig);
 }
 
 TEST(combustion_is_eta_times_burnt_mass) {
     RigDef def = rig_default(3, 2, 0.002f, 0.002f);
     def.material.heat_of_combustion = singe_param(2400 * 1400), def.material.heat_share = singe_param(1);
     def.settings.pace = 4; // burn_rate is per second of scene time already
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     fill(&rig, 600);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         rig.state.burn.burn_rate[i] = 2, rig.state.burn.release[i] = 2 * 2400;
@@ -95,7 +90,6 @@ TEST(combustion_is_eta_times_burnt_mass) {
     rig_step(&rig);
     CHECK_NEAR(rig.state.heat.temperature[1], 600 + 2400 * 2 * 0.002, 1e-3);
     CHECK_NEAR(rig.state.heat.heat_of_combustion, 2 * 6 * 4e-6 * 0.04 * 1400 * 9.6, 1e-6);
-    rig_close(&rig);
 }
 
 TEST(pace_is_fire_time) {
@@ -103,12 +97,11 @@ TEST(pace_is_fire_time) {
     for (int k = 0; k < 2; k++) {
         RigDef def = lossy();
         def.settings.pace = k ? 4 : 1;
-        rig_open(&rig, &def);
+        OwnRig rig = rig_open(&def);
         fill(&rig, 900);
         rig.h = k ? 0.002f : 0.008f;
         rig_step(&rig);
         T[k] = (double)rig.state.heat.temperature[0];
-        rig_close(&rig);
     }
 
     CHECK_NEAR(T[0], T[1], 1e-4);
@@ -118,7 +111,7 @@ TEST(pace_is_fire_time) {
 TEST(the_peak_is_the_hottest_so_far) {
     RigDef def = lossy();
     def.material.heat_of_combustion = singe_param(2400 * 1400), def.material.heat_share = singe_param(1);
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     fill(&rig, 600);
     uint32_t n = rig.shell.particle_count;
     float *hottest = calloc(n, sizeof *hottest);
@@ -142,7 +135,6 @@ TEST(the_peak_is_the_hottest_so_far) {
     assert_true(hottest[0] > 900 && rig.state.heat.temperature[0] < hottest[0] - 20);
     assert_true(hottest[1] == 1500);
     free(hottest);
-    rig_close(&rig);
 }
 
 // --- parameters that vary over the sheet ----------------------------------------------------------------
@@ -168,7 +160,7 @@ TEST(heavier_halves_heat_slower) {
         def.material.diffusivity = def.material.layer_exchange = singe_param(0);
         if (which) def.material.specific_heat = from_left(1000, 3000);
         else def.material.grammage = from_left(0.05f, 0.15f);
-        rig_open(&rig, &def);
+        OwnRig rig = rig_open(&def);
         fill(&rig, 300);
 
         float flux = 2e4f;
@@ -188,7 +180,6 @@ TEST(heavier_halves_heat_slower) {
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
             stored += (double)rig.shell.matter.capacity[i] * ((double)T[i] - 300);
         CHECK_NEAR(rig.state.heat.heat_in, stored, 1e-5 * stored);
-        rig_close(&rig);
     }
 }
 
@@ -204,13 +195,12 @@ TEST(losses_are_each_particles_own) {
         for (int k = 0; k < 3; k++)
             *params[k] = run ? singe_param(ends[k][run - 1]) : from_left(ends[k][0], ends[k][1]);
 
-        rig_open(&rig, &def);
+        OwnRig rig = rig_open(&def);
         fill(&rig, 900);
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = 0.2f;
         for (int k = 0; k < 20; k++) rig_step(&rig);
         T[run][0] = rig.state.heat.temperature[rig_vertex(&rig, 0, 1)];
         T[run][1] = rig.state.heat.temperature[rig_centre(&rig, 7, 1)];
-        rig_close(&rig);
     }
 
     assert_true(T[0][0] == T[1][0] && T[0][1] == T[2][1]);
@@ -230,7 +220,7 @@ TEST(a_bad_temperature_is_named_and_kept_out) {
         RigDef def = rig_default(3, 2, 0.002f, 0.002f);
         def.material.diffusivity = singe_param(0);
         def.material.layer_exchange = singe_param(0);
-        rig_open(&rig, &def);
+        OwnRig rig = rig_open(&def);
         fill(&rig, 300);
 
         SingeSourceDef source = singe_default_source();
@@ -241,7 +231,6 @@ TEST(a_bad_temperature_is_named_and_kept_out) {
         assert_string_equal(rig.error.stage, "heat");
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) assert_true(rig.state.heat.temperature[i] == 300);
         assert_true(rig.state.heat.heat_in == 0);
-        rig_close(&rig);
     }
 }
 
@@ -253,7 +242,7 @@ TEST(any_heat_ends_finite) {
         for (size_t s = 0; s < 4; s++) {
             RigDef def = lossy();
             def.material.convection = singe_param(1e5f);
-            rig_open(&rig, &def);
+            OwnRig rig = rig_open(&def);
             fill(&rig, starts[k]);
             rig.h = steps[s];
             double before = rig_content(&rig, 1);
@@ -266,7 +255,6 @@ TEST(any_heat_ends_finite) {
             assert_true(isfinite(rig.state.heat.heat_lost));
             double change = rig_content(&rig, 1) - before, scale = fmax(fabs(rig.state.heat.heat_lost), fabs(change));
             CHECK_NEAR(rig.state.heat.heat_lost, -change, 1e-4 * scale + 2e-6 * fabs(before) + 1e-12);
-            rig_close(&rig);
         }
 }
 
@@ -274,7 +262,7 @@ TEST(any_heat_ends_finite) {
 TEST(conductances_beyond_floats_are_refused) {
     for (int k = 0; k < 4; k++) {
         RigDef def = rig_default(3, 2, 0.002f, 0.002f);
-        rig_open(&rig, &def); // a shell to try other materials on
+        OwnRig rig = rig_open(&def); // a shell to try other materials on
 
         HeatPlan *plan = NULL;
         if (k < 2) rig.shell.matter.diffusivity.values[0] = k == 0 ? 1e30f : 1e15f;
@@ -284,13 +272,12 @@ TEST(conductances_beyond_floats_are_refused) {
         assert_int_equal(result, k < 3 ? SINGE_ERROR_ARGUMENT : SINGE_OK);
         if (k < 3) assert_non_null(strstr(rig.error.message, "sheet 'sheet': its diffusivity"));
         heat_plan_free(&rig.memory, plan);
-        rig_close(&rig);
     }
 }
 
 TEST(running_out_of_memory_is_clean) {
     RigDef def = rig_default(3, 2, 0.002f, 0.002f);
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
 
     float pixels[] = {0, 1};
     SingeValueKey keys[] = {{0, 0}, {1, 1}};
@@ -312,5 +299,4 @@ TEST(running_out_of_memory_is_clean) {
                               (memory = memory_make(allocator),
                                source_create(&memory, &rig.shell, k ? &ball : &picture, &source, &rig.error)),
                               source_free(&memory, &rig.shell, &source));
-    rig_close(&rig);
 }

@@ -215,8 +215,7 @@ TEST(thickening_follows_the_means) {
     for (int k = 0; k < 2; k++) *params[k] = singe_param_field(k ? 5e-3f : 100, k ? 15e-3f : 300, &field);
     def.material.thickening = 0;
 
-    OwnRig rig;
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
 
     FrontMatter front = {.diffusivity = 1e-4f,
                          .mass_rate = 10e-3f,

@@ -39,8 +39,7 @@ TEST(ledger_closes) {
         def.settings.pace = k < 2 ? 1 : 3;
         def.material.thickening = k < 2 ? 0 : 1;
 
-        OwnRig rig;
-        rig_open(&rig, &def);
+        OwnRig rig = rig_open(&def);
         light(&rig);
         double start = rig_content(&rig, 1);
 
@@ -69,8 +68,7 @@ TEST(small_changes_are_not_lost) {
     def.material.thickening = 1;
     def.material.temperature = singe_param(293.02f); // cools by 1e-5 K a step; a float's digit is 3e-5 K
 
-    OwnRig rig;
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     double start = rig_content(&rig, 1);
     for (int step = 0; step < 500; step++) rig_step(&rig);
 
@@ -79,31 +77,28 @@ TEST(small_changes_are_not_lost) {
     CHECK_NEAR(-stored, rig.state.heat.heat_lost, 2e-3 * start);
 }
 
+/// A sheet after 60 steps, in which it burns; 0 threads stand for no pool.
+static Rig burn_on(int threads) {
+    RigDef def = paper(SINGE_HEAT_SURFACE);
+    Rig rig = rig_open(&def);
+    light(&rig);
+    if (threads) assert_int_equal(pool_create(&rig.memory, (SingeTasks){0}, threads, &rig.pool), SINGE_OK);
+    for (int step = 0; step < 60; step++) {
+        burn(&rig, step % 10 == 0);
+        rig_step(&rig);
+    }
+    return rig;
+}
+
 TEST(threads_do_not_matter) {
-    OwnRig one;
-    for (int threads = 0; threads <= 3; threads++) {
-        RigDef def = paper(SINGE_HEAT_SURFACE);
-        Rig rig;
-        rig_open(&rig, &def);
-        light(&rig);
-        if (threads) assert_int_equal(pool_create(&rig.memory, (SingeTasks){0}, threads, &rig.pool), SINGE_OK);
-
-        for (int step = 0; step < 60; step++) {
-            burn(&rig, step % 10 == 0);
-            rig_step(&rig);
-        }
-
-        if (threads == 0) {
-            one = rig;
-            continue;
-        }
-
+    OwnRig one = burn_on(0);
+    for (int threads = 1; threads <= 3; threads++) {
+        OwnRig rig = burn_on(threads);
         const HeatState *a = &one.state.heat, *b = &rig.state.heat;
         assert_memory_equal(a->temperature, b->temperature, rig.shell.particle_count * sizeof *a->temperature);
         assert_true(a->heat_in == b->heat_in && a->heat_lost == b->heat_lost &&
                     a->heat_of_combustion == b->heat_of_combustion);
         assert_int_equal(one.counters.iterations, rig.counters.iterations);
-        rig_close(&rig);
     }
 }
 
@@ -112,9 +107,8 @@ TEST(a_new_plan_goes_on_to_the_bit) {
     Rig rigs[2];
     for (int k = 0; k < 2; k++) {
         RigDef def = paper(SINGE_HEAT_SURFACE);
-        rig_open(&rigs[k], &def);
+        rigs[k] = rig_open(&def);
         light(&rigs[k]);
-        rigs[k].sources.items = rigs[k].source, rigs[k].colliders.items = rigs[k].collider;
         for (int step = 0; step < 60; step++) {
             if (k && step == 35) {
                 heat_plan_free(&rigs[k].memory, rigs[k].plan);

@@ -124,8 +124,7 @@ static uint64_t check_range(const Bad *mesh, const SingeMaterialDef *material, f
     def.material = *material;
     def.settings.tolerance = 1e-5f;
 
-    OwnRig rig;
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     rig.h = h;
     for (int step = 0; step < 12; step++) {
         float *T = rig.state.heat.temperature, min = INFINITY, max = 0;
@@ -182,8 +181,7 @@ TEST(no_tolerance_lets_a_particle_reach_0_K) {
     for (int k = 0; k < 3; k++) {
         RigDef def = rig_default(COLUMNS, ROWS, 0.002f, 0.002f);
         def.settings.tolerance = 1;
-        OwnRig rig;
-        rig_open(&rig, &def);
+        OwnRig rig = rig_open(&def);
         rig.h = steps[k];
 
         uint32_t seed = 1;
@@ -207,7 +205,7 @@ TEST(threads_do_not_matter) {
 
     Rig rig[2];
     for (int k = 0; k < 2; k++) {
-        rig_open(&rig[k], &def);
+        rig[k] = rig_open(&def);
         rig[k].h = 50;
         if (k) assert_int_equal(pool_create(&rig[k].memory, (SingeTasks){0}, THREADS, &rig[k].pool), SINGE_OK);
         for (uint32_t i = 0; i < rig[k].shell.particle_count; i++)

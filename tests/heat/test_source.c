@@ -1,9 +1,6 @@
 // Every kind of heat source, by its formula.
 #include "rig.h"
 
-// what a case works on
-static Rig rig;
-
 static const double PER_AREA = 0.04 * 1400; // J/(m2 K), of a layer
 
 /// A sheet of cold, still particles: nothing but sources moves them.
@@ -27,7 +24,7 @@ static const SingePoseKey MIDDLE = {.position = {0.01f, 0.01f, 0}, .rotation = {
 
 TEST(relaxes_to_the_source_by_the_formula) {
     RigDef def = inert(10, 10);
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     SingeSourceDef source = ball(&MIDDLE, 1, 150, 1, 0);
     rig_source(&rig, &source);
     for (int k = 0; k < 40; k++) rig_step(&rig);
@@ -35,12 +32,11 @@ TEST(relaxes_to_the_source_by_the_formula) {
     double expected = 1200 - 900 * pow(1 + 0.002 * 150 / PER_AREA, -40);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) CHECK_NEAR(rig.state.heat.temperature[i], expected, 2e-3);
     CHECK_NEAR(rig.state.heat.heat_in, 2 * 4e-4 * PER_AREA * (expected - 300), 1e-4 * rig.state.heat.heat_in);
-    rig_close(&rig);
 }
 
 TEST(never_overshoots) {
     RigDef def = inert(4, 4);
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
 
     SingeSourceDef source = ball(&MIDDLE, 1, 1e9f, 1, 0);
     rig_source(&rig, &source);
@@ -49,15 +45,13 @@ TEST(never_overshoots) {
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
             CHECK_NEAR(rig.state.heat.temperature[i], 1200 - (k ? 0 : 0.03), 0.02);
     }
-
-    rig_close(&rig);
 }
 
 TEST(falls_off_smoothly_and_moves) {
     const SingePoseKey path[] = {{0, {0, 0.01f, 0}, {0, 0, 0, 1}}, {1, {0.02f, 0.01f, 0}, {0, 0, 0, 1}}};
     RigDef def = inert(10, 10);
 
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     SingeSourceDef source = ball(path, 2, 100, 0.003f, 0.004f);
     source.start = 0.5f, source.end = 0.501f;
     rig_source(&rig, &source);
@@ -78,16 +72,15 @@ TEST(falls_off_smoothly_and_moves) {
     rig.state.time = 0.502; // over
     rig_step(&rig);
     assert_true(rig.state.heat.temperature[rig_vertex(&rig, 5, 5)] == before && before > 300);
-    rig_close(&rig);
 }
 
 TEST(contact_heats_the_near_layer) {
     RigDef def = inert(4, 4);
     def.material.thickness = singe_param(0.002f);
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
 
     SingePoseKey pose = {.position = {0, 0, -0.0008f}, .rotation = {0, 0, 0, 1}};
-    Collider *plane = &rig.collider[0];
+    Collider *plane = &rig.colliders.items[0];
     plane->def = singe_default_collider();
     plane->def.conductance = 300, plane->def.temperature = 700, plane->def.contact_distance = 0.001f;
     assert_int_equal(path_set(&plane->path, &rig.memory, 1, &pose, "collider", &rig.error), SINGE_OK);
@@ -102,7 +95,6 @@ TEST(contact_heats_the_near_layer) {
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)
         CHECK_NEAR(rig.state.heat.temperature[i], shell_is_corner(&rig.shell, i) ? (300 + a * 700) / (1 + a) : 300,
                    1e-4);
-    rig_close(&rig);
 }
 
 static const float CUBE[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1};
@@ -127,8 +119,8 @@ static void slab(Rig *r, SingeColliderKind kind, bool below, SingeContactSides s
     def.columns = def.rows = 2, def.size[0] = def.size[1] = 0.02f, def.heights = heights;
     def.conductance = 300, def.temperature = temperature, def.contact_distance = 0.001f, def.sides = sides;
     def.path_count = 1, def.path = &pose;
-    if (collider_create(&r->memory, &def, &r->collider[0], &r->error)) fail_msg("%s", r->error.message);
-    r->collider[0].generation = 1;
+    if (collider_create(&r->memory, &def, &r->colliders.items[0], &r->error)) fail_msg("%s", r->error.message);
+    r->colliders.items[0].generation = 1;
     r->colliders.count = 1;
 }
 
@@ -139,7 +131,7 @@ TEST(contact_heats_the_given_sides) {
         bool below = k & 1, both = k & 2, cold = k & 4;
         RigDef def = inert(20, 20); // 4 cm, the front 2 mm above the back
         def.material.thickness = singe_param(0.002f);
-        rig_open(&rig, &def);
+        OwnRig rig = rig_open(&def);
 
         float temperature = cold ? 250 : 700;
         slab(&rig, kinds[k / 8], below, both ? SINGE_SIDES_BOTH : SINGE_SIDES_TOUCHING, temperature);
@@ -161,8 +153,7 @@ TEST(contact_heats_the_given_sides) {
 
         CHECK_NEAR(rig.state.heat.heat_in, stored, 1e-4 * fabs(stored)); // below 0 where it is cold
         assert_true((rig.state.heat.heat_in < 0) == cold);
-        collider_free(&rig.memory, &rig.collider[0]);
-        rig_close(&rig);
+        collider_free(&rig.memory, &rig.colliders.items[0]);
     }
 }
 
@@ -171,7 +162,7 @@ TEST(contact_heat_goes_through_the_sheet) {
     RigDef def = inert(20, 20);
     def.material.thickness = singe_param(0.002f);
     def.material.layer_exchange = singe_param(4); // the difference of the two falls as e^-4t
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     slab(&rig, SINGE_COLLIDER_MESH, true, SINGE_SIDES_TOUCHING, 700);
 
     uint32_t near = rig_vertex(&rig, 10, 10), behind = rig_centre(&rig, 10, 10), aside = rig_centre(&rig, 1, 1);
@@ -185,8 +176,7 @@ TEST(contact_heat_goes_through_the_sheet) {
 
     CHECK_NEAR(rig.state.heat.temperature[behind], 700, 12); // in 3 s
     CHECK_NEAR(rig.state.heat.temperature[aside], 300, 0.5); // 8 mm from its edge
-    collider_free(&rig.memory, &rig.collider[0]);
-    rig_close(&rig);
+    collider_free(&rig.memory, &rig.colliders.items[0]);
 }
 
 TEST(a_texture_heats_by_its_key_frames) {
@@ -194,7 +184,7 @@ TEST(a_texture_heats_by_its_key_frames) {
     const SingeValueKey keys[] = {{1, 0}, {3, 2}};
     RigDef def = inert(8, 8);
 
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     SingeSourceDef source = singe_default_source();
     source.kind = SINGE_SOURCE_TEXTURE, source.texture = (SingeTexture){2, 2, pixels}, source.flux = 20e3f;
     source.strength = keys, source.strength_count = 2;
@@ -215,8 +205,6 @@ TEST(a_texture_heats_by_its_key_frames) {
         CHECK_NEAR(rig.state.heat.temperature[rig_vertex(&rig, 4, 4)], 300 + total * per_unit * 0.4375, 1e-3);
         CHECK_NEAR(rig.state.heat.temperature[rig_centre(&rig, 0, 0)], 300 + total * per_unit * 0.5, 1e-3);
     }
-
-    rig_close(&rig);
 }
 
 static void my_flux(void *context, const struct SingeView *view, float *flux, float *conductance,
@@ -228,7 +216,7 @@ static void my_flux(void *context, const struct SingeView *view, float *flux, fl
 
 TEST(callback_adds_to_the_rest) {
     RigDef def = inert(3, 3);
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
     int calls = 0;
     SingeSourceDef source = singe_default_source();
     source.kind = SINGE_SOURCE_CALLBACK, source.callback = my_flux, source.callback_context = &calls;
@@ -247,10 +235,9 @@ TEST(callback_adds_to_the_rest) {
                    1e-4);
     }
 
-    rig.source[0].def.callback = NULL; // as after a load
+    rig.sources.items[0].def.callback = NULL; // as after a load
     rig_step(&rig);
     assert_int_equal(calls, 1);
-    rig_close(&rig);
 }
 
 /// A flux below 0 cools, as fast as it says, and to 1 K; the ledger has what it took.
@@ -259,7 +246,7 @@ TEST(a_sink_stops_at_1_kelvin) {
     const float white = 1;
     for (int k = 0; k < 3; k++) {
         RigDef def = inert(3, 3);
-        rig_open(&rig, &def);
+        OwnRig rig = rig_open(&def);
 
         SingeSourceDef source = singe_default_source();
         source.kind = SINGE_SOURCE_TEXTURE, source.texture = (SingeTexture){1, 1, &white}, source.flux = fluxes[k];
@@ -271,7 +258,6 @@ TEST(a_sink_stops_at_1_kelvin) {
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
             CHECK_NEAR(rig.state.heat.temperature[i], expected, 2e-3);
         CHECK_NEAR(rig.state.heat.heat_in, rig_content(&rig, 1) - before, 1e-4 * fabs(rig.state.heat.heat_in));
-        rig_close(&rig);
     }
 }
 
@@ -283,7 +269,7 @@ TEST(hot_gas_heats_up_to_itself) {
             RigDef def = inert(3, 3);
             def.material.convection = singe_param(convections[c]);
             def.material.thickening = 50;
-            rig_open(&rig, &def);
+            OwnRig rig = rig_open(&def);
             rig.h = 0.5f;
             float conductance[25], temperature[25];
             assert_int_equal(rig.shell.particle_count, 25);
@@ -301,21 +287,18 @@ TEST(hot_gas_heats_up_to_itself) {
                         fail_msg("from %g K, convection %g: %g K", (double)starts[k], (double)convections[c],
                                  (double)rig.state.heat.temperature[i]);
             }
-
-            rig_close(&rig);
         }
 }
 
 // what bad Defs have in common is refused in tests/sim/test_defs.c and test_ranges.c
 TEST(sheets_without_uv_take_no_picture) {
     RigDef def = inert(2, 2);
-    rig_open(&rig, &def);
+    OwnRig rig = rig_open(&def);
 
     static const float grey = 1;
     SingeSourceDef picture = singe_default_source();
     picture.kind = SINGE_SOURCE_TEXTURE, picture.texture = (SingeTexture){1, 1, &grey};
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.shell.uv[i][0] = rig.shell.uv[i][1] = 0;
-    assert_int_equal(source_create(&rig.memory, &rig.shell, &picture, &rig.source[0], &rig.error),
+    assert_int_equal(source_create(&rig.memory, &rig.shell, &picture, &rig.sources.items[0], &rig.error),
                      SINGE_ERROR_ARGUMENT);
-    rig_close(&rig);
 }
