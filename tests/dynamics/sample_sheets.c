@@ -14,7 +14,7 @@ Quads quads_grid(uint32_t nx, uint32_t ny, float sx, float sy, bool wrap_x) {
     return quads;
 }
 
-Bench bench_open(Quads quads, const SingeMaterialDef *material, int threads) {
+static Bench open_bench(Quads quads, const SingeMaterialDef *material, int threads, bool creases) {
     Bench bench = {.memory = memory_make((SingeAllocator){0}), .wind = singe_default_wind()};
     bench.settings = (DynamicsSettings){.gravity = {0, 0, -9.81f},
                                         .air_density = 1.2f,
@@ -39,12 +39,21 @@ Bench bench_open(Quads quads, const SingeMaterialDef *material, int threads) {
     def.uv = uv, def.attribute_count = 1, def.attributes = &attribute;
     assert_int_equal(sheet_source_create(&bench.memory, &def, &bench.source, &bench.error), SINGE_OK);
     assert_int_equal(shell_create(&bench.memory, &bench.source, 1, &bench.shell, &bench.error), SINGE_OK);
+    bench.shell.creases = bench.settings.solver.creases = creases;
     assert_int_equal(state_create(&bench.memory, &bench.shell, &bench.state), SINGE_OK);
     assert_int_equal(dynamics_plan_create(&bench.memory, &bench.shell, &bench.settings, &bench.plan), SINGE_OK);
     assert_int_equal(pool_create(&bench.memory, (SingeTasks){0}, threads, &bench.pool), SINGE_OK);
     test_mesh_free(&quads);
     free(uv), free(along);
     return bench;
+}
+
+Bench bench_open(Quads quads, const SingeMaterialDef *material, int threads) {
+    return open_bench(quads, material, threads, false);
+}
+
+Bench bench_open_creased(Quads quads, const SingeMaterialDef *material, int threads) {
+    return open_bench(quads, material, threads, true);
 }
 
 SingeMaterialDef bench_plain_material(void) {

@@ -28,7 +28,9 @@ Quads quads_grid(uint32_t nx, uint32_t ny, float sx, float sy, bool wrap_x);
 /// Builds everything; frees the quads. Asserts success. u and v go from 0 to 1 along x and y, and so does the attribute
 /// "along" along x.
 Bench bench_open(Quads quads, const SingeMaterialDef *material, int threads);
-/// The same with a material without drag and damping, on one thread.
+/// The same with room for creases.
+Bench bench_open_creased(Quads quads, const SingeMaterialDef *material, int threads);
+/// The same as bench_open with a material without drag and damping, on one thread.
 Bench bench_open_plain(Quads quads);
 SingeMaterialDef bench_plain_material(void);
 /// Adds the only collider.

@@ -1,47 +1,13 @@
 // Plastic creases: what a fold is, what of it stays, and what does not.
+#include "sample_sheets.h"
+
 #include "dynamics/dynamics_plan.h"
-#include "support/support.h"
 
 static const double pi = 3.14159265358979323846;
 
-/// A shell with room for creases, and what the pass over them needs.
-typedef struct Rig {
-    Memory memory;
-    SheetSource source;
-    Shell shell;
-    State state;
-    DynamicsPlan *plan;
-    Pool *pool;
-} Rig;
-
-static void rig_open(Rig *rig, TestMesh mesh, const SingeMaterialDef *material, int threads) {
-    *rig = (Rig){.memory = memory_make((SingeAllocator){0})};
-    DynamicsSettings settings = {.solver = singe_default_solver(), .time_step = 1.0f / 480, .thread_count = threads};
-    SingeSheetDef def = test_sheet(&mesh);
-    settings.solver.creases = true;
-    if (material) def.material = *material;
-    assert_int_equal(sheet_source_create(&rig->memory, &def, &rig->source, NULL), SINGE_OK);
-    assert_int_equal(shell_create(&rig->memory, &rig->source, 1, &rig->shell, NULL), SINGE_OK);
-    rig->shell.creases = true;
-    assert_int_equal(state_create(&rig->memory, &rig->shell, &rig->state), SINGE_OK);
-    assert_int_equal(dynamics_plan_create(&rig->memory, &rig->shell, &settings, &rig->plan), SINGE_OK);
-    assert_int_equal(pool_create(&rig->memory, (SingeTasks){0}, threads, &rig->pool), SINGE_OK);
-    test_mesh_free(&mesh);
-}
-
-static void rig_close(Rig *rig) {
-    pool_destroy(&rig->memory, rig->pool);
-    dynamics_plan_free(&rig->memory, &rig->shell, rig->plan);
-    state_free(&rig->memory, &rig->state);
-    shell_free(&rig->memory, &rig->shell);
-    sheet_source_free(&rig->memory, &rig->source);
-    assert_int_equal(rig->memory.held, 0);
-}
-#define OwnRig OWNED(rig_close) Rig
-
 /// Rolls a flat sheet of cells dx long about the y axis so that neighbouring cells along x meet at an angle, positive
 /// away from the centres, which stay upright over their cells.
-static void rig_roll(Rig *rig, double dx, double angle) {
+static void rig_roll(Bench *rig, double dx, double angle) {
     const Shell *shell = &rig->shell;
     float(*x)[4] = rig->state.dynamics.position;
     const double radius = angle == 0 ? 0 : dx / 2 / sin(angle / 2);
@@ -57,7 +23,7 @@ static void rig_roll(Rig *rig, double dx, double angle) {
 }
 
 /// Rolls a flat sheet to a curvature about a line that is turned from the y axis by `turn`.
-static void rig_roll_aslant(Rig *rig, double curvature, double turn) {
+static void rig_roll_aslant(Bench *rig, double curvature, double turn) {
     const Shell *shell = &rig->shell;
     float(*x)[4] = rig->state.dynamics.position;
     const double c = cos(turn), s = sin(turn);
@@ -71,7 +37,7 @@ static void rig_roll_aslant(Rig *rig, double curvature, double turn) {
     }
 }
 
-static void rig_pass(Rig *rig, int steps) {
+static void rig_pass(Bench *rig, int steps) {
     for (int s = 0; s < steps; s++)
         dynamics_crease(rig->plan, &rig->shell, STATE_INPUT(&rig->state), rig->pool, 1.0f / 480, &rig->state.dynamics);
 }
@@ -89,8 +55,7 @@ static double distance(const float *a, const float *b) {
 /// A rolled sheet has the length that the crease's formula gives: on it every spring of every colour is at rest.
 TEST(lengths_fit_a_rolled_sheet) {
     const double dx = 0.004, angles[] = {0.5, 0.2, -0.3, -0.9};
-    OwnRig rig;
-    rig_open(&rig, test_grid(12, 4, (float)dx, 0.003f), NULL, 1);
+    OwnBench rig = bench_open_creased(test_grid(12, 4, (float)dx, 0.003f), NULL, 1);
     const SpringSet *green = &rig.shell.springs[SINGE_GREEN];
     for (int a = 0; a < 4; a++) {
         rig_roll(&rig, dx, angles[a]);
@@ -106,8 +71,7 @@ TEST(lengths_fit_a_rolled_sheet) {
 
 /// From wherever it is seen, a creased spring bends as a flat sheet does: moment 4 t^2 a rad of alpha.
 TEST(a_creased_spring_bends_as_a_flat_one) {
-    OwnRig rig;
-    rig_open(&rig, test_grid(4, 4, 0.003f, 0.003f), NULL, 1);
+    OwnBench rig = bench_open_creased(test_grid(4, 4, 0.003f, 0.003f), NULL, 1);
     const Hinge *hinge = &rig.plan->hinges[0];
     const double rest = (double)rig.shell.springs[SINGE_GREEN].rest[0], thickness = 1e-3, step = 1e-2;
     const double pairs[][2] = {{0.2, 0.45}, {0.4, 0.2}, {-0.3, -0.7}, {-0.5, 0.1}};
@@ -129,8 +93,7 @@ TEST(a_mesh_bounds_its_creases) {
     const TestMesh meshes[] = {test_grid(6, 6, 0.004f, 0.004f), test_cylinder(24, 6, 0.02f, 0.03f),
                                test_torus(24, 12, 0.05f, 0.015f)};
     for (int m = 0; m < 3; m++) {
-        OwnRig rig;
-        rig_open(&rig, meshes[m], NULL, 1);
+        OwnBench rig = bench_open_creased(meshes[m], NULL, 1);
         for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++) {
             const Hinge *hinge = &rig.plan->hinges[k];
             float max = 1 / cosf(hinge->lean), before = crease_ratio(hinge, -3, -3);
@@ -154,8 +117,7 @@ TEST(a_share_of_the_curvature_stays) {
     for (int fine = 0; fine < 2; fine++)
         for (int b = 0; b < 4; b++) {
             const double dx = fine ? 0.002 : 0.004, angle = bends[b] * dx;
-            OwnRig rig;
-            rig_open(&rig, test_grid(fine ? 16 : 8, 4, (float)dx, 0.003f), &material, 1);
+            OwnBench rig = bench_open_creased(test_grid(fine ? 16 : 8, 4, (float)dx, 0.003f), &material, 1);
             rig_roll(&rig, dx, angle);
             rig_pass(&rig, 200);
             double expected = share * fmax(0, fabs(bends[b]) - yield);
@@ -187,8 +149,7 @@ TEST(the_share_does_not_depend_on_direction) {
     for (int t = 0; t < 5; t++)
         for (int b = 0; b < 3; b++) {
             const double turn = turns[t] * pi / 180, k = bends[b];
-            OwnRig rig;
-            rig_open(&rig, test_grid(12, 12, 0.001f, 0.001f), NULL, 1);
+            OwnBench rig = bench_open_creased(test_grid(12, 12, 0.001f, 0.001f), NULL, 1);
             rig_roll_aslant(&rig, k, turn);
             rig_pass(&rig, 200);
             for (uint32_t i = 0; i < rig.shell.springs[SINGE_GREEN].count; i++) {
@@ -206,9 +167,8 @@ TEST(a_single_edge_keeps_less) {
     const SingeMaterialDef material = singe_default_material();
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
     const float dx = 0.004f, middle = 4 * dx, c = cosf(150 * dx), s = sinf(150 * dx);
-    OwnRig rig;
 
-    rig_open(&rig, test_grid(8, 4, dx, 0.003f), NULL, 1);
+    OwnBench rig = bench_open_creased(test_grid(8, 4, dx, 0.003f), NULL, 1);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
         const float *rest = rig.shell.rest_position[i];
         float *x = rig.state.dynamics.position[i], along = rest[0] - middle;
@@ -234,8 +194,7 @@ TEST(no_crease_is_sharper_than_the_limit) {
     const double bends[] = {150, -150, 90}, dx = 0.004;
     material.curvature_max = singe_param(100);
     for (int b = 0; b < 3; b++) {
-        OwnRig rig;
-        rig_open(&rig, test_grid(8, 4, (float)dx, 0.003f), &material, 1);
+        OwnBench rig = bench_open_creased(test_grid(8, 4, (float)dx, 0.003f), &material, 1);
         rig_roll(&rig, dx, bends[b] * dx);
         rig_pass(&rig, 200);
         double expected = copysign(share * (fmin(fabs(bends[b]), 100) - yield), bends[b]);
@@ -246,8 +205,7 @@ TEST(no_crease_is_sharper_than_the_limit) {
 
 /// Sharp bends that last a step or two leave nothing.
 TEST(trembling_leaves_no_crease) {
-    OwnRig rig;
-    rig_open(&rig, test_grid(8, 4, 0.004f, 0.003f), NULL, 1);
+    OwnBench rig = bench_open_creased(test_grid(8, 4, 0.004f, 0.003f), NULL, 1);
     for (int s = 0; s < 400; s++) {
         rig_roll(&rig, 0.004, s & 2 ? 0.7 : -0.7); // 175 1/m, by 60 Hz and more
         rig_pass(&rig, 1);
@@ -258,8 +216,7 @@ TEST(trembling_leaves_no_crease) {
 /// A sheet folded flat may look folded to the other side; its crease stays on the side it came from.
 TEST(a_flat_fold_stays_on_its_side) {
     for (int side = -1; side <= 1; side += 2) {
-        OwnRig rig;
-        rig_open(&rig, test_grid(2, 1, 0.004f, 0.004f), NULL, 1);
+        OwnBench rig = bench_open_creased(test_grid(2, 1, 0.004f, 0.004f), NULL, 1);
         for (int s = 0; s <= 100; s++) {
             rig_roll(&rig, 0.004, side * (s < 90 ? 3.0 * s / 90 : s & 1 ? 3.0 : 3.28));
             rig_pass(&rig, 8);
@@ -274,8 +231,7 @@ TEST(a_flat_fold_stays_on_its_side) {
 TEST(char_forgets_creases) {
     const double dx = 0.004;
     for (int ash = 0; ash < 2; ash++) {
-        OwnRig rig;
-        rig_open(&rig, test_grid(8, 4, (float)dx, 0.003f), NULL, 1);
+        OwnBench rig = bench_open_creased(test_grid(8, 4, (float)dx, 0.003f), NULL, 1);
         rig_roll(&rig, dx, 0.7);
         if (!ash) rig_pass(&rig, 200);
         float crease = rig.state.dynamics.crease[0], min = singe_default_material().mass_min.value;
@@ -292,8 +248,7 @@ TEST(char_forgets_creases) {
 /// Curling by unequal shrinkage of the layers is no bending: no crease stays.
 TEST(curl_leaves_no_crease) {
     const double dx = 0.003, angle = -0.6; // 200 1/m
-    OwnRig rig;
-    rig_open(&rig, test_grid(8, 4, (float)dx, 0.003f), NULL, 1);
+    OwnBench rig = bench_open_creased(test_grid(8, 4, (float)dx, 0.003f), NULL, 1);
     rig_roll(&rig, dx, angle);
     float *length = rig.state.burn.spring_length[SINGE_GREEN];
     for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++)
