@@ -11,15 +11,7 @@ static bool is_weak(uint32_t v) { return v % (CELLS + 1) % BLOCK == BLOCK / 2 &&
 /// A sheet with vertices in reserve. Every block counts as a piece of its own, so that a tear may begin in each.
 static BurningSheet *blocks_of_a_sheet(void) {
     SingeMaterialDef material = plain_material();
-    BurningSheet *b = calloc(1, sizeof *b);
-    b->memory = memory_make((SingeAllocator){0});
-    SheetSource source = grid_source(&b->memory, CELLS, CELLS, side, 0, &material, 0);
-    source.sheet.spare_count = 4 * BLOCKS * BLOCKS;
-    assert_int_equal(shell_create(&b->memory, &source, 1, &b->shell, &b->error), SINGE_OK);
-    assert_int_equal(state_create(&b->memory, &b->shell, &b->state), SINGE_OK);
-    sheet_source_free(&b->memory, &source);
-    b->nx = b->ny = CELLS;
-
+    BurningSheet *b = burning_spare_sheets(1, CELLS, CELLS, side, &material, 0, 4 * BLOCKS * BLOCKS);
     float *strength = burning_sheet_vary(b, &b->shell.matter.strength);
     for (uint32_t i = 0; i < b->shell.particle_count; i++) {
         strength[i] = i < (CELLS + 1) * (CELLS + 1) && is_weak(i) ? 1 : 2;
@@ -86,15 +78,7 @@ TEST(tears_run_across_the_pull) {
 /// vertex from each other, or one of them only.
 static uint32_t splits_beside(bool both) {
     SingeMaterialDef material = plain_material();
-    OwnBurningSheet *b = calloc(1, sizeof *b);
-    b->memory = memory_make((SingeAllocator){0});
-    SheetSource source = grid_source(&b->memory, 6, 6, side, 0, &material, 0);
-    source.sheet.spare_count = 20;
-    assert_int_equal(shell_create(&b->memory, &source, 1, &b->shell, &b->error), SINGE_OK);
-    assert_int_equal(state_create(&b->memory, &b->shell, &b->state), SINGE_OK);
-    sheet_source_free(&b->memory, &source);
-    b->nx = b->ny = 6;
-
+    OwnBurningSheet *b = burning_spare_sheets(1, 6, 6, side, &material, 0, 20);
     float *strength = burning_sheet_vary(b, &b->shell.matter.strength), *pull[SINGE_COLOUR_COUNT];
     for (uint32_t i = 0; i < b->shell.particle_count; i++) strength[i] = 1, b->state.ablate.piece[i] = 0;
     b->state.ablate.cell_flags[cell_at(b, 2, 3)] &= (uint8_t)~SINGE_ALIVE;
