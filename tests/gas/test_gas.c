@@ -10,8 +10,6 @@ typedef struct Air {
     SingeWindDef wind;
 } Air;
 
-static Air air; ///< what a case works on
-
 static GasSettings settings_default(void) {
     GasSettings settings = {.def = singe_default_gas(),
                             .gravity = {0, 0, -9.81f},
@@ -22,17 +20,19 @@ static GasSettings settings_default(void) {
     return settings;
 }
 
-static void air_open(Air *a, const GasSettings *settings) {
+static Air air_open(const GasSettings *settings) {
     RigDef def = rig_default(8, 8, 0.005f, 0.005f);
-    *a = (Air){.rig = rig_open(&def), .wind = singe_default_wind()};
-    SingeResult result = gas_plan_create(&a->rig.memory, &a->rig.shell, settings, &a->plan, &a->rig.state.gas);
+    Air a = {.rig = rig_open(&def), .wind = singe_default_wind()};
+    SingeResult result = gas_plan_create(&a.rig.memory, &a.rig.shell, settings, &a.plan, &a.rig.state.gas);
     assert_int_equal(result, SINGE_OK);
+    return a;
 }
 
 static void air_close(Air *a) {
     gas_plan_free(&a->rig.memory, a->plan);
     rig_close(&a->rig);
 }
+#define OwnAir OWNED(air_close) Air
 
 static void air_step(Air *a) {
     Rig *rig = &a->rig;
@@ -82,7 +82,7 @@ static double air_max(const Air *a, GasField field) {
 /// Burnt mass is in the gas, as fuel or as heat, until it reaches the border.
 TEST(heat_is_kept) {
     GasSettings settings = settings_default();
-    air_open(&air, &settings);
+    OwnAir air = air_open(&settings);
     double brought = 0;
     for (int step = 0; step < 24; step++) {
         if (step < 6) air_burn(&air, 1.5, false), brought += 1.5;
@@ -91,7 +91,6 @@ TEST(heat_is_kept) {
     print_message("%.3f J brought, %.3f J there\n", brought, air_heat(&air));
     CHECK_NEAR(air_heat(&air), brought, 0.02 * brought);
     print_message("fuel %.0f J/m3, L %.3f at most\n", air_max(&air, GAS_FUEL), air_max(&air, GAS_LIGHTNESS));
-    air_close(&air);
 }
 
 /// The part that is radiated is not in the gas, and a fire shown `pace` times as fast has the power of the real one.
@@ -100,11 +99,10 @@ TEST(power_is_the_real_fires) {
     for (int k = 0; k < 3; k++) {
         GasSettings settings = settings_default();
         settings.def.radiated = k == 1 ? 0.25f : 0, settings.pace = k == 2 ? 4 : 1;
-        air_open(&air, &settings);
+        OwnAir air = air_open(&settings);
         air_burn(&air, 4, false);
         air_step(&air);
         heat[k] = air_heat(&air);
-        air_close(&air);
     }
 
     CHECK_NEAR(heat[0], 4, 0.01);
@@ -118,7 +116,7 @@ TEST(a_source_with_power_has_a_flame) {
     for (int pace = 1; pace <= 5; pace += 4) {
         GasSettings settings = settings_default();
         settings.def.radiated = 0.25f, settings.pace = (float)pace;
-        air_open(&air, &settings);
+        OwnAir air = air_open(&settings);
         SingeSourceDef match = singe_default_source();
         match.power = 60, match.start = 1.5f / 72, match.end = 3.5f / 72;
         memcpy(match.position, centre, sizeof centre);
@@ -150,14 +148,13 @@ TEST(a_source_with_power_has_a_flame) {
         CHECK_NEAR(heat[2], lit, 0.01 * lit);
         CHECK_NEAR(heat[3], 2 * lit, 0.02 * lit);
         CHECK_NEAR(heat[5], 2 * lit, 0.05 * lit);
-        air_close(&air);
     }
 }
 
 /// What a jet makes of a steady fire: J/m3 of fuel and K where there is most, and how far along x its heat is, m.
 static void blow(float speed, double found[3]) {
     GasSettings settings = settings_default();
-    air_open(&air, &settings);
+    OwnAir air = air_open(&settings);
     SingeSourceDef jet = singe_default_source();
     jet.kind = SINGE_SOURCE_JET;
     jet.position[0] = -0.08f, jet.position[1] = 0.02f, jet.position[2] = 0.03f;
@@ -180,7 +177,6 @@ static void blow(float speed, double found[3]) {
     found[0] = air_max(&air, GAS_FUEL);
     found[1] = 293 / (1 - air_max(&air, GAS_LIGHTNESS));
     found[2] = (double)air.plan->origin[0] + (double)air.plan->cell * moment / sum;
-    air_close(&air);
 }
 
 TEST(jets_thin_fuel_cool_and_bend_flames) {
@@ -199,7 +195,7 @@ TEST(jets_thin_fuel_cool_and_bend_flames) {
 static double plume_speed(double power, double height) {
     enum { FIRST = 200, LAST = 440, PLANE_MAX = 1000 };
     GasSettings settings = settings_default();
-    air_open(&air, &settings);
+    OwnAir air = air_open(&settings);
     double sum[PLANE_MAX] = {0}, max = 0;
     for (int step = 0; step < LAST; step++) {
         air_burn(&air, power / 72, false); // more mass than there is: it only counts here
@@ -211,7 +207,6 @@ static double plume_speed(double power, double height) {
     }
 
     for (int c = 0; c < PLANE_MAX; c++) max = fmax(max, sum[c]);
-    air_close(&air);
     return max / (LAST - FIRST);
 }
 
@@ -240,7 +235,7 @@ TEST(solids_shut_cells) {
     const SingeColliderKind kinds[3] = {SINGE_COLLIDER_BOX, SINGE_COLLIDER_MESH, SINGE_COLLIDER_HEIGHTFIELD};
     for (int q = 0; q < 3; q++) {
         GasSettings settings = settings_default();
-        air_open(&air, &settings);
+        OwnAir air = air_open(&settings);
         SingePoseKey key = {.position = {0.02f, 0.02f, 0.18f}, .rotation = {0, 0, 0.3827f, 0.9239f}};
         SingeColliderDef def = singe_default_collider();
         def.kind = kinds[q], def.path_count = 1, def.path = &key;
@@ -267,7 +262,6 @@ TEST(solids_shut_cells) {
                 }
         assert_true(solid > 20);
         collider_free(&air.rig.memory, &air.rig.colliders.items[0]);
-        air_close(&air);
     }
 }
 
@@ -275,7 +269,7 @@ TEST(solids_shut_cells) {
 /// collider.
 TEST(flow_goes_around) {
     GasSettings settings = settings_default();
-    air_open(&air, &settings);
+    OwnAir air = air_open(&settings);
     SingePoseKey key = {.position = {0, 0, 0.18f}, .rotation = {0, 0, 0, 1}};
     Collider *ball = &air.rig.colliders.items[0];
     *ball = (Collider){.generation = 1, .def = singe_default_collider()};
@@ -312,7 +306,6 @@ TEST(flow_goes_around) {
     int level = (int)(0.01f - plan->origin[2] / plan->cell);
     size_t middle = gas_at(&plan->grid, plan->grid.n[0] / 2, plan->grid.n[1] / 2, level);
     assert_true(plan->open[2][middle] < 0.2f);
-    air_close(&air);
 }
 
 /// A sheet that stands over the fire is heated from where the gas comes, by no more than the gas is hot, and takes that
@@ -323,7 +316,7 @@ TEST(gas_heats_what_it_flows_past) {
         GasSettings settings = settings_default();
         settings.def.conductance = k ? 20 : 0;
         settings.gravity[2] = 0, settings.gravity[1] = -9.81f; // y is up: the sheet hangs
-        air_open(&air, &settings);
+        OwnAir air = air_open(&settings);
         const Shell *shell = &air.rig.shell;
         for (int step = 0; step < 10; step++) {
             for (int column = 0; column < 8; column++)
@@ -344,7 +337,6 @@ TEST(gas_heats_what_it_flows_past) {
 
         assert_int_equal(gas->warm, k);
         if (k) assert_true(above > 10 * below && above > 0);
-        air_close(&air);
     }
 
     assert_true(left[1] < 0.99 * left[0]);
@@ -353,7 +345,7 @@ TEST(gas_heats_what_it_flows_past) {
 /// When all is over it rests, and wakes when something burns again.
 TEST(the_gas_comes_to_rest) {
     GasSettings settings = settings_default();
-    air_open(&air, &settings);
+    OwnAir air = air_open(&settings);
     assert_false(air.rig.state.gas.awake);
     air_step(&air);
     assert_false(air.rig.state.gas.awake);
@@ -368,14 +360,13 @@ TEST(the_gas_comes_to_rest) {
     air_burn(&air, 0.5, false);
     air_step(&air);
     assert_true(air.rig.state.gas.awake && air_heat(&air) > 0.4);
-    air_close(&air);
 }
 
 /// Positions far away, at the border and not finite, and powers that no fire has.
 TEST(copes_with_anything) {
     GasSettings settings = settings_default();
     settings.def.conductance = 20;
-    air_open(&air, &settings);
+    OwnAir air = air_open(&settings);
     air.wind.velocity[0] = 300;
     float(*x)[4] = air.rig.state.dynamics.position;
     x[3][0] = 4000, x[4][2] = -900, x[5][0] = NAN, x[6][1] = INFINITY;
@@ -391,8 +382,6 @@ TEST(copes_with_anything) {
             for (int d = 0; d < 3; d++) assert_true(isfinite(gas.velocity[c][d]));
         }
     }
-
-    air_close(&air);
 }
 
 /// The grid holds the sheets with room above, and keeps to its budget.
@@ -401,7 +390,7 @@ TEST(grid_suits_the_sheets) {
     for (int k = 0; k < 4; k++) {
         GasSettings settings = settings_default();
         settings.def.cell_size = cells[k];
-        air_open(&air, &settings);
+        OwnAir air = air_open(&settings);
         SingeGas gas = gas_view(air.plan);
         double count = 1;
         for (int d = 0; d < 3; d++) {
@@ -412,6 +401,5 @@ TEST(grid_suits_the_sheets) {
 
         assert_true(count <= 2e6);
         if (k == 1) assert_true(gas.cell == 0.005f);
-        air_close(&air);
     }
 }
