@@ -54,8 +54,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
         NEW(memory, plan->air, plan->particle_count + 4) && NEW(memory, plan->predicted, plan->particle_count) &&
         (solver->start == 0 ||
          (NEW(memory, plan->start, plan->particle_count) && NEW(memory, plan->given, plan->particle_count))) &&
-        NEW(memory, plan->soft, plan->particle_count) && NEW(memory, plan->cell_normal, plan->cell_count) &&
-        NEW(memory, plan->height_wait, height_wait_count(shell)) &&
+        NEW(memory, plan->soft, plan->particle_count) && NEW(memory, plan->height_wait, height_wait_count(shell)) &&
         NEW(memory, plan->colliders, plan->collider_capacity) && NEW(memory, plan->partial, plan_partials(shell)) &&
         (!plan->solver->create || plan->solver->create(memory, shell, plan)) &&
         patches_create(memory, shell, &plan->patches) && attach_create(memory, shell, &plan->attachments) &&
@@ -67,6 +66,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
         return SINGE_ERROR_MEMORY;
     }
 
+    plan->cell_normal = plan->predicted + shell->vertex_count;
     *out = plan;
     return SINGE_OK;
 }
@@ -84,7 +84,6 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) 
     if (plan->start) FREE(memory, plan->start, plan->particle_count);
     if (plan->given) FREE(memory, plan->given, plan->particle_count);
     FREE(memory, plan->soft, plan->particle_count);
-    FREE(memory, plan->cell_normal, plan->cell_count);
     FREE(memory, plan->height_wait, height_wait_count(shell));
     FREE(memory, plan->colliders, plan->collider_capacity);
     FREE(memory, plan->partial, plan_partials(shell));

@@ -118,7 +118,7 @@ struct DynamicsPlan {
     uint32_t plate_count;
     uint32_t *reach[2];      ///< [strands] of blue and green: springs in a smoothing_length; 0: fewer than two
     uint8_t *height_wait;    ///< [height_wait_count] substeps for which a block of cells is skipped
-    float (*cell_normal)[4]; ///< unit times twice the area
+    float (*cell_normal)[4]; ///< unit times twice the area; before and after substeps, where `predicted` has centres
     MovingCollider *colliders;
     uint32_t collider_capacity;
     double *partial; ///< [pool_blocks(particles or springs of a colour)]
