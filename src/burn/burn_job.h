@@ -37,10 +37,6 @@ static inline uint32_t burn_run_end(uint32_t first, uint32_t last) {
     return last - first < FIELD_RUN ? last : first + FIELD_RUN;
 }
 
-/// The shares of the particles [begin, end) of a BurnJob that have become ash, in burn->burn_rate until burn_lose_mass
-/// overwrites it: several neighbours ask for each (glow.c).
-void burn_ash(void *job, int begin, int end);
-
 /// The share of the air that reaches hot char, stored in burn->release until burn_lose_mass overwrites it (glow.c).
 void burn_air(BurnJob *job, Pool *pool);
 
@@ -52,6 +48,9 @@ float burn_glow_heat(const BurnJob *job, uint32_t i);
 
 /// Eq 4 and the glowing of char. Returns the mass lost as gas, kg; not finite if a mass is not.
 double burn_lose_mass(BurnJob *job, Pool *pool);
+
+/// What follows from mass and fuel, ash and volume, of the particles [first, last), at most four.
+void burn_follow(const Matter *matter, BurnState *burn, uint32_t first, uint32_t last);
 
 /// Eq 6, for springs with an end that lost mass in this step.
 void burn_shrink(BurnJob *job, Pool *pool);

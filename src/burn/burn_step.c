@@ -66,7 +66,6 @@ SingeResult burn_step(const StepContext *context, const float *thickening, doubl
     }
 
     // air at the embers, loss of mass
-    pool_for(pool, (int)shell->particle_count, POOL_BLOCK, burn_ash, &job);
     burn_air(&job, pool);
     double lost = burn_lose_mass(&job, pool);
     if (!isfinite(lost)) {

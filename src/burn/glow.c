@@ -43,23 +43,10 @@ static bool glow_is_gone(const BurnJob *job, uint32_t cell) {
     return cell == SHELL_NONE || !(job->state->ablate->cell_flags[cell] & SINGE_ALIVE);
 }
 
-void burn_ash(void *context, int begin, int end) {
-    const BurnJob *job = context;
-    const Matter *matter = &job->shell->matter;
-    const float *mass = job->burn->mass, *fuel = job->burn->fuel;
-    float *ash = job->burn->burn_rate;
-    for (int i = begin; i < end; i++) {
-        const uint32_t k = (uint32_t)i;
-        ash[i] = 0; // while there is all of the fuel
-        if (fuel[i] < 1)
-            ash[i] = shell_ash(mass[i], fuel[i], field_at(matter->mass_min, k), field_at(matter->char_yield, k));
-    }
-}
-
 /// s of a particle: (1 - f_n)^8 max(s_0, w), with w = 1 next to a cell that is gone, and at the border.
 static float glow_supply(const BurnJob *job, uint32_t i) {
     const Shell *shell = job->shell;
-    const float *ashes = job->burn->burn_rate;
+    const float *ashes = job->burn->ash;
     float ash = ashes[i], fuel = job->burn->fuel[i];
     bool edge = false;
 

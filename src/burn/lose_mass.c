@@ -182,6 +182,9 @@ static void lose_mass(void *context, int begin, int end) {
                 if (after < field_at(matter->mass_loss, i) && burn->time_burnt[i] < 0) burn->time_burnt[i] = job->time;
                 lost += ((double)before - (double)after) * (double)matter->mass[i];
             }
+
+            for (uint32_t i = first; i < run; i += 4) // arrays of the State end with room for four
+                if (float4_any(float4_load(burn->burn_rate + i) > 0)) burn_follow(matter, burn, i, run);
         }
 
         job->partial[block] = lost;

@@ -3,6 +3,24 @@
 #include "burn/burn_job.h"
 #include "shell/target_length.h"
 
+void burn_follow(const Matter *matter, BurnState *burn, uint32_t first, uint32_t last) {
+    uint32_t at[4]; // the last one again in lanes without a particle
+    for (uint32_t k = 0; k < 4; k++) at[k] = first + k < last ? first + k : last - 1;
+    const Float4 mass = float4_gather(burn->mass, at), fuel = float4_gather(burn->fuel, at), zero = {0};
+    const Float4 min = field_four(matter->mass_min, at), span = field_four(matter->char_yield, at) - min;
+
+    // as shell_char
+    const Float4 max = 1 - fuel, share = (mass - fuel - min * max) / span;
+    const Float4 within = float4_select(share < 0, zero, float4_select(share > max, max, share));
+    const Float4 ash = max - float4_select(span > 0, within, zero);
+    const Float4 volume =
+        burn_volume_ratio(mass, fuel, ash, field_four(matter->char_density, at), field_four(matter->ash_density, at));
+    for (uint32_t k = 0; k < 4; k++) {
+        burn->ash[at[k]] = ash[k];
+        burn->volume[at[k]] = volume[k];
+    }
+}
+
 /// Springs s[k] of the bits `which`, those that are not gone.
 static inline void shrink_springs(const BurnJob *job, SingeColour colour, const uint32_t s[4], unsigned which,
                                   SpringEnds a, SpringEnds b, const Float4 *thickness) {
@@ -66,6 +84,7 @@ void burn_shrink(BurnJob *job, Pool *pool) {
 }
 
 void burn_restore_lengths(const Shell *shell, const AblateState *ablate, BurnState *burn) {
+    for (uint32_t i = 0; i < shell->particle_count; i += 4) burn_follow(&shell->matter, burn, i, shell->particle_count);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         const SpringSet *springs = &shell->springs[colour];
         for (uint32_t s = 0; s < springs->count; s += 4) {

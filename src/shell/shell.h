@@ -187,7 +187,8 @@ typedef struct BurnState {
     float *time_ignited; ///< [particles] s, -1 before
     float *time_burnt;   ///< [particles] s, -1 before; when m fell below m_loss
     float *spring_length[SINGE_COLOUR_COUNT]; ///< target lengths, eq 6
-    double mass_burnt;                        ///< kg gone as gas
+    float *ash, *volume; ///< [particles] share that has become ash, and volume ratio, eq 5: by mass and fuel
+    double mass_burnt;   ///< kg gone as gas
 } BurnState;
 
 typedef struct AblateState {
@@ -252,6 +253,7 @@ typedef struct State {
     TearState tear;
     void *arena; ///< all arrays above except the gas's lie in one block
     size_t arena_size;
+    size_t saved_size; ///< of the arena's start: all that snapshots hold
     size_t basic_size; ///< of the arena's start: all except the springs' lengths, which follow from the rest
 } State;
 
@@ -346,11 +348,6 @@ static inline float shell_char(float mass, float fuel, float mass_min, float yie
     if (!(span > 0)) return 0;
     float share = (mass - fuel - mass_min * max) / span;
     return share < 0 ? 0 : share > max ? max : share;
-}
-
-/// The share that has become ash, from the same.
-static inline float shell_ash(float mass, float fuel, float mass_min, float yield) {
-    return 1 - fuel - shell_char(mass, fuel, mass_min, yield);
 }
 
 /// Factor by which char burns and cools more slowly than the flame front: 1 while there is fuel, and always 1 if

@@ -27,8 +27,8 @@ uint32_t shell_nowhere_count(const Shell *shell) {
     return max;
 }
 
-/// Points the arrays into the block at `base` and returns the block's size; *basic is the size without the lengths.
-static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basic) {
+/// Points the arrays into the block at `base`, and stores the block's sizes.
+static void lay_out(const Shell *shell, State *state, char *base) {
     size_t used = 0, particles = shell->particle_count;
 
     // particles and cells
@@ -62,12 +62,16 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
     TAKE(state->tear.splits, shell->spare_count);
 
     // omitted from backups: springs' lengths, and what is written when no stage can fail any more
-    *basic = used;
+    state->basic_size = used;
     TAKE(state->dynamics.earlier, shell->vertex_count);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         TAKE(state->burn.spring_length[colour], shell->springs[colour].count);
 
-    return used;
+    // omitted from snapshots, too
+    state->saved_size = used;
+    TAKE(state->burn.ash, particles);
+    TAKE(state->burn.volume, particles);
+    state->arena_size = used;
 }
 
 /// Bytes before an aligned block. The last one holds the block's offset in its allocation.
@@ -75,7 +79,7 @@ enum { LEAD = SLICE };
 
 SingeResult state_create(Memory *memory, const Shell *shell, State *state) {
     *state = (State){0};
-    state->arena_size = lay_out(shell, state, NULL, &state->basic_size);
+    lay_out(shell, state, NULL);
     char *block = memory_new(memory, state->arena_size + LEAD, 1);
     if (!block) {
         *state = (State){0};
@@ -85,7 +89,7 @@ SingeResult state_create(Memory *memory, const Shell *shell, State *state) {
     size_t lead = SLICE - (uintptr_t)block % SLICE; // 1 to 64
     block[lead - 1] = (char)lead;
     state->arena = block + lead;
-    lay_out(shell, state, state->arena, &state->basic_size);
+    lay_out(shell, state, state->arena);
 
     // springs, except the spares of tears
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
@@ -109,7 +113,7 @@ SingeResult state_create(Memory *memory, const Shell *shell, State *state) {
 
         state->heat.temperature[p] = state->heat.temperature_peak[p] = field_at(shell->matter.temperature, p);
         if (state->heat.water) state->heat.water[p] = field_at(shell->matter.moisture, p);
-        state->burn.mass[p] = state->burn.fuel[p] = 1;
+        state->burn.mass[p] = state->burn.fuel[p] = state->burn.volume[p] = 1;
         state->burn.time_ignited[p] = state->burn.time_burnt[p] = -1;
         state->ablate.particle_flags[p] = alive ? SINGE_ALIVE : 0;
         state->ablate.piece[p] = alive ? 0 : -1;

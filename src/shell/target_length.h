@@ -49,16 +49,8 @@ typedef struct SpringEnds {
 
 /// Four particles as ends.
 static inline SpringEnds spring_ends(const Matter *matter, const BurnState *burn, const uint32_t at[4]) {
-    const Float4 mass = float4_gather(burn->mass, at), fuel = float4_gather(burn->fuel, at), zero = {0};
-    const Float4 min = field_four(matter->mass_min, at), span = field_four(matter->char_yield, at) - min;
-
-    // as shell_char
-    const Float4 max = 1 - fuel, share = (mass - fuel - min * max) / span;
-    const Float4 within = float4_select(share < 0, zero, float4_select(share > max, max, share));
-    const Float4 ash = max - float4_select(span > 0, within, zero);
-    return (SpringEnds){
-        burn_volume_ratio(mass, fuel, ash, field_four(matter->char_density, at), field_four(matter->ash_density, at)),
-        field_four(matter->shrink, at), field_four(matter->fibre_shrink, at)};
+    return (SpringEnds){float4_gather(burn->volume, at), field_four(matter->shrink, at),
+                        field_four(matter->fibre_shrink, at)};
 }
 
 /// Those of the corners 0 to 3 of a cell in the order 1, 2, 3, 0.

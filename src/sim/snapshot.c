@@ -53,10 +53,10 @@ static SingeResult snapshot_state(Stream *stream, SingeSim *sim) {
     STREAM(stream, sim->heat_start);
 
     // the arena
-    uint64_t size = state->arena_size;
+    uint64_t size = state->saved_size;
     STREAM(stream, size);
-    stream->failed |= size != state->arena_size;
-    stream_data(stream, state->arena, state->arena_size);
+    stream->failed |= size != state->saved_size;
+    stream_data(stream, state->arena, state->saved_size);
 
     // tears change the Shell: repeat them
     if (stream->mode == STREAM_READ && !stream->failed) // the shell is as built: it tears again in the same order

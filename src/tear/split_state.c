@@ -68,6 +68,8 @@ void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *sp
 
     COPY(state->burn.mass, to, from);
     COPY(state->burn.fuel, to, from);
+    COPY(state->burn.ash, to, from);
+    COPY(state->burn.volume, to, from);
     COPY(state->burn.burn_rate, to, from);
     COPY(state->burn.release, to, from);
     COPY(state->burn.time_ignited, to, from);
