@@ -33,6 +33,7 @@
 #include "burn/burn_job.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 
 static const float STRENGTH_MAX = 1e30f;
@@ -148,6 +149,15 @@ static void share_air(BurnJob *job, BurnAirNear *near, uint32_t first, uint32_t 
     }
 }
 
+/// Marks the cells of a particle that loses mass. Several threads may mark one.
+static void mark_cells(const Shell *shell, BurnState *burn, uint32_t i) {
+    if (!shell_is_corner(shell, i))
+        atomic_store_explicit(&burn->burns[i - shell->vertex_count], 1, memory_order_relaxed);
+    else
+        for (uint32_t f = shell->fan_first[i]; f < shell->fan_first[i + 1]; f++)
+            atomic_store_explicit(&burn->burns[shell->fan[f]], 1, memory_order_relaxed);
+}
+
 /// Lets the particles of blocks react; the mass that they lose, kg, is the block's partial.
 static void lose_mass(void *context, int begin, int end) {
     BurnJob *job = context;
@@ -181,6 +191,7 @@ static void lose_mass(void *context, int begin, int end) {
                 float after = burn->mass[i];
                 if (after < field_at(matter->mass_loss, i) && burn->time_burnt[i] < 0) burn->time_burnt[i] = job->time;
                 lost += ((double)before - (double)after) * (double)matter->mass[i];
+                if (burn->burn_rate[i] > 0) mark_cells(job->shell, burn, i);
             }
 
             for (uint32_t i = first; i < run; i += 4) // arrays of the State end with room for four
@@ -225,6 +236,7 @@ double burn_lose_mass(BurnJob *job, Pool *pool) {
     job->shares = any && burn_air_is_short(job->air);
 
     double lost = 0;
+    memset((uint8_t *)job->burn->burns, 0, job->shell->cell_count);
     pool_for(pool, blocks, 1, lose_mass, job);
     for (int block = 0; block < blocks; block++) lost += job->partial[block];
     return lost;

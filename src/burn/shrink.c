@@ -3,6 +3,8 @@
 #include "burn/burn_job.h"
 #include "shell/target_length.h"
 
+#include <string.h>
+
 void burn_follow(const Matter *matter, BurnState *burn, uint32_t first, uint32_t last) {
     uint32_t at[4]; // the last one again in lanes without a particle
     for (uint32_t k = 0; k < 4; k++) at[k] = first + k < last ? first + k : last - 1;
@@ -21,62 +23,62 @@ void burn_follow(const Matter *matter, BurnState *burn, uint32_t first, uint32_t
     }
 }
 
-/// Springs s[k] of the bits `which`, those that are not gone.
+/// Springs s[k] of the bits `which`.
 static inline void shrink_springs(const BurnJob *job, SingeColour colour, const uint32_t s[4], unsigned which,
                                   SpringEnds a, SpringEnds b, const Float4 *thickness) {
-    const uint8_t *flags = job->state->ablate->spring_flags[colour];
-    for (unsigned k = 0; k < 4; k++)
-        if (which >> k & 1 && !(flags[s[k]] & SINGE_ALIVE)) which &= ~(1u << k);
     if (!which) return;
-
     uint32_t at[4]; // in place of a missing one the first that exists
     for (unsigned k = 0; k < 4; k++) at[k] = s[which >> k & 1 ? k : (unsigned)__builtin_ctz(which)];
     const Float4 length = target_lengths(&job->shell->springs[colour], at, a, b, thickness);
     for (unsigned k = 0; k < 4; k++)
-        if (which >> k & 1) job->burn->spring_length[colour][s[k]] = length[k];
+        if (which >> k & 1) job->burn->spring_length[colour][at[k]] = length[k];
 }
 
-/// Shortens the springs of cells that have a burning end. A spring of two cells is left to the first of them that sees
-/// an end of it burn: both see the ends of a blue spring, each sees only its own centre of a green one.
-static void shrink_cells(void *context, int begin, int end) {
-    const BurnJob *job = context;
+/// Shortens the springs of a cell that has a burning end. One that is gone has none but sides of the cell beside it. A
+/// spring of two cells is left to the first of them that sees an end of it burn: both see the ends of a blue spring,
+/// each sees only its own centre of a green one.
+static void shrink_cell(const BurnJob *job, uint32_t cell) {
     const Shell *shell = job->shell;
     const Matter *matter = &shell->matter;
     const BurnState *burn = job->burn;
-    const float *burn_rate = burn->burn_rate;
+    const uint8_t *flags = job->state->ablate->cell_flags;
+    const uint32_t *at = shell->cells[cell], middle = shell_centre(shell, cell);
+    const CellSprings *springs = &shell->cell_springs[cell];
+    if (!(flags[cell] & SINGE_ALIVE)) return;
 
-    for (uint32_t cell = (uint32_t)begin; cell < (uint32_t)end; cell++) {
-        const uint32_t *at = shell->cells[cell], middle = shell_centre(shell, cell);
-        unsigned burns = float4_bits(float4_gather(burn_rate, at) > 0); // bit i: corner i; bit 4: corner 0 again
-        burns |= burns << 4 & 16;
-        const bool centre_burns = burn_rate[middle] > 0;
-        if (!burns && !centre_burns) continue;
+    unsigned burns = float4_bits(float4_gather(burn->burn_rate, at) > 0); // bit i: corner i; bit 4: corner 0 again
+    burns |= burns << 4 & 16;
+    const bool centre_burns = burn->burn_rate[middle] > 0;
 
-        // the cells beside it
-        const CellSprings *springs = &shell->cell_springs[cell];
-        uint32_t beyond[4];
-        unsigned blue = 0, green = 0; // a shared spring by one of its two cells
-        for (int i = 0; i < 4; i++) {
-            const uint32_t other = shell_neighbour(shell, cell, i);
-            const bool first = other == SHELL_NONE || cell < other;
-            beyond[i] = other == SHELL_NONE ? middle : shell_centre(shell, other);
-            blue |= (unsigned)first << i;
-            green |= (unsigned)(other != SHELL_NONE && (first || !(burn_rate[beyond[i]] > 0))) << i;
-        }
-
-        const SpringEnds corner = spring_ends(matter, burn, at), next = spring_ends_turned(corner);
-        const SpringEnds centre = spring_ends(matter, burn, (const uint32_t[4]){middle, middle, middle, middle});
-        const Float4 thickness = float4_all(field_at(matter->thickness, middle));
-
-        shrink_springs(job, SINGE_RED, springs->red, centre_burns ? 15 : burns & 15, centre, corner, &thickness);
-        shrink_springs(job, SINGE_BLUE, springs->blue, (burns | burns >> 1) & blue, corner, next, NULL);
-        if (centre_burns)
-            shrink_springs(job, SINGE_GREEN, springs->green, green, centre, spring_ends(matter, burn, beyond), NULL);
-
-        // the diagonals
-        const uint32_t yellow[4] = {springs->yellow[0], springs->yellow[1], springs->yellow[0], springs->yellow[1]};
-        shrink_springs(job, SINGE_YELLOW, yellow, (burns | burns >> 2) & 3, corner, spring_ends_turned(next), NULL);
+    // the cells beside it
+    uint32_t beyond[4];
+    unsigned blue = 0, green = 0; // a shared spring by one of its two cells
+    for (int i = 0; i < 4; i++) {
+        const uint32_t other = shell_neighbour(shell, cell, i);
+        const bool two = other != SHELL_NONE && flags[other] & SINGE_ALIVE, first = !two || cell < other;
+        beyond[i] = two ? shell_centre(shell, other) : middle;
+        blue |= (unsigned)first << i;
+        green |= (unsigned)(two && (first || !(burn->burn_rate[beyond[i]] > 0))) << i;
     }
+
+    const SpringEnds corner = spring_ends(matter, burn, at), next = spring_ends_turned(corner);
+    const SpringEnds centre = spring_ends(matter, burn, (const uint32_t[4]){middle, middle, middle, middle});
+    const Float4 thickness = float4_all(field_at(matter->thickness, middle));
+
+    shrink_springs(job, SINGE_RED, springs->red, 15, centre, corner, &thickness);
+    shrink_springs(job, SINGE_BLUE, springs->blue, (burns | burns >> 1) & blue, corner, next, NULL);
+    if (centre_burns)
+        shrink_springs(job, SINGE_GREEN, springs->green, green, centre, spring_ends(matter, burn, beyond), NULL);
+
+    // the diagonals
+    const uint32_t yellow[4] = {springs->yellow[0], springs->yellow[1], springs->yellow[0], springs->yellow[1]};
+    if (burns) shrink_springs(job, SINGE_YELLOW, yellow, 3, corner, spring_ends_turned(next), NULL);
+}
+
+static void shrink_cells(void *context, int begin, int end) {
+    const BurnJob *job = context;
+    const uint8_t *burns = (const uint8_t *)job->burn->burns, *next = burns + begin; // nobody marks any more
+    for (; (next = memchr(next, 1, (size_t)(burns + end - next))); next++) shrink_cell(job, (uint32_t)(next - burns));
 }
 
 void burn_shrink(BurnJob *job, Pool *pool) {

@@ -33,7 +33,8 @@ static inline void prepare_mark(StrandSet *set, uint32_t spring) {
 static void prepare_cells(void *task, int begin, int end) {
     Prepare *job = task;
     const Shell *shell = job->shell;
-    const float(*x)[4] = (const float(*)[4])job->dynamics->position, *burn_rate = job->state->burn->burn_rate;
+    const float(*x)[4] = (const float(*)[4])job->dynamics->position;
+    const uint8_t *burns = (const uint8_t *)job->state->burn->burns; // nobody marks any more
     StrandSet *sets = job->plan->strands.sets;
 
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
@@ -43,8 +44,7 @@ static void prepare_cells(void *task, int begin, int end) {
         const bool alive = job->state->ablate->cell_flags[c] & SINGE_ALIVE;
         float4_store(job->plan->cell_normal[c], alive ? float4_cross(a, b) : float4_all(0));
 
-        const bool burns = float4_any(float4_gather(burn_rate, corner) > 0) || burn_rate[shell_centre(shell, c)] > 0;
-        if (!burns || !sets[SINGE_RED].seen) continue;
+        if (!burns[c] || !sets[SINGE_RED].seen) continue;
         const CellSprings *springs = &shell->cell_springs[c];
         for (int i = 0; i < 4; i++) {
             prepare_mark(&sets[SINGE_RED], springs->red[i]);

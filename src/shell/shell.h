@@ -187,8 +187,9 @@ typedef struct BurnState {
     float *time_ignited; ///< [particles] s, -1 before
     float *time_burnt;   ///< [particles] s, -1 before; when m fell below m_loss
     float *spring_length[SINGE_COLOUR_COUNT]; ///< target lengths, eq 6
-    float *ash, *volume; ///< [particles] share that has become ash, and volume ratio, eq 5: by mass and fuel
-    double mass_burnt;   ///< kg gone as gas
+    float *ash, *volume;    ///< [particles] share that has become ash, and volume ratio, eq 5: by mass and fuel
+    _Atomic uint8_t *burns; ///< [cells] 1: one of its particles has lost mass in this step
+    double mass_burnt;      ///< kg gone as gas
 } BurnState;
 
 typedef struct AblateState {

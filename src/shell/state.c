@@ -67,10 +67,11 @@ static void lay_out(const Shell *shell, State *state, char *base) {
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         TAKE(state->burn.spring_length[colour], shell->springs[colour].count);
 
-    // omitted from snapshots, too
+    // omitted from snapshots, too: what follows from the rest, and what only a step needs
     state->saved_size = used;
     TAKE(state->burn.ash, particles);
     TAKE(state->burn.volume, particles);
+    TAKE(state->burn.burns, shell->cell_count);
     state->arena_size = used;
 }
 
