@@ -39,44 +39,35 @@ static const float GLOW_PRE_EXPONENTIAL = 5.667e9f; // 1/s
 static const float GLOW_CO = 2500, GLOW_CO_TEMPERATURE = 6240, GLOW_CO_HEAT = 0.28f;
 static const float GLOW_TEMPERATURE = 160e3f / 8.314462618f; // K, E/R
 
-static bool glow_is_gone(const BurnJob *job, uint32_t cell) {
-    return cell == SHELL_NONE || !(job->state->ablate->cell_flags[cell] & SINGE_ALIVE);
-}
-
 /// s of a particle: (1 - f_n)^8 max(s_0, w), with w = 1 next to a cell that is gone, and at the border.
 static float glow_supply(const BurnJob *job, uint32_t i) {
     const Shell *shell = job->shell;
-    const float *ashes = job->burn->ash;
-    float ash = ashes[i], fuel = job->burn->fuel[i];
+    const float *ash = job->burn->ash, *fuel = job->burn->fuel;
+    const uint8_t *cell_flags = job->state->ablate->cell_flags;
+    const uint16_t springs = job->state->ablate->degree[i];
+    Float4 most = {fuel[i], ash[i]}; // without branches, which nobody can predict
     bool edge = false;
 
     if (shell_is_corner(shell, i)) {
         // a neighbour across a side at the vertex is in its fan, too
-        for (uint32_t f = shell->fan_first[i]; f < shell->fan_first[i + 1]; f++) {
-            uint32_t cell = shell->fan[f], centre = shell_centre(shell, cell);
-            const bool gone = glow_is_gone(job, cell);
+        const uint32_t first = shell->fan_first[i], last = shell->fan_first[i + 1];
+        for (uint32_t f = first; f < last; f++) {
+            const uint32_t cell = shell->fan[f], centre = shell_centre(shell, cell);
+            const bool gone = !(cell_flags[cell] & SINGE_ALIVE);
             edge |= gone;
-            if (!gone) fuel = float_max(fuel, job->burn->fuel[centre]);
-            if (edge) continue; // all of the air, whatever the ash
-
-            const uint32_t *at = shell->cells[cell], k = (at[1] == i) + 2 * (at[2] == i) + 3 * (at[3] == i);
-            const uint32_t *green = shell->cell_springs[cell].green;
-            edge = green[k] == SHELL_NONE || green[(k + 3) & 3] == SHELL_NONE;
-            ash = float_max(ash, ashes[centre]);
+            if (gone) continue;
+            most = float4_max(most, (Float4){fuel[centre], ash[centre]});
         }
+        edge |= springs > 3 * (last - first); // a red, a yellow and a blue one for each cell, and at a border one more
     } else {
-        uint32_t cell = i - shell->vertex_count;
-        for (int k = 0; k < 4; k++) {
-            uint32_t corner = shell->cells[cell][k];
-            edge = edge || glow_is_gone(job, shell_neighbour(shell, cell, k));
-            if (!edge) ash = float_max(ash, ashes[corner]);
-            fuel = float_max(fuel, job->burn->fuel[corner]);
-        }
+        edge = springs < 8; // a red one for each corner, a green one for each neighbour
+        const uint32_t *corner = shell->cells[i - shell->vertex_count];
+        for (int k = 0; k < 4; k++) most = float4_max(most, (Float4){fuel[corner[k]], ash[corner[k]]});
     }
 
-    float squared = (1 - fuel) * (1 - fuel);
+    float squared = (1 - most[0]) * (1 - most[0]);
     squared *= squared;
-    return float_max(edge ? 1 : ash, field_at(shell->matter.char_air, i)) * (squared * squared);
+    return float_max(edge ? 1 : most[1], field_at(shell->matter.char_air, i)) * (squared * squared);
 }
 
 static void glow_air_blocks(void *context, int begin, int end) {
