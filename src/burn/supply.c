@@ -26,6 +26,9 @@ static const float AIR_REACH = 0.015f; // m, l
 static const float AIR_ACROSS = 0.55f; // mean of the sum of the weights' squares
 #define AIR_EMPTY UINT64_MAX
 
+/// Bits of the 27 nodes about a position, and of the nine at -1 along x.
+enum { AIR_ALL = (1u << 27) - 1, AIR_FIRST = 0x1249249 };
+
 SingeResult burn_air_create(Memory *memory, const Shell *shell, BurnAir *air) {
     double area = 0;
     for (uint32_t i = 0; i < shell->particle_count; i++) area += (double)shell->matter.area[i];
@@ -92,18 +95,28 @@ static bool air_is_elsewhere(const BurnAirNear *near, const Float4Mask middle[3]
            middle[2][k] != near->middle[2];
 }
 
-/// Takes the nodes about the middle of lane k into `near`, with new ones where `adds`. What the table has no place for
-/// is not there: there is as much air as in a front.
+/// Puts nodes of `near` back: bits of them.
+static void air_put(BurnAir *air, const BurnAirNear *near, uint32_t nodes) {
+    for (; nodes; nodes &= nodes - 1) {
+        const unsigned n = (unsigned)__builtin_ctz(nodes);
+        if (near->slot[n] < air->count) air->demand[near->slot[n]] = near->demand[n / 3][n % 3];
+    }
+}
+
+void burn_air_flush(BurnAir *air, const BurnAirNear *near) { air_put(air, near, near->known ? AIR_ALL : 0); }
+
+/// Takes the nodes about the middle of lane k into `near`, with new ones where `adds`, and puts back those that it had.
+/// What the table has no place for is not there: there is as much air as in a front.
 static void air_go(BurnAir *air, BurnAirNear *near, const Float4Mask middle[3], int k, bool adds) {
     const int by = middle[0][k] - near->middle[0];
     const bool follows =
         near->known && (by == 1 || by == -1) && middle[1][k] == near->middle[1] && middle[2][k] == near->middle[2];
     for (int d = 0; d < 3; d++) near->middle[d] = middle[d][k];
 
-    // usually one node farther along x than before, so that only nine are new
-    uint32_t fresh = (1u << 27) - 1;
+    // usually one node farther along x than before, so that only nine are new: those at -1 along x, or at 1
+    uint32_t fresh = follows ? AIR_FIRST << (by < 0 ? 0 : 2) : AIR_ALL;
+    if (adds && near->known) air_put(air, near, follows ? AIR_FIRST << (by < 0 ? 2 : 0) : AIR_ALL);
     if (follows) {
-        fresh = by < 0 ? 0x1249249 : 0x1249249 << 2; // bits of the nine nodes at -1 along x, or at 1
         memmove(near->slot + (by < 0), near->slot + (by > 0), 26 * sizeof *near->slot);
         for (int row = 0; row < 9; row++) {
             const Float4 q = near->demand[row];
@@ -125,11 +138,6 @@ static void air_go(BurnAir *air, BurnAirNear *near, const Float4Mask middle[3], 
     }
 }
 
-void burn_air_flush(BurnAir *air, const BurnAirNear *near) {
-    for (int n = 0; n < 27 && near->known; n++)
-        if (near->slot[n] < air->count) air->demand[near->slot[n]] = near->demand[n / 3][n % 3];
-}
-
 void burn_air_add(BurnAir *air, BurnAirNear *near, const float position[4][4], const float demand[4]) {
     Float4 weight[3][3];
     Float4Mask middle[3];
@@ -138,10 +146,7 @@ void burn_air_add(BurnAir *air, BurnAirNear *near, const float position[4][4], c
     for (int k = 0; k < 4; k++) {
         if (!(demand[k] > 0)) continue;
 
-        if (air_is_elsewhere(near, middle, k)) {
-            burn_air_flush(air, near);
-            air_go(air, near, middle, k, true);
-        }
+        if (air_is_elsewhere(near, middle, k)) air_go(air, near, middle, k, true);
 
         const Float4 along = {weight[0][0][k], weight[0][1][k], weight[0][2][k], 0};
         for (int row = 0; row < 9; row++) {
