@@ -27,6 +27,7 @@
 // capacity C, as in the stored enthalpy C (T - Ta).
 #include <math.h>
 
+#include "common/float4.h"
 #include "common/real.h"
 #include "heat/heat_plan.h"
 
@@ -44,85 +45,140 @@ double heat_sum(const HeatPlan *plan, int column) {
     return sum;
 }
 
-/// Combustion, sources and losses of particles [i, end) of one sheet; adds to the block's ledger.
-static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, double ledger[4]) {
-    HeatPlan *plan = pass->plan;
+/// Four particles; in lanes without one the last is repeated.
+typedef struct HeatFour {
+    uint32_t first, at[4];
+    Float4Mask acts; ///< those that are there and have or get other than the ambient temperature
+    Float4 fuel, area, capacity, ambient;
+    Float4 T, warmth;              ///< before the step; dt/C''
+    Float4 combustion, flux, loss; ///< K, W/m2, K
+    Float4 T2;                     ///< T* of eq 1
+    Float4 star, delta;            ///< T**, and what is above T
+} HeatFour;
+
+static inline Float4 heat_load(const float *x, const HeatFour *four) { return float4_load(x + four->first); }
+
+/// Which of the particles [first, end), at most four, eq 1 may change.
+static inline void heat_begin(const HeatPass *pass, uint32_t first, uint32_t end, HeatFour *four) {
+    const HeatPlan *plan = pass->plan;
     const Matter *matter = &pass->shell->matter;
-    uint32_t sheet = matter->sheet[i];
-    const float *temperature = pass->heat->temperature, *mass = pass->state->burn->mass;
-    const float *burn_rate = pass->state->burn->burn_rate, *release = pass->state->burn->release;
-    const float *fuel = pass->state->burn->fuel;
+    four->first = first;
+    for (uint32_t k = 0; k < 4; k++) four->at[k] = first + k < end ? first + k : end - 1;
+    const uint8_t *alive = plan->alive;
+    const Float4Mask there = {alive[four->at[0]], alive[four->at[1]], alive[four->at[2]], alive[four->at[3]]};
+
+    // arrays of plan and State end with room for four
+    four->ambient = float4_all(plan->settings.ambient_temperature);
+    four->T = heat_load(pass->heat->temperature, four);
+    const Float4Mask heats = (four->T != four->ambient) | (heat_load(pass->state->burn->burn_rate, four) != 0) |
+                             (heat_load(plan->flux, four) != 0) | (heat_load(plan->source_conductance, four) != 0) |
+                             (heat_load(plan->source_temperature, four) != 0);
+    four->acts = heats & (there != 0) & ((Float4Mask){0, 1, 2, 3} < (int32_t)(end - first));
+    four->fuel = heat_load(pass->state->burn->fuel, four);
+    four->area = float4_gather(matter->area, four->at);
+    four->capacity = float4_gather(matter->capacity, four->at);
+    four->warmth = float4_all(pass->dt) * four->area / four->capacity;
+}
+
+/// Combustion and sources, which are implicit in their conductance.
+static inline void heat_gain(const HeatPass *pass, HeatFour *four) {
+    const HeatPlan *plan = pass->plan;
+    const Float4 zero = {0}, one = float4_all(1), coldest = float4_all(HEAT_COLDEST);
+    const Float4 out = plan->puts_out ? heat_load(plan->put_out, four) : zero;
+    const Float4 made = heat_load(pass->state->burn->release, four) * float4_all(pass->h);
+    const Float4Mask puts_out = (out > 0) & ((four->fuel > 0) | (out == HEAT_SMOTHERED));
+    four->combustion = float4_select(puts_out, made * float4_select(out < 1, one - out, zero), made);
+
+    const Float4 T1 = four->T + four->combustion, g = heat_load(plan->source_conductance, four);
+    const Float4 given = heat_load(plan->flux, four) + (heat_load(plan->source_temperature, four) - g * T1);
+    const Float4 flux = given / (one + four->warmth * g), T2 = T1 + four->warmth * flux;
+    const Float4Mask cold = (T2 < coldest) & (flux < 0) & (flux > -INFINITY); // limit the cooling
+    four->T2 = float4_select(cold, float4_select(T1 < coldest, T1, coldest), T2);
+    four->flux = float4_select(cold, (four->T2 - T1) / four->warmth, flux);
+}
+
+/// Factor by which char is slower: shell_glow_slowing.
+static inline Float4 heat_slowing(const Matter *matter, const HeatFour *four) {
+    const Float4 one = float4_all(1), squared = (one - four->fuel) * (one - four->fuel), fourth = squared * squared;
+    const Float4Mask chars = field_four(matter->char_yield, four->at) > field_four(matter->mass_min, four->at);
+    return float4_select(chars, one + float4_all(3) * fourth * fourth, one);
+}
+
+/// Convection and radiation, implicit in their conductance.
+static inline void heat_lose(const HeatPass *pass, HeatFour *four) {
+    const Matter *matter = &pass->shell->matter;
+    const uint32_t *at = four->at;
+    const uint16_t *sheet = matter->sheet;
+    const Float4 one = float4_all(1), T2 = four->T2, ambient = four->ambient, over = T2 - ambient;
+    const Float4 thickening = float4_gather(
+        pass->plan->thickening, (const uint32_t[4]){sheet[at[0]], sheet[at[1]], sheet[at[2]], sheet[at[3]]});
+    const Float4 burnt = float4_max(heat_load(pass->state->burn->mass, four), field_four(matter->loss_mass_floor, at));
+    const Float4 radiation = field_four(matter->emissivity, at) * float4_all(STEFAN_BOLTZMANN);
+    const Float4 exchange =
+        field_four(matter->convection, at) + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
+    Float4 rate = four->warmth * exchange / burnt * (one / thickening) / heat_slowing(matter, four); // dt K
+    rate *= one + float4_all(0.5f) * rate;                                                           // y
+    four->loss = rate * over / (one + rate);
+    four->star = T2 - four->loss;
+    four->delta = four->combustion + four->warmth * four->flux - four->loss;
+
+    // little remains of T - Ta, so the difference would have no digits
+    const Float4Mask most = rate > 1;
+    if (!float4_any(most & four->acts)) return;
+    rate = float4_select(rate > HEAT_RATE_MAX, float4_all(HEAT_RATE_MAX), rate);
+    const Float4 loss = rate * over / (one + rate); // the product may overflow, the loss does not
+    const Float4Mask overflows = (loss == INFINITY) | (loss == -INFINITY);
+    four->loss = float4_select(most, float4_select(overflows, over * (rate / (one + rate)), loss), four->loss);
+    four->star = float4_select(most, ambient + over / (one + rate), four->star);
+    four->delta = float4_select(most, four->star - four->T, four->delta);
+}
+
+/// Boils the water of particles above its boiling point; the steam takes the heat along.
+static void heat_boil(const HeatPass *pass, HeatFour *four, double *lost) {
+    const Matter *matter = &pass->shell->matter;
+    const float latent = STEAM + WATER * float_max(BOILING - four->ambient[0], 0);
     float *water = pass->heat->water;
-    float ambient = plan->settings.ambient_temperature, dt = pass->dt, h = pass->h;
-    float slower = 1 / plan->thickening[sheet];
-
-    for (; i < end; i++) {
-        float T = temperature[i];
-        bool calm = T == ambient && burn_rate[i] == 0 && plan->flux[i] == 0 && plan->source_conductance[i] == 0 &&
-                    plan->source_temperature[i] == 0;
-        if (calm || !plan->alive[i]) {
-            plan->star[i] = T;
-            plan->delta[i] = 0;
-            continue;
-        }
-
-        // heat of combustion
-        const float out = plan->puts_out ? plan->put_out[i] : 0;
-        float combustion = release[i] * h;
-        if (out > 0 && (fuel[i] > 0 || out == HEAT_SMOTHERED)) combustion *= out < 1 ? 1 - out : 0;
-        float T1 = T + combustion;
-
-        // sources, implicit in their conductance
-        float warmth = dt * matter->area[i] / matter->capacity[i]; // dt/C''
-        float g = plan->source_conductance[i];
-        float flux = (plan->flux[i] + (plan->source_temperature[i] - g * T1)) / (1 + warmth * g);
-        float T2 = T1 + warmth * flux;
-        if (T2 < HEAT_COLDEST && flux < 0 && flux > -INFINITY) { // limit the cooling
-            T2 = T1 < HEAT_COLDEST ? T1 : HEAT_COLDEST;
-            flux = (T2 - T1) / warmth;
-        }
-
-        // convection and radiation, implicit in their conductance
-        float floor_mass = field_at(matter->loss_mass_floor, i), burnt = mass[i] > floor_mass ? mass[i] : floor_mass;
-        float radiation = field_at(matter->emissivity, i) * STEFAN_BOLTZMANN;
-        float exchange = field_at(matter->convection, i) + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
-        float rate = warmth * exchange / burnt * slower / shell_glow_slowing(matter, i, fuel[i]); // dt K
-        rate *= 1 + 0.5f * rate;                                                                  // y
-        float loss = rate * (T2 - ambient) / (1 + rate);
-        plan->star[i] = T2 - loss;
-        plan->delta[i] = combustion + warmth * flux - loss;
-        if (rate > 1) { // little remains of T - Ta, so the difference would have no digits
-            if (rate > HEAT_RATE_MAX) rate = HEAT_RATE_MAX;
-            loss = rate * (T2 - ambient) / (1 + rate);
-            if (isinf(loss)) loss = (T2 - ambient) * (rate / (1 + rate)); // the product overflows, the loss does not
-            plan->star[i] = ambient + (T2 - ambient) / (1 + rate);
-            plan->delta[i] = plan->star[i] - T;
-        }
-
-        // boiling; the steam takes the heat along
-        const float excess = plan->star[i] - BOILING;
-        if (water && water[i] > 0 && excess > 0) {
-            const float latent = STEAM + WATER * float_max(BOILING - ambient, 0), boils = matter->mass[i] * latent;
-            const float steam = float_min(water[i], excess * matter->capacity[i] / boils);
-            const float cooling = steam * boils / matter->capacity[i];
-            water[i] -= steam;
-            plan->star[i] -= cooling;
-            plan->delta[i] -= cooling;
-            ledger[3] += (double)cooling * (double)matter->capacity[i];
-        }
-
-        // ledger
-        ledger[0] += (double)flux * matter->area[i] * dt;
-        ledger[1] += (double)loss * matter->capacity[i];
-        ledger[2] += (double)combustion * matter->capacity[i];
+    for (int k = 0; k < 4; k++) {
+        const uint32_t i = four->at[k];
+        const float excess = four->star[k] - BOILING, boils = matter->mass[i] * latent;
+        if (!four->acts[k] || !(water[i] > 0) || !(excess > 0)) continue;
+        const float steam = float_min(water[i], excess * matter->capacity[i] / boils);
+        const float cooling = steam * boils / matter->capacity[i];
+        water[i] -= steam;
+        four->star[k] -= cooling;
+        four->delta[k] -= cooling;
+        *lost += (double)cooling * (double)matter->capacity[i];
     }
+}
+
+/// Adds what the four have of a quantity to the ledger, particle after particle.
+static inline void heat_note(double *ledger, const HeatFour *four, Float4 value, Float4 per, double factor) {
+    value = float4_select(four->acts, value, (Float4){0});
+    for (int k = 0; k < 4; k++) *ledger += (double)value[k] * (double)per[k] * factor;
+}
+
+/// Combustion, sources and losses of particles [first, end), at most four; adds to the block's ledger.
+static void heat_exchange_four(const HeatPass *pass, uint32_t first, uint32_t end, double ledger[4]) {
+    HeatFour four;
+    heat_begin(pass, first, end, &four);
+    four.star = four.T;
+    four.delta = (Float4){0};
+    if (float4_any(four.acts)) {
+        heat_gain(pass, &four);
+        heat_lose(pass, &four);
+        if (pass->heat->water) heat_boil(pass, &four, &ledger[3]);
+        heat_note(&ledger[0], &four, four.flux, four.area, (double)pass->dt);
+        heat_note(&ledger[1], &four, four.loss, four.capacity, 1);
+        heat_note(&ledger[2], &four, four.combustion, four.capacity, 1);
+    }
+    float4_store(pass->plan->star + first, float4_select(four.acts, four.star, four.T));
+    float4_store(pass->plan->delta + first, float4_select(four.acts, four.delta, (Float4){0}));
 }
 
 /// Combustion, sources and losses of all particles, and the ledger of each block.
 static void heat_exchange(void *context, int begin, int end) {
     const HeatPass *pass = context;
     HeatPlan *plan = pass->plan;
-    const uint16_t *sheet = pass->shell->matter.sheet;
     const float *temperature = pass->heat->temperature, *burn_rate = pass->state->burn->burn_rate;
     const float *flux = plan->flux, *conductance = plan->source_conductance, *tends = plan->source_temperature;
     float ambient = plan->settings.ambient_temperature;
@@ -143,12 +199,8 @@ static void heat_exchange(void *context, int begin, int end) {
                 plan->delta[i] = 0;
             }
 
-            // otherwise exchange heat, sheet by sheet; a group is warm if a live particle leaves that temperature
-            for (uint32_t i = first, run; i < last && busy; i = run) {
-                for (run = i + 1; run < last && sheet[run] == sheet[i];) run++;
-                heat_exchange_run(pass, i, run, ledger);
-            }
-
+            // otherwise exchange heat; a group is warm if a live particle leaves that temperature
+            for (uint32_t i = first; i < last && busy; i += 4) heat_exchange_four(pass, i, last, ledger);
             for (uint32_t i = first; busy && i < last; i++)
                 warm |= plan->alive[i] & ((plan->star[i] != ambient) | (plan->delta[i] != 0));
             plan->rest.warm[g] = warm != 0;
