@@ -33,6 +33,7 @@ typedef struct Kernels {
     AttachHold *hold;
     StrandBend *bend;
     MoveRange *move;
+    UnitRange *unit;
     PlaneRange *plane;
     HeightRange *height;
     SmoothGroup *smooth;

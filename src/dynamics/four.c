@@ -14,6 +14,7 @@ static inline Lanes lanes_with_fourth(Lanes a, Lanes fourth) {
 #define LANES_SPREAD(a, e) FLOAT4_SHUFFLE(a, a, e, e, e, e)
 #define FLOAT4S_SET(float4s, e, value) (float4s).at[e] = (value)
 #define MOVE_RANGE move_range_four
+#define UNIT_RANGE unit_range_four
 #define HEIGHT_RANGE height_range_four
 #define PLANE_RANGE plane_range_four
 #include "dynamics/height_kernel.h"

@@ -3,6 +3,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /// Quadruples of all particles, and what is the same for all.
 typedef struct MoveLanes {
@@ -26,3 +27,7 @@ typedef struct MoveLanes {
 /// Particles [begin, end). What neither closes nor opens a substep keeps their starts.
 typedef void MoveRange(const MoveLanes *job, size_t begin, size_t end, bool closes, bool opens);
 MoveRange move_range_four, move_range_v3, move_range_v4;
+
+/// Makes normals unit vectors, but those of 0. Their fourth numbers stay.
+typedef void UnitRange(float (*normal)[4], uint32_t count);
+UnitRange unit_range_four, unit_range_v3, unit_range_v4;

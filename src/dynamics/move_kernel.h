@@ -3,6 +3,8 @@
 // whole quadruples, and their particles never mix: all instruction sets give the same bytes.
 #include "dynamics/move.h"
 
+#include <string.h>
+
 /// The start that a change by the strands gives, which is kept: hardly any where it turns that back.
 static inline Lanes move_start(const MoveLanes *job, size_t i, Lanes change) {
     if (job->kept) return lanes_load(job->start + i);
@@ -88,6 +90,34 @@ static inline void move_dragged(const MoveLanes *job, size_t first) {
         lanes_store(job->predicted + i, lanes_where_less(zero, mass, moved, lanes_load(job->predicted + i)));
         lanes_store(job->velocity + i, lanes_where_less(zero, mass, velocity[e], lanes_load(job->velocity + i)));
     }
+}
+
+/// Makes the normals of as many particles as there are lanes unit vectors. The fourth numbers stay.
+static inline void unit_lanes(float *normal) {
+    Float4s normals = float4s_load_contiguous(normal, LANES);
+    const LaneNode node = float4s_node(&normals);
+    const Lanes one = lanes_all(1), length = lanes_sqrt(node.x * node.x + node.y * node.y + node.z * node.z);
+    const Lanes scale = lanes_where_less(lanes_all(0), length, one / length, one);
+    const Lanes share[4] = {LANES_SPREAD(scale, 0), LANES_SPREAD(scale, 1), LANES_SPREAD(scale, 2),
+                            LANES_SPREAD(scale, 3)};
+    for (int e = 0; e < 4; e++) {
+        const Lanes old = (Lanes)normals.at[e];
+        FLOAT4S_SET(normals, e, lanes_with_fourth(old * share[e], old));
+    }
+    float4s_store_contiguous(normal, LANES, &normals);
+}
+
+void UNIT_RANGE(float (*normal)[4], uint32_t count) {
+    uint32_t i = 0;
+    for (; i + LANES <= count; i += LANES) unit_lanes(normal[i]);
+#ifdef UNIT_NARROWER
+    UNIT_NARROWER(normal + i, count - i);
+#else
+    float rest[LANES][4] = {{0}};
+    memcpy(rest, normal + i, (count - i) * sizeof *rest);
+    unit_lanes(rest[0]);
+    memcpy(normal + i, rest, (count - i) * sizeof *rest);
+#endif
 }
 
 void MOVE_RANGE(const MoveLanes *job, size_t begin, size_t end, bool closes, bool opens) {

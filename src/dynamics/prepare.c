@@ -74,18 +74,6 @@ static void prepare_air(const Prepare *job, uint32_t begin, uint32_t end) {
     }
 }
 
-/// Makes the normals of `count` particles unit vectors, at most four: a range ends anywhere, and others write what is behind.
-static inline void make_units(float (*normals)[4], uint32_t count) {
-    Float4 q[4] = {{0}};
-    for (uint32_t k = 0; k < count; k++) q[k] = float4_load(normals[k]);
-    float4_transpose(q);
-    const Float4 length = float4_sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), one = float4_all(1);
-    const Float4 scale = float4_select(length > 0, one / length, one);
-    for (int d = 0; d < 3; d++) q[d] *= scale;
-    float4_transpose(q);
-    for (uint32_t k = 0; k < count; k++) float4_store(normals[k], q[k]);
-}
-
 static void prepare_particles(void *task, int from, int to) {
     const Prepare local = *(const Prepare *)task, *job = &local; // of its own, so that stores cannot change it
     DynamicsPlan *plan = job->plan;
@@ -116,7 +104,7 @@ static void prepare_particles(void *task, int from, int to) {
     if (held) atomic_store_explicit(&plan->held, true, memory_order_relaxed);
     if (plan->air_mask) prepare_air(job, begin, end);
 
-    // normals: sums, and then these of four particles at once, which would wait for what has just been stored
+    // normals: sums, and then these in lanes, which would wait for what has just been stored
     for (uint32_t i = begin; i < end; i++) {
         Float4 normal = {0};
         if (i >= shell->vertex_count) normal = float4_load(cell_normal[i - shell->vertex_count]);
@@ -124,7 +112,7 @@ static void prepare_particles(void *task, int from, int to) {
             for (uint32_t k = fan_first[i]; k < fan_first[i + 1]; k++) normal += float4_load(cell_normal[fan[k]]);
         float4_store(normals[i], float4_select(three, normal, float4_load(normals[i])));
     }
-    for (uint32_t i = begin; i < end; i += 4) make_units(normals + i, end - i < 4 ? end - i : 4);
+    plan->kernels->unit(normals + begin, end - begin);
 }
 
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, const SingeWindDef *wind,

@@ -122,6 +122,8 @@ static inline Lanes lanes_with_fourth(Lanes a, Lanes fourth) {
 #define PLANE_RANGE plane_range_v4
 #define PLANE_NARROWER plane_range_v3
 #define MOVE_RANGE move_range_v4
+#define UNIT_RANGE unit_range_v4
+#define UNIT_NARROWER unit_range_v3
 #define MOVE_NARROWER move_range_v3
 #include "dynamics/attach_kernel.h"
 #include "dynamics/strand/strand_kernel.h"
