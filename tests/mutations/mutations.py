@@ -20,9 +20,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 MUTATIONS = [
     # eq 1 to 3: heat
-    ("heat/heat.c", "float T1 = T + combustion;", "float T1 = T - combustion;",
+    ("heat/heat.c", "Float4 T1 = four->T + four->combustion", "Float4 T1 = four->T - four->combustion",
      "heat_exchange", "combustion_is_eta_times_burnt_mass"),
-    ("heat/heat.c", "float loss = rate * (T2 - ambient) / (1 + rate);", "float loss = rate * (T2 - ambient);",
+    ("heat/heat.c", "four->loss = rate * over / (one + rate);", "four->loss = rate * over;",
      "heat_exchange", "one_step_of_losses_matches_the_formula"),
     ("heat/source.c", "float reach = def->radius + def->falloff", "float reach = def->radius",
      "heat_source", "falls_off_smoothly_and_moves"),
