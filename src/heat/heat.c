@@ -101,7 +101,7 @@ static inline void heat_gain(const HeatPass *pass, HeatFour *four) {
 static inline Float4 heat_slowing(const Matter *matter, const HeatFour *four) {
     const Float4 one = float4_all(1), squared = (one - four->fuel) * (one - four->fuel), fourth = squared * squared;
     const Float4Mask chars = field_four(matter->char_yield, four->at) > field_four(matter->mass_min, four->at);
-    return float4_select(chars, one + float4_all(3) * fourth * fourth, one);
+    return float4_select(chars, one + float4_all(GLOW_SLOWEST - 1) * fourth * fourth, one);
 }
 
 /// Convection and radiation, implicit in their conductance.

@@ -351,14 +351,16 @@ static inline float shell_char(float mass, float fuel, float mass_min, float yie
     return share < 0 ? 0 : share > max ? max : share;
 }
 
+/// The factor below where all of the fuel is gone.
+#define GLOW_SLOWEST 4.0f
+
 /// Factor by which char burns and cools more slowly than the flame front: 1 while there is fuel, and always 1 if
 /// pyrolysis leaves no char (burn/glow.c).
 static inline float shell_glow_slowing(const Matter *matter, uint32_t i, float fuel) {
-    const float slowest = 4;
     float burnt = (1 - fuel) * (1 - fuel);
     if (!(field_at(matter->char_yield, i) > field_at(matter->mass_min, i))) return 1;
     burnt *= burnt;
-    return 1 + (slowest - 1) * burnt * burnt;
+    return 1 + (GLOW_SLOWEST - 1) * burnt * burnt;
 }
 
 /// Burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash. A mean of m_min below 1 may be rounded to 1: then nothing burns.
