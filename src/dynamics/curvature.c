@@ -113,6 +113,6 @@ void curvature_project(const DynamicsPlan *plan, Pool *pool, DynamicsState *dyna
     for (int i = 0; i < 2; i++) {
         const StrandSet *set = &plan->strands.sets[colours[i]];
         Curvature job = {set, plan->kernels->bend, dynamics->position[0], 0};
-        if (set->bend_limit && set->bends) strand_families(set, pool, curvature_range, &job, &job.first_group);
+        if (set->bend_limit && set->bends) strand_families(set, false, pool, curvature_range, &job, &job.first_group);
     }
 }

@@ -55,6 +55,7 @@ typedef struct Strands {
     float *keep;      ///< room_count times STRAND_KEEP (longest + 1) STRAND_LANES
     _Atomic uint64_t taken;
     bool started; ///< this substep has a start
+    bool opens;   ///< the colour that is projected is a substep's first
 } Strands;
 
 /// A spring that a tear has removed from its strand, or made (patch.c).

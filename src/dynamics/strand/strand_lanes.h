@@ -73,8 +73,10 @@ static inline uint32_t strand_column(uint32_t width, uint32_t lane) { return lan
 bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowhere, bool pulls, StrandSet *set);
 void strand_set_free(Memory *memory, StrandSet *set);
 
-/// Runs `run` over the groups of one family after the other; *first_group is what item 0 of a family is.
-void strand_families(const StrandSet *set, Pool *pool, SingeTaskFn *run, void *context, uint32_t *first_group);
+/// Runs `run` over the groups of one family after the other; *first_group is what item 0 of a family is. `opens`: each
+/// thread has just written its share of the particles.
+void strand_families(const StrandSet *set, bool opens, Pool *pool, SingeTaskFn *run, void *context,
+                     uint32_t *first_group);
 
 typedef struct StrandJob {
     const StrandSet *set;

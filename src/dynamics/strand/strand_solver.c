@@ -200,14 +200,17 @@ static void strands_prepare(DynamicsPlan *plan, const Shell *shell, const StateI
 // ---- a substep
 
 /// A thread that shares a family fetches half of its particles, or more, from the caches of the threads that had the
-/// strands across. Two or three threads take longer for that than one alone for a family of fewer springs than this.
+/// strands across. Two or three threads take longer for that than one alone for a family of fewer springs than this; but
+/// for a substep's first one, if it lies along the particles' numbers, where each thread has what it has moved.
 enum { SHARED_SPRINGS = 65536, SHARING_THREADS = 4 };
 
-void strand_families(const StrandSet *set, Pool *pool, SingeTaskFn *run, void *context, uint32_t *first_group) {
+void strand_families(const StrandSet *set, bool opens, Pool *pool, SingeTaskFn *run, void *context,
+                     uint32_t *first_group) {
     for (uint32_t f = 0; f < set->family_count; f++) {
         const uint32_t first = set->family_first[f], last = set->family_first[f + 1];
         const uint32_t springs = first < last ? (set->groups[last - 1].row - set->groups[first].row) * STRAND_LANES : 0;
-        const bool alone = springs < SHARED_SPRINGS && pool_threads(pool) < SHARING_THREADS;
+        const bool along = opens && f == 0 && springs > 0 && set->contiguous[set->groups[first].row] == STRAND_GATHERED;
+        const bool alone = springs < SHARED_SPRINGS && pool_threads(pool) < SHARING_THREADS && !along;
         *first_group = first;
         pool_for(pool, (int)(last - first), alone ? (int)(last - first) : 1, run, context);
     }
@@ -254,7 +257,7 @@ static void strands_project_colour(DynamicsPlan *plan, SingeColour colour, Pool 
     if (colour == SINGE_GREEN && plan->braces) braces = &plan->braces->set;
     for (const StrandSet *next = set; next; next = next == set ? braces : NULL) {
         project.job.set = next;
-        strand_families(next, pool, project_range, &project, &project.first_group);
+        strand_families(next, strands->opens, pool, project_range, &project, &project.first_group);
     }
 
     patch_project(plan, colour, &project.job);
@@ -298,6 +301,7 @@ static SingeResult strands_project(DynamicsPlan *plan, const Substep *substep) {
             if (last) curvature_project(plan, pool, dynamics);
             double start = clock_seconds();
             const int count = last && projection + 1 == solver->projections ? times : 1;
+            plan->strands.opens = i == 0 && projection == 0;
             for (int k = 0; k < count; k++)
                 strands_project_colour(plan, solver->order[i], pool, h, count, dynamics, substep->counters);
             substep->counters->seconds += clock_seconds() - start;
