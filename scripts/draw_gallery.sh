@@ -5,8 +5,8 @@
 # Usage: scripts/draw_gallery.sh [EXAMPLE...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
-declare -A best=([letter]=0082 [letter-hanging]=0146 [hot-sphere]=0044 [page-hot]=0058 [newspaper]=0084
-    [curtain]=0098 [stack-edge]=0068 [stack]=0108 [crumpled-ball]=0128 [hot-iron]=0080 [tear]=0024 [shirt]=0102
+declare -A best=([letter]=0087 [letter-hanging]=0146 [hot-sphere]=0060 [page-hot]=0045 [newspaper]=0084
+    [curtain]=0098 [stack-edge]=0068 [stack]=0108 [crumpled-ball]=0140 [hot-iron]=0098 [tear]=0024 [shirt]=0102
     [burning-torus]=0046 [macro]=0024 [note]=0062 [title]=0112)
 declare -A measured=([letter]=50-59 [letter-hanging]=100-109 [hot-sphere]=50-59 [page-hot]=40-49 [newspaper]=80-89
     [curtain]=100-109 [stack-edge]=60-69 [stack]=66-79 [crumpled-ball]=100-109 [hot-iron]=70-79 [tear]=30-39
