@@ -1,5 +1,6 @@
 // The second reaction, char to ash, against its closed form; where it lives; its heat; the switch to the paper's eq 4.
 #include "ablate/burning_sheet.h"
+#include "burn/burn_job.h"
 
 static const double YIELD = 0.35, MIN = 0.15, RATE = 0.5, AIR = 0.1;
 static const double SLOWING = 4; // of char without fuel
@@ -69,17 +70,20 @@ TEST(leaves_glow_slower_than_edges) {
     // ash beside it lets air through
     uint32_t centre = b->shell.vertex_count + 3 * 6 + 3;
     b->state.burn.mass[centre] = (float)(MIN + 0.5 * (YIELD - MIN));
+    burn_follow(&b->shell.matter, &b->state.burn, centre, centre + 1);
     double root = sqrt(left_of_char(b, inner));
     assert_int_equal(step(b, 0.1f * (float)SLOWING, 1, 1), SINGE_OK);
     assert_float_equal(root - sqrt(left_of_char(b, inner)), 0.5 * 0.1 * RATE * 0.5, 1e-3);
 
     // fuel beside it, in the other layer, keeps the air away, and so does the flame
     b->state.burn.fuel[centre] = 0.5f, b->state.burn.mass[centre] += 0.5f - 0.5f * (float)MIN;
+    burn_follow(&b->shell.matter, &b->state.burn, centre, centre + 1);
     double held = sqrt(left_of_char(b, inner));
     b->state.heat.temperature[centre] = 400;
     assert_int_equal(step(b, 0.1f * (float)SLOWING, 1, 1), SINGE_OK);
     assert_float_equal(sqrt(left_of_char(b, inner)), held, 2e-4);
     b->state.burn.fuel[centre] = 0, b->state.burn.mass[centre] = (float)MIN;
+    burn_follow(&b->shell.matter, &b->state.burn, centre, centre + 1);
 
     // a hole beside it is an edge
     uint32_t before = inner;

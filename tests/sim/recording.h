@@ -12,6 +12,9 @@ typedef struct Tape {
     size_t refuse_at; ///< no more than so many bytes; 0: any
 } Tape;
 
+static inline void tape_free(Tape *tape) { free(tape->bytes); }
+#define OwnTape OWNED(tape_free) Tape
+
 static inline bool tape_write(void *context, const void *bytes, size_t size) {
     Tape *tape = context;
     if (tape->refuse_at && tape->size + size > tape->refuse_at) return false;

@@ -35,7 +35,7 @@ static Tape recording(void) {
 }
 
 TEST(a_replay_makes_every_call_and_ends_in_the_same_bits) {
-    Tape tape = recording();
+    OwnTape tape = recording();
     SingeReplay replay = replay_all(&tape);
     assert_string_equal(replay.what, "");
     assert_true(replay.same && replay.complete);
@@ -51,11 +51,10 @@ TEST(a_replay_makes_every_call_and_ends_in_the_same_bits) {
     for (int kind = 16; kind <= 40; kind++)
         if (tape_find(&tape, kind, 0) == tape.size) fail_msg("no recording of call %d is tried", kind);
     assert_true(tape_find(&tape, HEAT, 5) < tape.size);
-    free(tape.bytes);
 }
 
 TEST(a_recording_changes_nothing) {
-    Tape tape = {0};
+    OwnTape tape = {0};
     const SingeSimDef def = scene_def(), with = recorded(def, &tape);
     OwnTestScene a = scene_make(&def, 10), b = scene_make(&with, 10);
     test_ok(a.sim, singe_sim_set_ambient_temperature(a.sim, 280));
@@ -66,11 +65,10 @@ TEST(a_recording_changes_nothing) {
     test_steps(b.sim, 5);
     assert_true(tape.size > before);
     test_assert_same(a.sim, b.sim);
-    free(tape.bytes);
 }
 
 TEST(recordings_differ_only_in_the_number_of_threads) {
-    Tape one = {0}, three = {0};
+    OwnTape one = {0}, three = {0};
     SingeSimDef def = scene_def();
     def.thread_count = 1;
     SingeSimDef with = recorded(def, &one);
@@ -85,15 +83,13 @@ TEST(recordings_differ_only_in_the_number_of_threads) {
     assert_int_equal(three.bytes[at], 3);
     three.bytes[at] = 1;
     assert_memory_equal(one.bytes, three.bytes, one.size);
-    free(one.bytes);
-    free(three.bytes);
 }
 
 TEST(recordings_may_begin_with_a_snapshot) {
     TestScene scene = scene_make(NULL, 8);
     test_steps(scene.sim, 3);
 
-    Tape tape = {0};
+    OwnTape tape = {0};
     SingeSimDef hooks = recorded(singe_default_sim(), &tape);
     SingeSim *sim = test_reload(&hooks, scene.sim);
     singe_sim_destroy(scene.sim);
@@ -103,13 +99,12 @@ TEST(recordings_may_begin_with_a_snapshot) {
     SingeReplay replay = replay_all(&tape);
     assert_true(replay.same && replay.complete);
     assert_int_equal(replay.steps, 3);
-    free(tape.bytes);
 }
 
 static bool yes_if(void *context) { return *(const bool *)context; }
 
 TEST(what_was_given_up_is_given_up_again) {
-    Tape tape = {0};
+    OwnTape tape = {0};
     bool gives_up = false;
     SingeSimDef def = recorded(scene_def(), &tape);
     def.cancel = (SingeCancel){yes_if, &gives_up};
@@ -137,13 +132,12 @@ TEST(what_was_given_up_is_given_up_again) {
     hooks.cancel = (SingeCancel){yes_if, &gives_up};
     assert_int_equal(singe_replay(&hooks, tape.bytes, tape.size, &replay, &error), SINGE_ERROR_CANCELLED);
     assert_string_equal(error.stage, "replay");
-    free(tape.bytes);
 }
 
 // ---- what differs
 
 TEST(the_first_step_that_differs_is_named) {
-    Tape tape = recording();
+    OwnTape tape = recording();
     const size_t state = tape_find(&tape, STATE, 7);
     const uint64_t step = tape_number(tape.bytes + state + HEAD, 8);
 
@@ -155,28 +149,25 @@ TEST(the_first_step_that_differs_is_named) {
     assert_false(replay.same);
     assert_true(replay.complete);
     assert_int_equal(replay.step, step);
-    free(tape.bytes);
 }
 
 TEST(another_argument_shows_in_the_next_step) {
-    Tape tape = recording();
+    OwnTape tape = recording();
     const size_t gravity = tape_find(&tape, 31, 0);
     tape.bytes[gravity + HEAD + 4 + 3] ^= 0x80; // the sign of its y
     SingeReplay replay = replay_all(&tape);
     assert_string_equal(replay.what, "the state after step 5");
     assert_int_equal(replay.step, 5);
-    free(tape.bytes);
 }
 
 TEST(another_answer_is_named) {
-    Tape tape = recording();
+    OwnTape tape = recording();
     const size_t pace = tape_find(&tape, 32, 1); // the one that was refused
     const size_t answer = pace + HEAD + (size_t)tape_number(tape.bytes + pace + 1, 8);
     assert_int_equal(tape.bytes[answer], RESULT);
     tape.bytes[answer + HEAD] = 0;
     SingeReplay replay = replay_all(&tape);
     assert_string_equal(replay.what, "the answer to set_pace, after step 4");
-    free(tape.bytes);
 }
 
 // ---- other versions
@@ -188,7 +179,7 @@ static void put_number(uint8_t *at, uint64_t number, int size) {
 
 /// The wind's fields behind whether there are any and their number: each the hash of its name, its bytes, and these.
 TEST(fields_that_an_older_recording_lacks_have_their_defaults) {
-    Tape tape = recording();
+    OwnTape tape = recording();
     const size_t wind = tape_find(&tape, 30, 0), count = wind + HEAD + 1, first = count + 4;
     const size_t size = (size_t)tape_number(tape.bytes + wind + 1, 8), end = wind + HEAD + size;
     const size_t second = first + 8 + (size_t)tape_number(tape.bytes + first + 4, 4);
@@ -206,13 +197,12 @@ TEST(fields_that_an_older_recording_lacks_have_their_defaults) {
     put_number(tape.bytes + first, 12345, 4);
     replay = replay_all(&tape);
     assert_string_equal(replay.what, "the state after step 5");
-    free(tape.bytes);
 }
 
 // ---- what is cut short or damaged
 
 TEST(a_recording_cut_short_is_replayed_to_its_end) {
-    Tape tape = recording();
+    OwnTape tape = recording();
     for (size_t size = HEADER; size < tape.size; size += 1 + size / 4) {
         const bool whole = size > tape_find(&tape, 1, 0) + HEAD + tape_number(tape.bytes + HEADER + 1, 8);
         SingeReplay replay = replay_some(&tape, size, whole ? SINGE_OK : SINGE_ERROR_FORMAT);
@@ -226,11 +216,10 @@ TEST(a_recording_cut_short_is_replayed_to_its_end) {
     SingeReplay replay = replay_some(&tape, end, SINGE_OK);
     assert_int_equal(replay.steps, 4);
     assert_true(replay.same && !replay.complete);
-    free(tape.bytes);
 }
 
 TEST(damage_is_an_error_or_a_difference) {
-    Tape tape = recording();
+    OwnTape tape = recording();
     uint32_t random = 1;
     int errors = 0, differences = 0;
     for (int i = 0; i < 24; i++) {
@@ -250,7 +239,6 @@ TEST(damage_is_an_error_or_a_difference) {
     }
 
     assert_true(errors > 0 && differences > 0);
-    free(tape.bytes);
 }
 
 TEST(other_bytes_are_no_recording) {
@@ -272,7 +260,7 @@ TEST(other_bytes_are_no_recording) {
 
 /// A recording may ask for any number of steps; a replay makes those that it holds, and one more.
 TEST(a_small_recording_cannot_ask_for_endless_work) {
-    Tape tape = {0};
+    OwnTape tape = {0};
     SingeSimDef def = recorded(singe_default_sim(), &tape);
     SingeSim *sim = test_sim(&def, test_grid(3, 3, 0.01f, 0.01f), NULL);
     test_ok(sim, singe_sim_advance(sim, 0.0101, 0, NULL));
@@ -285,12 +273,11 @@ TEST(a_small_recording_cannot_ask_for_endless_work) {
     SingeReplay replay = replay_all(&tape);
     assert_int_equal(replay.steps, 5);
     assert_false(replay.same);
-    free(tape.bytes);
 }
 
 /// As after a test that leaves out calls of a recording in search of the one that matters.
 TEST(handles_are_followed_where_a_call_was_taken_out) {
-    Tape tape = {0};
+    OwnTape tape = {0};
     SingeSimDef def = recorded(singe_default_sim(), &tape);
     SingeSim *sim = test_sim(&def, test_grid(3, 3, 0.01f, 0.01f), NULL);
     SingeSourceId first = test_spot(sim, 0, 0, 0, 0.01f, 400, 100), second = test_spot(sim, 0, 0, 0, 0.01f, 500, 100);
@@ -304,7 +291,6 @@ TEST(handles_are_followed_where_a_call_was_taken_out) {
     SingeReplay replay = replay_all(&tape);
     assert_string_equal(replay.what, "the answer to add_source, after step 0"); // not that to remove_source
     assert_true(replay.complete);
-    free(tape.bytes);
 }
 
 // ---- writers
@@ -314,7 +300,7 @@ static void count_warning(void *context, SingeLogLevel level, const char *line) 
 }
 
 TEST(a_failing_writer_ends_only_the_recording) {
-    Tape tape = {.refuse_at = 20000};
+    OwnTape tape = {.refuse_at = 20000};
     int warnings = 0;
     SingeSimDef def = recorded(scene_def(), &tape);
     def.log = (SingeLog){count_warning, &warnings};
@@ -324,7 +310,6 @@ TEST(a_failing_writer_ends_only_the_recording) {
     singe_sim_destroy(scene.sim);
     assert_int_equal(warnings, 1);
     assert_true(tape.size <= 20000);
-    free(tape.bytes);
 }
 
 static SingeResult create_and_destroy(const SingeSimDef *def, SingeSim **sim) {
@@ -332,15 +317,14 @@ static SingeResult create_and_destroy(const SingeSimDef *def, SingeSim **sim) {
 }
 
 TEST(a_recorder_for_which_there_is_no_memory_is_an_error) {
-    Tape tape = {0};
+    OwnTape tape = {0};
     SingeSim *sim = NULL;
     SingeSimDef def = recorded(singe_default_sim(), &tape);
     test_allocations_fail(1, (def.allocator = allocator, create_and_destroy(&def, &sim)), singe_sim_destroy(sim));
-    free(tape.bytes);
 }
 
 TEST(a_replay_without_memory_is_an_error) {
-    Tape tape = {0};
+    OwnTape tape = {0};
     SingeSimDef def = recorded(singe_default_sim(), &tape), hooks = singe_default_sim();
     SingeSim *sim = test_sim(&def, test_grid(3, 3, 0.01f, 0.01f), NULL);
     test_steps(sim, 1);
@@ -353,5 +337,4 @@ TEST(a_replay_without_memory_is_an_error) {
     SingeError error;
     assert_int_equal(singe_replay(&hooks, tape.bytes, tape.size, &replay, &error), SINGE_ERROR_MEMORY);
     test_allocator_check(&counter);
-    free(tape.bytes);
 }
