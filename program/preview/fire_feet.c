@@ -12,9 +12,10 @@
 //     s(x) = min (a - LEAN h),   with LEAN_BELOW (h + BELOW_FREE) for LEAN h below
 //
 // and upwards from there, layer by layer, s(x) = s(x - v dt) - LEAN dz. A flame of which more was left had feet as wide as
-// the gas's cells: bags of haze beside the paper.
+// the gas's cells: bags of haze beside the paper. What is far from all feet comes nearer by LEAN, too, so nothing is cut
+// from 10 cm above the gas's lowest cells on.
 //
-// A hot shape feeds flames, too. There a flame f loses LEAN_FALLS (s - LEAN_FOOT) per cell.
+// A hot shape feeds flames, too. With cells of size dx a flame f loses LEAN_FALLS (s/dx - LEAN_FOOT).
 //
 // Fuel that enters hot gas burns further up, so a flame may hang above the rim. It comes down to what burns there: up to
 // two cells from above, and to RIM_FLAME at most, times a share that falls from the vertex to RIM_REACH.
