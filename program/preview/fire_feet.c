@@ -12,8 +12,7 @@
 //     s(x) = min (a - LEAN h),   with LEAN_BELOW (h + BELOW_FREE) for LEAN h below
 //
 // and upwards from there, layer by layer, s(x) = s(x - v dt) - LEAN dz. A flame of which more was left had feet as wide as
-// the gas's cells: bags of haze beside the paper. What is far from all feet comes nearer by LEAN, too, so nothing is cut
-// from 10 cm above the gas's lowest cells on.
+// the gas's cells: bags of haze beside the paper. Where s is FAR or more, no foot is near, and the way up brings none nearer.
 //
 // A hot shape feeds flames, too. With cells of size dx a flame f loses LEAN_FALLS (s/dx - LEAN_FOOT).
 //
@@ -43,6 +42,7 @@
 #define RIM_HIGH 1.0f
 #define SHAPE_HOT 800.0f ///< K
 #define NOWHERE 0.04f    ///< m
+#define FAR 0.039f
 
 static bool stops_at_whole(void *context, int lane, uint32_t triangle, float u, float v) {
     (void)lane, (void)u, (void)v;
@@ -121,7 +121,7 @@ static void follow_feet(Fire *fire) {
                 const float risen =
                     fire->cell + fire->sway[cell_at(fire, ix + (fx > 0.5f), iy + (fy > 0.5f), z - 1)][0];
                 const float lean = mixf(LEAN, LEAN_HIGH, stepf(LEAN_BEGINS, LEAN_ENDS, risen * each));
-                if (from - lean * fire->cell > fire->apart[here]) continue;
+                if (from > FAR || from - lean * fire->cell > fire->apart[here]) continue;
                 fire->apart[here] = from - lean * fire->cell;
                 fire->sway[here][0] = risen;
             }

@@ -102,7 +102,7 @@ function feetOf({ size, cell, origin, velocity }: Gas, surface: Surface, power: 
                 const from = (apart[under]! * (1 - fx) + apart[under + 1]! * fx) * (1 - fy) + (apart[under + nx]! * (1 - fx) + apart[under + nx + 1]! * fx) * fy;
                 const height = cell + risen[under + (fx > 0.5 ? 1 : 0) + (fy > 0.5 ? nx : 0)]!;
                 const s = from - cell * (LOOK.LEAN + (LOOK.LEAN_HIGH - LOOK.LEAN) * step(LOOK.LEAN_BEGINS, LOOK.LEAN_ENDS, height / Math.sqrt(scale)));
-                if (s > apart[i]!) continue;
+                if (from > LOOK.FAR || s > apart[i]!) continue;
                 apart[i] = s;
                 risen[i] = height;
             }
