@@ -42,7 +42,7 @@
 #define RIM_HIGH 1.0f
 #define SHAPE_HOT 800.0f ///< K
 #define NOWHERE 0.04f    ///< m
-#define FAR 0.039f
+#define FAR 0.039f       ///< m, a little less: between cells that no foot is near
 
 static bool stops_at_whole(void *context, int lane, uint32_t triangle, float u, float v) {
     (void)lane, (void)u, (void)v;
