@@ -12,7 +12,8 @@ typedef struct LayerSum {
     float fire_hides, temperature, burn, depth;
     int hits, samples;
     int behind; ///< how many more samples of other faces lie behind the first one than before it
-    bool mixed; ///< they met several sheets, or one at distances that differ, or a crease
+    bool ends;  ///< they met several sheets, or one at distances that differ
+    bool mixed; ///< that, or a crease
     int32_t sheet, piece;
     PreviewMatte mattes[PREVIEW_MATTES]; ///< their shares are numbers of samples
 } LayerSum;

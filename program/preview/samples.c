@@ -52,6 +52,7 @@ static bool add_to_layers(const Preview *preview, Block *block, int lane, Float3
     const float depth = point->distance * float3_dot(block->direction[lane], preview->camera.forward);
     const bool first = !sum->samples++;
     const bool other = !first && (point->sheet != sum->sheet || fabsf(depth - sum->depth) > 0.02f * depth);
+    if (other) sum->ends = true;
     if (other || (!first && float3_dot(point->geometric, sum->facing) < SAME_FACING)) sum->mixed = true;
     if (other) sum->behind += depth > sum->depth ? 1 : -1;
     if (first) {
@@ -156,7 +157,7 @@ static void add_sample(const Preview *preview, Block *block, const int *active, 
 }
 
 /// Whether what a pixel's samples show ends in it: it is on several sheets, or far apart, or some of them hit nothing.
-static bool is_edge(const LayerSum *sum) { return sum->behind || (sum->hits > 0 && sum->hits < sum->samples); }
+static bool is_edge(const LayerSum *sum) { return sum->ends || (sum->hits > 0 && sum->hits < sum->samples); }
 
 /// Whether a sheet or a shape ends between the lane's pixel and one beside it in the block.
 static bool is_beside_edge(const Block *block, int lane) {
